@@ -57,14 +57,16 @@ pub struct Mark {
     /// is no bar. Only [`Kind::Front`] draws it.
     pub spread: Option<[f64; 2]>,
     /// Size of the mark: an index into [`Figure::sizes`](crate::Figure::sizes); 0 if that list is
-    /// empty.
+    /// empty. [`Kind::Bars`] draws all marks in one size.
     pub size: usize,
-    /// Lines of text that a page shows for the mark; the first line is the mark's name.
+    /// Lines of text that a web page shows for the mark
+    /// ([`Figure::to_page_svg`](crate::Figure::to_page_svg)); the first line is the mark's name.
+    /// Empty for a mark without a name.
     pub about: String,
 }
 
 impl Mark {
-    /// Creates a mark of the smallest size, without an error bar and text.
+    /// Creates a mark of the smallest size, without an error bar or text.
     pub fn new(x: f64, y: f64) -> Self {
         let about = String::new();
         Self {

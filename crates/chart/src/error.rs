@@ -12,8 +12,8 @@ pub enum Error {
         /// Title of the panel.
         panel: String,
     },
-    /// A mark has a value that its panel's axes cannot show (infinite, negative, or 0 on a
-    /// logarithmic axis), or an unknown size.
+    /// A mark has a value that its panel's axes cannot show (NaN, infinite, negative, 0 on a
+    /// logarithmic axis, or not the index of a group), or an unknown size.
     #[error("panel {panel:?}, series {series:?}: {why}")]
     Mark {
         /// Title of the panel.

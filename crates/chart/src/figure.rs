@@ -31,7 +31,8 @@ pub struct Figure {
     pub sizes: Vec<String>,
     /// Names of series whose colours and shapes are fixed by their position in this list, so that
     /// figures with the same list draw them alike, even if some are not in a figure. Other series
-    /// get the looks that follow.
+    /// get the looks that follow, in the order in which they first occur in the panels. Looks
+    /// repeat after 48.
     pub looks: Vec<String>,
     /// Labels of logarithmic horizontal axes: pairs of a value and its text. If empty, decades are
     /// labelled.
@@ -40,8 +41,8 @@ pub struct Figure {
     pub panels: Vec<Panel>,
     /// Number of panels side by side in a row; 0 counts as 1.
     pub columns: usize,
-    /// True if the axes of all panels of a row cover the same ranges, so that heights can be
-    /// compared.
+    /// True if both axes of all panels of a row cover the same ranges, so that heights can be
+    /// compared; false if each panel has ranges of its own.
     pub shared_axes: bool,
 }
 
@@ -80,9 +81,9 @@ impl Figure {
     /// Colours are variables of the page's style: `--s0` to `--s7` of series, `--ink` of text,
     /// `--quiet` of axes and guides, `--front` of the Pareto front, `--line` and `--faint` of grid
     /// lines at and between labels, `--strip` of the strip for values of 0, `--card` of the
-    /// background. Elements of a series carry its name
-    /// in `data-series`. A mark is a `g` of class `mark`; `aria-label` holds its text
-    /// [`Mark::about`], `data-name` the first line of that.
+    /// background. Except in [`Kind::Bars`], elements of a series carry the series' name in
+    /// `data-series`. A mark is a `g` of class `mark`; `aria-label` holds the text [`Mark::about`],
+    /// `data-name` the text's first line.
     ///
     /// # Errors
     /// Those of [`Figure::to_svg`].
@@ -99,7 +100,7 @@ impl Figure {
     /// has gets a neutral mark.
     ///
     /// # Errors
-    /// If the drawing library fails.
+    /// [`Error::Drawing`] if the drawing library fails.
     pub fn sign(&self, series: &str) -> Result<String, Error> {
         let mut canvas = Canvas::new((18, 18), true);
         let look = self.look(&self.names(), series);

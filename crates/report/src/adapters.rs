@@ -21,7 +21,8 @@ const POINTS: f64 = 0.05;
 /// The method that asks lists in fragments, and in a compute stage.
 const STAGES: [&str; 2] = ["light_buffer@stage=fragment", "light_buffer"];
 
-/// Returns the tables of adapters in Markdown. Errors are compared with those of the first one.
+/// Returns the tables of adapters in Markdown, without those that have no rows. Errors are compared
+/// with those of the first record.
 pub fn markdown(records: &[AdapterRecord]) -> String {
     let mut text = String::new();
     let mut add = |title: &str, note: &str, table: Table| {
@@ -238,19 +239,23 @@ fn beside_first(records: &[AdapterRecord]) -> Table {
     Table::new(heads, 2, others.iter().enumerate().map(row))
 }
 
-/// A cell on two adapters.
+/// Difference of the errors of one cell (one method on one view in one viewport) on two adapters.
 pub struct Difference {
-    /// Method, scene, view and viewport.
+    /// Method, scene, number of triangles, view and viewport, as text.
     pub place: String,
-    /// Difference of both shares of wrong pixels, in points.
+    /// Absolute difference of both [shares of wrong pixels](CellFigures::wrong_percent), in
+    /// percentage points.
     pub points: f64,
-    /// True if both are wrong on the same number of the same number of pixels.
+    /// True if both adapters have the same number of wrong pixels, and of pixels facing the light.
     pub is_equal: bool,
-    /// True if they differ by more than rasterisers and rounding account for.
+    /// True if both differ by more than rasterisers and rounding account for:
+    /// [`points`](Self::points) exceeds 0.05 and the greater share of pixels in the
+    /// [band](skiagraph_compare#terms), or the root mean square errors differ by more than 0.001.
     pub is_beyond: bool,
 }
 
-/// Compares the errors of the cells that two adapters have in common.
+/// Compares the errors of the cells that two adapters have in common ([`CellFigures::is_same`]), in
+/// the order of `one`. Cells that could not run on one of them are left out.
 pub fn differences(one: &AdapterRecord, other: &AdapterRecord) -> Vec<Difference> {
     let both = one.cells().filter_map(|cell| {
         let again = other.cells().find(|again| again.is_same(cell))?;

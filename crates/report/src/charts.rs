@@ -318,7 +318,7 @@ pub fn path_panels<'a>(
 /// Renders a figure as the text of an SVG file.
 ///
 /// # Errors
-/// The errors of [`Figure::to_svg`].
+/// [`CompareError::Input`] with the message of an error of [`Figure::to_svg`].
 pub fn svg(figure: &Figure) -> Result<String, CompareError> {
     let svg = figure.to_svg();
     svg.map_err(|error| CompareError::Input(error.to_string()))
@@ -375,8 +375,8 @@ fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
     })
 }
 
-/// Returns lines about the measurements: one for each adapter, then one with the number of timed
-/// frames per run.
+/// Returns lines about the measurements: one for each adapter, then one with the numbers of timed
+/// frames of still views ([`Results::frames`]).
 pub fn conditions(kept: &[Kept]) -> Vec<String> {
     let results = || kept.iter().map(|kept| &kept.results);
     let adapters = results().map(|results| results.adapter.to_string());

@@ -9,10 +9,12 @@ use skiagraph_compare::records::results::Results;
 use skiagraph_compare::wording::{bytes, ms, size, unknown};
 use std::path::Path;
 
-/// Upper limit for one figure of a method, beyond which `compare --fail-if` fails.
+/// Upper limit for one figure of a method or picture, beyond which `--fail-if` makes `compare` or
+/// `judge` fail.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gate {
-    /// Name of the method with its setting, for example `crsm@n=1`; of `judge`, of a picture.
+    /// Name of the method with its setting, for example `crsm@n=1`. For `judge` it is the path of a
+    /// picture, or the picture's file name without its extension.
     pub method: String,
     /// The figure that is limited.
     pub figure: Figure,
@@ -82,10 +84,10 @@ impl Figure {
 }
 
 impl Gate {
-    /// Checks that the methods of all limits are compared.
+    /// Checks that the method of every limit is one of `methods`, those of the comparison.
     ///
     /// # Errors
-    /// A text for the user that names the first method that is not, with those that are.
+    /// A text for the user that names the first method that is not compared, and those that are.
     pub fn check(gates: &[Self], methods: &[Method]) -> Result<(), String> {
         let mut known: Vec<&str> = methods.iter().map(|method| method.name.as_str()).collect();
         known.dedup();
@@ -125,12 +127,12 @@ impl Gate {
         lines
     }
 
-    /// Checks that [`method`](Self::method) names one of the pictures `files` (its path, or its
-    /// file name without the ending), and that [`figure`](Self::figure) is one that judged pictures
+    /// Checks that [`method`](Self::method) names one of the pictures `files` (by its path, or its
+    /// file name without extension), and that [`figure`](Self::figure) is one that judged pictures
     /// have.
     ///
     /// # Errors
-    /// Text that names the picture or the figure.
+    /// A text for the user that names the unknown picture, or the figure that pictures lack.
     pub fn check_pictures(&self, files: &[String]) -> Result<(), String> {
         let (name, word) = (&self.method, self.figure.word());
         if matches!(self.figure, Figure::Frame | Figure::Memory) {
@@ -148,9 +150,10 @@ impl Gate {
         Err(unknown(&what, name, "pictures", &stems.collect::<Vec<_>>()))
     }
 
-    /// Returns a line of text for each judged picture that is beyond this limit, which
-    /// [`check_pictures`](Self::check_pictures) accepts. Wrong pixels and RMSE are those outside
-    /// the [band](skiagraph_compare#terms) and attributable.
+    /// Returns a line of text for each judged picture that is beyond this limit; empty if all are
+    /// within it. [`check_pictures`](Self::check_pictures) must have accepted the limit. Wrong
+    /// pixels and RMSE leave out pixels in the [band](skiagraph_compare#terms) and
+    /// [unattributable](JudgedPictures::unattributable) ones.
     pub fn picture_failures(&self, judged: &JudgedPictures) -> Vec<String> {
         let facing = judged.pixels.facing_light.max(1) as f64;
         let pictures = judged.pictures.iter().filter(|of| self.is_of(&of.file));

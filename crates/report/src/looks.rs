@@ -5,9 +5,8 @@ use skiagraph_compare::graphs::preset::{SHIPPED, built_in};
 use skiagraph_compare::lists::unique;
 
 /// Returns the list of series for [`Figure::looks`](skiagraph_chart::Figure::looks) of a figure of
-/// these methods. Built-in presets have the same place in every list: those of
-/// `skiagraph_compare::graphs::preset::SHIPPED` first, then the others. All other methods follow in
-/// the order of their names.
+/// these methods. Built-in presets have the same place in every list: those of [`SHIPPED`] first,
+/// then the other built-in ones. All other methods follow in the order of their names.
 pub fn looks(methods: impl IntoIterator<Item = String>) -> Vec<String> {
     let shipped = SHIPPED.map(str::to_owned).into_iter();
     unique(

@@ -238,8 +238,8 @@ fn remade(run: &Run, sequence: &Sequence) -> Option<String> {
     (!remade.is_empty()).then(|| format!("{label} between frames, on the CPU: {remade}"))
 }
 
-/// Names the GPU times that a run lacks although the adapter's timestamps can be trusted; `None` if
-/// it lacks none.
+/// Names the GPU times that a run lacks; `None` if it lacks none, or could not run. Of an adapter
+/// whose timestamps cannot be trusted it names all.
 pub fn times_missing(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let passes = measured.passes.iter();

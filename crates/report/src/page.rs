@@ -24,8 +24,8 @@ use std::{
 /// Name of the page's file in a folder of results.
 pub const FILE: &str = "report.html";
 
-/// Writes the HTML page of one folder of results into that folder, as [`FILE`]. The sink gets a
-/// note about pictures that did not fit into the page.
+/// Writes the HTML page of one folder of results into that folder, as [`FILE`]. The sink gets
+/// notes, as of [`write`](write()).
 ///
 /// # Errors
 /// The errors of [`write`](write()).
@@ -34,9 +34,10 @@ pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> 
 }
 
 /// Writes the HTML page of the results in `places` to `file`. Each place is a folder that `compare`
-/// or `stress` wrote, a results.json, or a folder of such folders. The sink gets a note about
-/// pictures that did not fit into the page. If `file` lies in one of the folders, that folder's
-/// lock is held, so the page is never older than the results beside it.
+/// or `stress` wrote, a results.json, or a folder of such folders. The sink gets notes about
+/// pictures that did not fit into the page and planned cells that are not measured yet. If `file`
+/// lies in one of the folders, that folder's lock is held, so the page is never older than the
+/// results beside it.
 ///
 /// # Errors
 /// If a folder has no results, results cannot be read, or the file cannot be written.
@@ -58,16 +59,17 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
     write_page(&sources, &matrices, file, sink)
 }
 
-/// Joins the results in `places` (folders or results.json files that `compare` wrote), and writes
-/// results.json, results.csv and the HTML page into the folder `out`, which is made if it is
-/// missing. Of folders that `adapter` wrote, tables of the adapters are written besides. Results
-/// that it holds already stay in it. Pictures are embedded in the page, but not copied into `out`.
-/// The sink is told which results are joined and which are kept apart.
+/// Joins the results in `places`, each as for [`write`](write()), and writes results.json,
+/// results.csv and the HTML page into the folder `out`, which is made if it is missing. Records of
+/// adapters in `places` go into adapters.json and [`adapters::FILE`] there. Results and adapters
+/// that `out` holds already stay in it. Pictures are embedded in the page, but not copied into
+/// `out`. The sink is told which results are joined and which are kept apart.
 ///
 /// # Errors
 /// If a place has no results, results cannot be read, or a file cannot be written; cells of two
-/// versions of the program, or that two machines measured with other errors. If planned cells are
-/// not measured yet, what is there is written before.
+/// versions of the program, or that two machines measured with different errors. If there is
+/// nothing to join, or planned cells are not measured yet, the error is [`CompareError::Input`]; in
+/// the second case the measured cells are written first.
 pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     // All is read before anything is written.
     let (mut places, records) = without_adapters(places)?;

@@ -89,7 +89,8 @@ fn six_digits(number: f64) -> String {
 }
 
 /// Returns the profiles as CSV: for each profile a line for each pass and one for the whole frame.
-/// The cell `pass` is empty in the lines of whole frames.
+/// The cell `pass` is empty in the lines of whole frames. Times are in milliseconds; the cells of
+/// GPU times are empty where they are missing.
 ///
 /// # Errors
 /// The errors of [`Table::csv`].

@@ -28,10 +28,10 @@ const SUM: &str = "ms.steps";
 /// The chart of methods without a map, whose times have nothing to be a share of.
 const GROWTH: &str = "time-by-viewport";
 
-/// Draws charts for each quantity that is both published and measured, by map size and by viewport.
-/// The published figures must be in [`Run::published`] of the runs of `kept`. `published_rows` are
-/// all figures of the publication; `label` is its name in the charts. `viewport` (pixels) limits
-/// the charts to one viewport; `None` draws all.
+/// Draws charts for each share, time and rate that is both published and measured, by map size and
+/// by viewport; counts are not drawn. The published figures must be in [`Run::published`] of the
+/// runs of `kept`. `published_rows` are all figures of the publication; `label` is its name in the
+/// charts. `viewport` (pixels) limits the charts to one viewport; `None` draws all.
 pub fn draw(
     kept: &[Kept],
     published_rows: &[Row],

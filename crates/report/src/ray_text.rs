@@ -112,7 +112,8 @@ fn figure(value: f64) -> String {
 }
 
 /// Returns a report in Markdown that tells a driver's maker what was traced, how, and which answers
-/// are wrong; enough to repeat it without this program.
+/// are wrong; enough to repeat the tests without this program. The report lists the wrong rays of
+/// `RayQuery`, or of `Hierarchy` if `RayQuery` did not run.
 pub fn vendor_report(of: &Conformance) -> String {
     let queries = of.engines().contains(&"RayQuery");
     let engine = if queries { "RayQuery" } else { "Hierarchy" };

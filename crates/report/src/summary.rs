@@ -47,7 +47,7 @@ pub struct Wrong {
 
 impl Wrong {
     /// Returns the wrong pixels outside the band (the pixels whose answer rounding decides) as a
-    /// share of the pixels that face the light, from 0 to 1; 0 if there are none.
+    /// share of the pixels that face the light, from 0 to 1; 0 if no pixel faces the light.
     pub fn share(self) -> f64 {
         self.outside_band as f64 / self.facing_light.max(1) as f64
     }
@@ -127,7 +127,7 @@ impl<'a> Row<'a> {
 
     /// True if the visibility of every pixel outside the band (the pixels whose answer rounding
     /// decides) equals the [reference](skiagraph_compare#terms)'s, also as a [share of
-    /// light](skiagraph_compare#terms).
+    /// light](skiagraph_compare#terms). True without runs.
     pub fn is_exact(&self) -> bool {
         let is_exact = |(_, of): &(&Run, &Measured)| {
             of.wrong_outside_band() == 0 && of.graded.rmse_outside_band == 0.0
@@ -182,8 +182,8 @@ impl<'a> Row<'a> {
     }
 
     /// Returns the milliseconds of a frame in which only the camera has moved, so that passes with
-    /// unchanged inputs are skipped: the mean of the views' medians. `None` if no pass is skipped.
-    /// `by_wall` selects wall time instead of GPU time.
+    /// unchanged inputs are skipped: the mean of the views' medians. `None` if no pass is skipped,
+    /// or a view has no such time. `by_wall` selects wall time instead of GPU time.
     pub fn kept_ms(&self, by_wall: bool) -> Option<f64> {
         let keeps = |(_, of): &(&Run, &Measured)| kept(of) != full(of);
         let any = self.runs.iter().any(keeps);
@@ -217,7 +217,7 @@ impl<'a> Row<'a> {
     /// ran; `by_wall` selects wall time instead of GPU time. Frames in which every pass ran are
     /// compared one by one ([`PairedRatio`]) if the methods took turns in one session, or followed
     /// the same camera path in one; all other times differ if their quartiles do not overlap. False
-    /// also where times are missing, or fewer than eight pairs of frames.
+    /// if times are missing, or if there are fewer than eight pairs of frames to compare.
     pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
         let pair = || self.runs.iter().zip(&other.runs);
         let is_pair = |((one, of), (other, of_other)): (&Measurement, &Measurement)| {

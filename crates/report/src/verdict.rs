@@ -14,9 +14,10 @@ pub(crate) const MAX_BAND: f64 = 0.01;
 /// Verdict on the rows of a summary: the methods that it recommends, in figures and in words.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// Index of the row that is fastest in frames in which every pass runs, among those without a
-    /// wrong pixel outside the band (the pixels whose answer rounding decides). `None` if there is
-    /// no such row, or [shares of light](skiagraph_compare#terms) are compared.
+    /// Index of the row that is fastest in frames in which every pass runs, among the
+    /// [exact](Row::is_exact) ones within the budgets. `None` if there is no such row, if [shares
+    /// of light](skiagraph_compare#terms) under a light with an extent are compared, or if there is
+    /// a budget of wrong pixels and a row within the budgets that is not exact is faster.
     pub fastest_exact: Option<usize>,
     /// Indices of the recommended rows, or if none is right enough of the least wrong ones: the
     /// fastest, then those whose times cannot be told apart from it. Times are of frames in which
@@ -27,8 +28,8 @@ pub struct Verdict {
     /// times tell which is the fastest. With fewer than eight frames they do not, unless one row
     /// alone keeps to the budgets.
     pub is_taken: bool,
-    /// Index of the row to show beside the first one: the alternative that the sentences name,
-    /// preferably a faster method, otherwise one that is as right. `None` without an alternative.
+    /// Index of the row to show beside the first one: a less right method that is faster or cannot
+    /// be told apart in time, otherwise the next best one. `None` if there is none.
     pub runner_up: Option<usize>,
     /// The verdict in words, a sentence for each entry. It is empty if no row can be judged.
     pub sentences: Vec<String>,
@@ -37,7 +38,7 @@ pub struct Verdict {
 /// Judges rows that were measured on the same views: recommends a method. A row takes no part if it
 /// has fewer views than others, was measured an hour or more before the newest one (the machine may
 /// have been loaded differently), was cut short, or could not run. Rows beyond a budget are not
-/// recommended. Of a method and its tuned setting only the one with less error is.
+/// recommended. Of a method and its tuned setting only the one with less error is recommended.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);

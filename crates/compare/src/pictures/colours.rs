@@ -120,7 +120,8 @@ fn mark(meaning: &str, count: usize) -> Option<String> {
 }
 
 /// Returns the RGB colour of an id, such as a triangle's, by a multiplicative hash (Knuth's 2³²/φ),
-/// so that consecutive ids look different.
+/// so that consecutive ids look different; [`EMPTY`] for 0xffffffff, the id of a pixel that shows
+/// no triangle.
 pub fn id_colour(id: u32) -> [u8; 3] {
     if id == BACKGROUND {
         return EMPTY;
@@ -173,9 +174,10 @@ pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
     (values.iter().flat_map(colour).collect(), legend.join(", "))
 }
 
-/// Colours texels of `channels` values each, in which 0 is black and 1 is full intensity. One
-/// channel is grey, others are red, green and blue; a fourth is not shown. Returns three bytes
-/// (RGB) per texel, and the legend.
+/// Colours texels of `channels` values each, in which 0 and less is black, and 1 and more is full
+/// intensity. A texel with a value that is not finite has that value's colour, such as [`INVALID`].
+/// There are 1 to 4 channels: one channel is grey, others are red, green and blue; a fourth is not
+/// shown. Returns three bytes (RGB) per texel, and the legend.
 pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     let whole = [(0.0, 1.0); 4];
     let rgb = coloured(values, channels, &whole[..channels.min(3)]);
@@ -184,8 +186,9 @@ pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
 }
 
 /// Colours texels of `channels` values each; each channel is scaled between its own least and
-/// greatest finite value. One channel is grey, others are red, green and blue; a fourth is not
-/// shown. Returns three bytes (RGB) per texel, and the legend.
+/// greatest finite value. A texel with a value that is not finite has that value's colour, such as
+/// [`INVALID`]. There are 1 to 4 channels: one channel is grey, others are red, green and blue; a
+/// fourth is not shown. Returns three bytes (RGB) per texel, and the legend.
 pub fn floats(values: &[f32], channels: usize) -> (Vec<u8>, String) {
     let shown: Vec<(f32, f32)> = (0..channels.min(3))
         .map(|index| range(channel(values, channels, index)))

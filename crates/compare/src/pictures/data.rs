@@ -92,8 +92,8 @@ impl Array {
     /// Creates an array of the texels of a texture; its mips and layers become layers of the array.
     ///
     /// # Errors
-    /// The reason why it cannot, such as a buffer or mips of several sizes, as the rest of a
-    /// sentence that begins with the material's name.
+    /// The reason why the content cannot become an array, such as a buffer or mips of several
+    /// sizes, as the rest of a sentence that begins with the material's name.
     pub fn from_content(content: &Content) -> Result<Self, String> {
         let Content::Texture { format, parts, .. } = content else {
             return Err("is a buffer and has no texels; save it as .csv or .bin".into());
@@ -123,8 +123,8 @@ impl Array {
     /// Returns the array as a file.
     ///
     /// # Errors
-    /// The reason why the format cannot hold it, as the rest of a sentence that begins with the
-    /// material's name.
+    /// The reason why the format cannot hold the array, such as several layers or signed integers
+    /// in OpenEXR, as the rest of a sentence that begins with the material's name.
     pub fn encode(&self, format: DataFormat) -> Result<Vec<u8>, String> {
         match format {
             DataFormat::Npy => Ok(self.npy()),

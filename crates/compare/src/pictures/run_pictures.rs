@@ -201,13 +201,14 @@ fn stem_of(method: &str, map_size: Option<u32>, view: &str, viewport: [u32; 2]) 
     format!("{}-{}", slug(method), conditions.replace(' ', "-"))
 }
 
-/// Returns the file name of the array of a run's visibility, as `compare --data npy` writes it.
+/// Returns the file name of the array of a run's visibility on a still view, as `compare --data
+/// npy` writes it.
 pub fn visibility_npy(run: &Run) -> String {
     let stem = stem_of(&run.preset, run.map_size, &run.view, run.viewport);
     format!("{stem}-visibility.npy")
 }
 
-/// Returns the beginning of the file name of the [reference](crate#terms)'s picture:
+/// Returns the beginning of the file names of the [reference](crate#terms)'s picture and arrays:
 /// `reference-main-512x512`.
 pub fn reference_stem(view: &str, viewport: [u32; 2]) -> String {
     format!("reference-{}-{}", slug(view), size(viewport))

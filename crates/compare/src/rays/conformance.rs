@@ -26,7 +26,8 @@ use skiagraph_reference::Oracle;
 use skiagraph_scene::{Mesh, Scene};
 use std::sync::Arc;
 
-/// Features to open a device with, so that its ray queries can be used.
+/// Features to open a device with ([`open_with`](crate::measuring::device::open_with)), so that its
+/// ray queries can be used.
 pub const RAY_QUERIES: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 
 /// Rays that are traced at once.
@@ -35,12 +36,13 @@ const BATCH: usize = 1 << 20;
 /// Engines that answer any rays.
 const ENGINES: [Engine; 2] = [Engine::Hierarchy, Engine::RayQuery];
 
-/// Traces `count` rays of each kind through each of [`solids`] by the compute hierarchy, and by ray
-/// queries where the adapter has them; then as many rays through a random crowd of triangles, which
-/// the f64 reference answers.
+/// Traces `count` rays of each [`Aim`] through each of [`solids`] by the engine `Hierarchy`, and by
+/// `RayQuery` where the device has [`RAY_QUERIES`]; then `count` rays through a random crowd of
+/// triangles, whose right answers the f64 [reference](crate#terms) finds.
 ///
 /// # Errors
-/// The errors of [`Tracer`]; an early end. Wrong answers are no error, but the result.
+/// The errors of [`Tracer::new`] and [`Tracer::trace`], among them an early end. Wrong answers are
+/// no error, but the result.
 pub fn conformance(session: Session, count: u64) -> Result<Conformance, CompareError> {
     let has_queries = session.gpu.device.features().contains(RAY_QUERIES);
     let why = "the adapter has no EXPERIMENTAL_RAY_QUERY";

@@ -22,33 +22,33 @@ use skiagraph_scene::{
 pub struct Solid {
     /// Name for tables.
     pub name: &'static str,
-    /// Its surface, and the errors that it provokes, as one line.
+    /// Description of the surface and of the errors that it provokes, as one line.
     pub reason: &'static str,
-    /// Its surface, welded.
+    /// Mesh of the surface, in scene units; triangles share the corners of their edges.
     pub mesh: Mesh,
     centre: DVec3,
     /// Distance of the nearest and of the farthest corner.
     reach: [f64; 2],
 }
 
-/// Places at which rays are aimed.
+/// Places of a solid's surface at which rays are aimed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aim {
     /// Corners of triangles.
     Corners,
     /// Points on edges of triangles.
     Edges,
-    /// Points inside triangles.
+    /// Points in the interior of triangles.
     Inside,
-    /// As `Inside`, but the ray ends before the surface: it is not blocked.
+    /// As [`Inside`](Self::Inside), but the ray ends before the surface: it is not blocked.
     Short,
 }
 
 impl Aim {
-    /// All of them.
+    /// All aims, in the order in which they are tested.
     pub const ALL: [Self; 4] = [Self::Corners, Self::Edges, Self::Inside, Self::Short];
 
-    /// Returns the words for tables.
+    /// Returns the aim in words, for tables: `at corners`.
     pub fn words(self) -> &'static str {
         match self {
             Self::Corners => "at corners",
@@ -58,7 +58,7 @@ impl Aim {
         }
     }
 
-    /// True if the rays are blocked.
+    /// True if the right answer is that rays of this aim are blocked.
     pub fn is_blocked(self) -> bool {
         self != Self::Short
     }
@@ -174,7 +174,7 @@ impl Solid {
         }
     }
 
-    /// Returns the solid as a scene without views.
+    /// Returns the solid as a scene without views, under one directional light.
     pub fn scene(&self) -> Scene {
         let sun = LightKind::from(DirectionalLight::new(DVec3::NEG_Y));
         Scene {
@@ -185,8 +185,9 @@ impl Solid {
         }
     }
 
-    /// Returns `count` rays with one answer ([`Aim::is_blocked`]), determined by `seed`: in turn
-    /// from the centre outward, and from outside to the centre. Directions are not of unit length.
+    /// Returns `count` rays with one right answer ([`Aim::is_blocked`]), the same for the same
+    /// `seed`: in turn from the centre outward, and from outside to the centre. Directions are not
+    /// of unit length.
     pub fn rays(&self, aim: Aim, count: usize, seed: u64) -> Vec<Ray> {
         let mut random = Random::new(seed);
         let all = self.mesh.triangles.len() as f64;

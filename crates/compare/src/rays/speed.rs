@@ -1,4 +1,4 @@
-//! Times engines of `Trace` on the same rays: any hits per second.
+//! Times [engines](skiagraph_passes::Engine) of `Trace` on the same rays: any hits per second.
 //!
 //! ```no_run
 //! use skiagraph_compare::{rays::speed::{SpeedRequest, any_hits}, sink::Session};
@@ -28,21 +28,23 @@ use skiagraph_passes::{Engine, SceneProvider};
 use skiagraph_scene::{Scene, generate::numbers::Random};
 use std::{sync::Arc, time::Duration};
 
-/// Request for a measurement.
+/// Request for a measurement by [`any_hits`].
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct SpeedRequest {
-    /// Scenes through which rays go.
+    /// Scenes through which rays go; each has a view.
     pub scenes: Vec<Arc<Scene>>,
-    /// Pixels along an edge of the picture whose shadow rays are traced; as many random rays are
-    /// traced besides.
+    /// Width and height in pixels of the picture whose shadow rays are traced; with 2048 or less
+    /// they are at most [`MOST_RAYS`]. As many random rays as the picture has pixels are traced
+    /// besides.
     pub edge: u32,
-    /// Timed turns.
+    /// Number of timed turns, 1 or more.
     pub turns: u32,
 }
 
 impl SpeedRequest {
-    /// Creates a request.
+    /// Creates a request from its [`scenes`](Self::scenes), [`edge`](Self::edge) and
+    /// [`turns`](Self::turns).
     pub fn new(scenes: Vec<Arc<Scene>>, edge: u32, turns: u32) -> Self {
         Self {
             scenes,
@@ -52,13 +54,13 @@ impl SpeedRequest {
     }
 }
 
-/// Times every engine that the adapter has: the rays of `rt` at the scene's first view, each past
-/// its own primitive, and random ones, a tenth of the scene's diagonal long at most. Engines take
-/// turns, so that other work of the machine meets all of them. The first turn is not timed; its
-/// answers are compared.
+/// Times every engine that the adapter has, on two sets of rays for each scene: those of
+/// [`shadow_rays`], then those of [`random_rays`]. The engine `LightSpace` takes part only in
+/// shadow rays of a directional light. Engines take turns, so that other work of the machine meets
+/// all of them. A turn before the timed ones is not timed; its answers are compared.
 ///
 /// # Errors
-/// A scene without rays; the errors of [`Tracer`]; an early end.
+/// The errors of [`shadow_rays`], [`Tracer::new`] and [`Tracer::trace`], among them an early end.
 pub fn any_hits(session: Session, request: &SpeedRequest) -> Result<AnyHits, CompareError> {
     let mut record = AnyHits {
         schema: 1,
@@ -147,8 +149,9 @@ fn set_speed(
     })
 }
 
-/// Returns rays from anywhere in the scene's box in any direction, a tenth of its diagonal long at
-/// most; the same on every machine.
+/// Returns `count` rays from anywhere in the scene's bounding box in any direction, a tenth of the
+/// box's diagonal times the length of [`direction`](Ray::direction) long; the same on every
+/// machine.
 pub fn random_rays(scene: &Scene, count: usize) -> Vec<Ray> {
     let (low, high) = scene.mesh.bounds().unwrap_or_default();
     let mut random = Random::new(1);

@@ -38,36 +38,39 @@ use wgpu::util::DeviceExt;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Ray {
-    /// Its begin, in scene units.
+    /// Begin of the ray, in scene units.
     pub origin: Vec3,
-    /// Least t, in lengths of `direction`; 0 or more.
+    /// Least t, in lengths of [`direction`](Self::direction); 0 or more.
     pub t_min: f32,
-    /// Its direction, of any length but zero.
+    /// Direction of the ray, of any length but zero.
     pub direction: Vec3,
-    /// Greatest t, in lengths of `direction`; finite.
+    /// Greatest t, in lengths of [`direction`](Self::direction); finite.
     pub t_max: f32,
 }
 
 /// Rays that are traced together.
 #[derive(Clone, Debug, Default)]
 pub struct RaySet {
-    /// Name for tables.
+    /// Name of the set, for tables and messages.
     pub name: String,
     /// The rays; at least one, and at most [`MOST_RAYS`].
     pub rays: Vec<Ray>,
-    /// The primitive that each ray does not see; empty if all rays see all.
+    /// For each ray the id of the triangle that it passes through unblocked (its index in the
+    /// mesh), in the order of [`rays`](Self::rays); empty if every triangle blocks every ray.
     pub skip: Vec<u32>,
     /// True if every ray's direction is, bit for bit, the unit vector towards the scene's first
-    /// light that shaders have (`light.to_light`); that light is directional. The engine that walks
-    /// a hierarchy seen from the light answers a ray with any other direction as a miss.
+    /// light that shaders have (`light.to_light`); that light is directional. The engine
+    /// [`LightSpace`](Engine::LightSpace) answers a ray with any other direction as a miss.
     pub to_light: bool,
 }
 
-/// Most rays of a set: as many of 32 bytes as every GPU binds.
+/// Greatest number of rays of a set: at 32 bytes a ray they are the 128 MiB that every GPU binds as
+/// one buffer.
 pub const MOST_RAYS: usize = 1 << 22;
 
 impl RaySet {
-    /// Creates a set of rays that see all triangles and go anywhere.
+    /// Creates a set of rays with an empty [`skip`](Self::skip) and a false
+    /// [`to_light`](Self::to_light).
     pub fn new(name: impl Into<String>, rays: Vec<Ray>) -> Self {
         Self {
             name: name.into(),
@@ -82,7 +85,8 @@ impl RaySet {
 pub struct Hit(u32);
 
 impl Hit {
-    /// Returns the primitive that blocks the ray; `None` if it is not blocked, or has no answer.
+    /// Returns the id of a triangle that blocks the ray, its index in the mesh; `None` if the ray
+    /// is not blocked, or has no answer.
     pub fn primitive(self) -> Option<u32> {
         (self.0 < UNANSWERED).then_some(self.0)
     }
@@ -101,7 +105,7 @@ impl Hit {
 /// Least primitive id that is none: the ray has no answer.
 const UNANSWERED: u32 = 0xffff_fffd;
 
-/// One engine of `Trace` with the rays that it traces.
+/// One [`Engine`] of `Trace` with the rays that it traces.
 pub struct Tracer<'a> {
     session: Session<'a>,
     executor: Executor,
@@ -111,10 +115,11 @@ pub struct Tracer<'a> {
 
 impl<'a> Tracer<'a> {
     /// Prepares an engine for rays through a scene. The provider keeps the engine's hierarchy:
-    /// where it has it already, [`built`](Self::built) is next to nothing.
+    /// where the provider has the hierarchy already, [`built`](Self::built) is next to nothing.
     ///
     /// # Errors
-    /// No rays, or too many; an engine that cannot run on this adapter.
+    /// [`CompareError::Input`] if there are no rays, or more than [`MOST_RAYS`], or if the engine
+    /// cannot run on this adapter; the errors of the executor.
     pub fn new(
         session: Session<'a>,
         scene: &mut SceneProvider,
@@ -167,11 +172,11 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// Traces all rays once. Returns the time from submission to the end, and an answer for each
-    /// ray.
+    /// Traces all rays once, for any hit. Returns the time from the start of encoding until the GPU
+    /// was done, by the CPU's clock, and an answer for each ray, in the order of [`RaySet::rays`].
     ///
     /// # Errors
-    /// The errors of the executor; an early end.
+    /// The errors of the executor; an early end ([`CompareError::Interrupted`]).
     pub fn trace(&mut self) -> Result<(Duration, Vec<Hit>), CompareError> {
         let failed = |error| frame::failed(self.session, "any_hits", error);
         let all = Frame::new().with_all(true);
@@ -187,11 +192,13 @@ impl<'a> Tracer<'a> {
 /// Feature that the engine `RayQuery` needs.
 const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 
-/// The rays that `rt` traces at `edge` × `edge` pixels of the scene's first view, each past its own
-/// primitive.
+/// Returns the shadow rays that the preset `rt` traces at `edge` × `edge` pixels of the scene's
+/// first view: one for each pixel that asks one, with the pixel's own triangle in
+/// [`skip`](RaySet::skip). `name` is the set's name.
 ///
 /// # Errors
-/// A scene without a view or without rays; the errors of the executor.
+/// [`CompareError::Input`] if the scene has no view, or no pixel asks a ray; the errors of the
+/// executor.
 pub fn shadow_rays(
     session: Session,
     name: &str,

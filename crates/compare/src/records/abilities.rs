@@ -34,22 +34,23 @@ pub struct Abilities {
     pub adapter: Adapter,
     /// Limits of the adapter.
     pub limits: Limits,
-    /// Optional abilities, and whether the adapter has them.
+    /// All optional abilities: true for those that the adapter has.
     pub features: BTreeMap<Ability, bool>,
 }
 
-/// Limits of an adapter.
+/// Limits of an adapter, in wgpu's terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limits {
-    /// Most texels along an edge of a texture.
+    /// Most texels along an edge of a 2D texture.
     pub texture_edge: u32,
     /// Most bytes of a storage buffer that a shader sees at once.
     pub storage_binding: u64,
     /// Most bytes of a buffer.
     pub buffer: u64,
-    /// Most bytes that a graph may take; null where the driver does not say.
+    /// Most bytes that the textures and buffers of a graph may take together
+    /// ([`Gpu::memory`](skiagraph_gpu::device::Gpu::memory)); null where the driver does not say.
     pub memory: Option<u64>,
-    /// Most threads of a workgroup.
+    /// Most invocations (threads) of a workgroup.
     pub threads: u32,
     /// Most workgroups along a dimension of a dispatch.
     pub groups: u32,
@@ -59,15 +60,15 @@ pub struct Limits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ability {
-    /// Timestamps around passes.
+    /// Timestamps around passes: `TIMESTAMP_QUERY`.
     Timestamps,
-    /// Timestamps between passes.
+    /// Timestamps between passes: `TIMESTAMP_QUERY_INSIDE_ENCODERS`.
     TimestampsBetween,
-    /// Timestamps inside passes.
+    /// Timestamps inside passes: `TIMESTAMP_QUERY_INSIDE_PASSES`.
     TimestampsInside,
-    /// Filtering of textures of 32-bit floats.
+    /// Filtering of textures of 32-bit floats: `FLOAT32_FILTERABLE`.
     FilteredFloats,
-    /// Ray queries in shaders.
+    /// Ray queries in shaders: `EXPERIMENTAL_RAY_QUERY`.
     RayQuery,
 }
 
@@ -81,7 +82,7 @@ impl Ability {
         Self::RayQuery,
     ];
 
-    /// Returns the feature of wgpu.
+    /// Returns the feature of wgpu that gives this ability.
     pub fn feature(self) -> wgpu::Features {
         match self {
             Self::Timestamps => wgpu::Features::TIMESTAMP_QUERY,
@@ -92,7 +93,7 @@ impl Ability {
         }
     }
 
-    /// Returns the use that is made of it.
+    /// Returns the name and use of the ability, as text for a list.
     pub fn purpose(self) -> &'static str {
         match self {
             Self::Timestamps => "timestamps: GPU time of each pass",
@@ -107,13 +108,14 @@ impl Ability {
 }
 
 impl Abilities {
-    /// True if the adapter has an ability.
+    /// True if the adapter has this ability.
     pub fn has(&self, ability: Ability) -> bool {
         self.features.get(&ability).copied().unwrap_or_default()
     }
 }
 
-/// Returns an adapter as `doctor` lists it: name, interface, kind, driver.
+/// Returns an adapter as `doctor` lists it: name, graphics API, device type and driver, separated
+/// by ` · `.
 pub fn line(adapter: &Adapter) -> String {
     let Adapter {
         name,

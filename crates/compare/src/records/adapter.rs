@@ -24,38 +24,43 @@ pub struct AdapterRecord {
     pub schema: u32,
     /// The program that measured, `skiagraph 0.1.0`.
     pub program: String,
-    /// Commit that it was built from; null where it does not know.
+    /// Commit that the program was built from; null where the program does not know it.
     pub commit: Option<String>,
-    /// True if the rows were the small ones, which try the way and measure little.
+    /// True if the rows are the small ones of [`rows`](crate::adapters::rows::rows), which only try
+    /// the way.
     pub is_small: bool,
-    /// Abilities of the adapter, without the host's name; null before the first row.
+    /// Abilities of the adapter, without the machine's host name and load; null if they are
+    /// unknown.
     pub abilities: Option<Abilities>,
-    /// The rows that have run, in their order.
+    /// The rows that have ended, in the order in which they ended; a row that ran again stands
+    /// last. Rows that the adapter [lacks an ability](Outcome::Lacking) for are included.
     pub rows: Vec<RowRecord>,
 }
 
-/// One row: a command that ran in a process of its own.
+/// Record of one [row](crate::adapters::rows::Row): a command that ran in a process of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RowRecord {
     /// Name of the row, and of its folder.
     pub row: String,
-    /// Its command, as one would type it.
+    /// Command line of the row, as a user would type it, without `--out`.
     pub command: String,
-    /// How it ended.
+    /// Way in which the row ended.
     pub outcome: Outcome,
-    /// Exit code; null if a signal ended the process.
+    /// Exit code of the process; null if a signal ended it, or if it did not run.
     pub exit: Option<i32>,
-    /// Signal that ended the process; null without one.
+    /// Number of the signal that ended the process; null without one.
     pub signal: Option<i32>,
-    /// Seconds that it took.
+    /// Seconds that the process took, to a tenth; 0 if it did not run.
     pub seconds: f64,
-    /// Seconds that it was given.
+    /// Longest time for the row, in seconds
+    /// ([`Row::seconds`](crate::adapters::rows::Row::seconds)).
     pub limit: u64,
-    /// Day on which it ran, `2026-11-27` (UTC).
+    /// Day on which the row ran, `2026-11-27` (UTC).
     pub date: String,
-    /// Last lines that it wrote to standard error, where it did not end well.
+    /// Last lines that the process wrote to standard error; empty if its outcome is
+    /// [`Outcome::Done`] or it did not run.
     pub said: Vec<String>,
-    /// Figures from its files.
+    /// Figures from the files that the process wrote.
     pub figures: Figures,
 }
 
@@ -63,22 +68,23 @@ pub struct RowRecord {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// Well.
+    /// The process ended with exit code 0.
     Done,
-    /// It found a fault, or could not run: exit code 1, 2, 4 or 5.
+    /// The program found a fault, or could not run: exit code 1, 2, 4 or 5.
     Failed,
     /// The device was lost or hung: exit code 3.
     Lost,
-    /// A signal ended the process: it crashed.
+    /// The process crashed: a signal or a panic ended it.
     Crashed,
-    /// It did not end within its time.
+    /// The process did not end within its time and was killed.
     TimedOut,
-    /// Not run, as the adapter lacks what it needs.
+    /// The row did not run: the adapter lacks the ability that it needs, or its methods are not
+    /// proven on the adapter's backend.
     Lacking,
 }
 
 impl Outcome {
-    /// Returns the words for tables.
+    /// Returns the outcome in words, for tables.
     pub fn words(self) -> &'static str {
         match self {
             Self::Done => "done",
@@ -91,102 +97,108 @@ impl Outcome {
     }
 }
 
-/// Figures of a row.
+/// Figures of a row. Those of files that the row's command does not write are empty or absent.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
-    /// Cells of a comparison.
+    /// Runs of a row that is a comparison, one entry each, from its `results.json`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub cells: Vec<CellFigures>,
-    /// Methods that must answer alike to the bit.
+    /// Pairs of methods that must answer alike to the bit, on each view where both were measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub equal: Vec<Equality>,
-    /// Hard cases by method.
+    /// Sums over the hard cases, one entry for each method that could run, from `stress.json`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hard: Vec<HardFigures>,
-    /// Rays whose right answer is known.
+    /// Answers of ray engines to rays whose right answer is known, from `rays.json`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rays: Option<Conformance>,
-    /// Speed of the engines.
+    /// Speed of ray engines, one entry for each set of rays, from `any_hits.json`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub any_hits: Vec<RaySetSpeed>,
 }
 
-/// A method on a view.
+/// Figures of one method on one view in one viewport.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CellFigures {
     /// Name of the scene.
     pub scene: String,
-    /// Number of triangles.
+    /// Number of triangles of the scene's mesh.
     pub triangles: u64,
     /// Name of the view.
     pub view: String,
-    /// Name of the light, where there are several.
+    /// Name of the light, where the view is compared under several; absent elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light: Option<String>,
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
-    /// Method with what tells its settings apart.
+    /// Name of the method with its setting, such as `crsm@n=1`.
     pub method: String,
-    /// Edge of the shadow map in texels, where there is one.
+    /// Width and height of the shadow map in texels; null for a method without one.
     pub map_size: Option<u32>,
-    /// Reason why it could not run; absent if it did.
+    /// Reason why the method could not run; absent if it did. Errors and times are then 0 or null.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
-    /// True if the method's document promises that it is exact on this scene.
+    /// True if answers are 0 and 1, and the method's document promises that it is exact on this
+    /// scene.
     #[serde(default)]
     pub is_exact: bool,
     /// Number of pixels that face the light.
     pub facing: u64,
-    /// Number of pixels whose answer rounding decides.
+    /// Number of pixels in the [band](crate#terms), whose answer rounding decides.
     pub band: u64,
-    /// Number of wrong pixels.
+    /// Number of wrong pixels, those in the [band](crate#terms) included.
     pub wrong: u64,
-    /// Number of wrong pixels outside the band.
+    /// Number of wrong pixels outside the [band](crate#terms).
     pub wrong_outside: u64,
-    /// Root mean square error of shares of light; absent for hard answers.
+    /// Root mean square error of the method's [shares of light](crate#terms), 0 to 1; absent for
+    /// hard answers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rmse: Option<f64>,
-    /// Median GPU time of a frame in milliseconds; null without trusted timestamps.
+    /// Median GPU time of a frame in milliseconds; null without timestamps that can be trusted.
     pub gpu_ms: Option<f64>,
-    /// Median time of a frame by the CPU's clock, in milliseconds.
+    /// Median time of a frame by the CPU's clock, in milliseconds, until the GPU was done.
     pub wall_ms: f64,
-    /// Pass with the longest 95th percentile of GPU time, and that time in milliseconds; null
-    /// without trusted timestamps.
+    /// Name of the pass with the longest 95th percentile of GPU time, and that time in
+    /// milliseconds; null without timestamps that can be trusted.
     pub longest_pass: Option<(String, f64)>,
 }
 
-/// Two methods that must answer alike.
+/// Comparison of two methods that must answer alike to the bit, on one view.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Equality {
     /// Name of the scene.
     pub scene: String,
     /// Name of the view.
     pub view: String,
-    /// Both methods.
+    /// Names of both methods with their settings.
     pub methods: [String; 2],
-    /// Number of pixels compared.
+    /// Number of pixels of the viewport, all of which are compared.
     pub pixels: u64,
     /// Number of pixels whose `visibility` differs in a bit.
     pub differing: u64,
 }
 
-/// A method on all hard cases.
+/// Sums over the hard cases of `stress` for one method.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HardFigures {
-    /// Method with what tells its settings apart.
+    /// Name of the method with its setting, such as `crsm@n=1`.
     pub method: String,
-    /// Number of cells that kept the method's guarantee.
+    /// Number of cells (the method on one case) that kept the method's
+    /// [guarantee](super::stress::Guarantee). Cells that are not judged count neither here nor in
+    /// [`failed`](Self::failed).
     pub passed: u64,
-    /// Number of cells that broke it, or did not run.
+    /// Number of cells that broke the guarantee, or did not run.
     pub failed: u64,
-    /// Number of wrong pixels outside the band, over all cells.
+    /// Number of wrong pixels outside the [band](crate#terms), over all cells, judged or not.
     pub wrong_outside: u64,
-    /// Names of the cases in which it failed.
+    /// Name of the case of each failed cell, in the order of the cases; twice if both cells of a
+    /// case failed.
     pub failed_cases: Vec<String>,
 }
 
 impl CellFigures {
-    /// True if both are the same cell, on whichever adapter.
+    /// True if both have the same scene, number of triangles, view, light, viewport, method and map
+    /// size, so that adapters can be compared by them.
     pub fn is_same(&self, other: &Self) -> bool {
         let key = |of: &Self| {
             (
@@ -210,7 +222,7 @@ impl CellFigures {
     }
 
     /// Returns the share of pixels whose answer rounding decides among those that face the light,
-    /// in percent; 0 if none faces it.
+    /// in percent; 0 if no pixel faces the light.
     pub fn band_percent(&self) -> f64 {
         percent(self.band, self.facing)
     }
@@ -221,17 +233,18 @@ fn percent(count: u64, whole: u64) -> f64 {
 }
 
 impl AdapterRecord {
-    /// Returns the row of a name, if it has run.
+    /// Returns the record of the row with this name; `None` if the row has not ended yet.
     pub fn row(&self, name: &str) -> Option<&RowRecord> {
         self.rows.iter().find(|row| row.row == name)
     }
 
-    /// Returns the cells of all rows.
+    /// Returns the cells of all rows, in the order of [`rows`](Self::rows).
     pub fn cells(&self) -> impl Iterator<Item = &CellFigures> {
         self.rows.iter().flat_map(|row| &row.figures.cells)
     }
 
-    /// Returns name, interface and driver of the adapter; `None` before the first row.
+    /// Returns name, graphics API and driver of the adapter as one text; `None` without
+    /// [`abilities`](Self::abilities).
     pub fn adapter(&self) -> Option<String> {
         Some(self.abilities.as_ref()?.adapter.to_string())
     }

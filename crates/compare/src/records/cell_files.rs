@@ -152,7 +152,8 @@ pub struct Joined {
     pub kept: Vec<Kept>,
     /// Remarks for the user.
     pub notes: Vec<String>,
-    /// Text on the planned cells that no folder holds, with the way out; `None` if all are there.
+    /// Text on the planned cells that no folder holds, with the command that measures them; `None`
+    /// if all are there.
     pub missing: Option<String>,
 }
 

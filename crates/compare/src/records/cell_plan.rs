@@ -53,7 +53,7 @@ pub struct CellPlan {
     pub head: Head,
     /// The reference's answers that the cells wait for, one for each scene, view and viewport.
     pub truths: Vec<PlannedTruth>,
-    /// The cells.
+    /// The cells, in the order in which one machine would measure them.
     pub cells: Vec<PlannedCell>,
 }
 
@@ -62,16 +62,16 @@ pub struct CellPlan {
 pub struct Head {
     /// Version of the format: 1.
     pub schema: u32,
-    /// `cells`.
+    /// Kind of the file, always `cells`.
     pub kind: String,
     /// The program that wrote the plan, `skiagraph 0.1.0`. No other version measures it.
     pub program: String,
-    /// Commit that the program was built from; absent where it does not know.
+    /// Commit that the program was built from; absent where the program does not know it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Words of the command line, without the program's name and `--plan FILE`.
     pub arguments: Vec<String>,
-    /// Number of cells in the file, so that one that was cut off is known.
+    /// Number of cells in the file, so that a file that was cut off is recognised.
     pub cells: usize,
 }
 
@@ -117,7 +117,7 @@ pub struct PlannedTruth {
     pub folder: Option<String>,
     /// Name of the view or camera path.
     pub view: String,
-    /// Width and height in pixels.
+    /// Width and height of the viewport in pixels.
     pub viewport: [u32; 2],
     /// Number of frames: 1 for a still view.
     pub frames: u32,
@@ -212,13 +212,15 @@ impl CellPlan {
         )))
     }
 
-    /// Returns the truth that a cell waits for.
+    /// Returns the truth that a cell waits for; `None` if the plan lacks that truth, which
+    /// [`read`](Self::read) refuses.
     pub fn truth_of(&self, cell: &PlannedCell) -> Option<&PlannedTruth> {
         let mut truths = self.truths.iter();
         truths.find(|truth| truth.truth == cell.truth)
     }
 
-    /// Returns the number of pixels of each cell, over all its frames.
+    /// Returns the number of pixels of each cell, over all its frames, in the order of
+    /// [`cells`](Self::cells).
     pub fn pixels(&self) -> Vec<u64> {
         let truths = self.truths.iter().map(|truth| {
             let [width, height] = truth.viewport.map(u64::from);

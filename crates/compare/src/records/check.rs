@@ -62,8 +62,8 @@ struct LabelReport {
 
 impl FileReport {
     /// Creates the report on the command-line argument `file`. `passes` is the number of passes
-    /// that run, `None` if the graph has errors. The report lists the diagnostics with errors
-    /// first.
+    /// that run, `None` if the graph has errors. The report keeps the order of `diagnostics`, which
+    /// have errors first.
     pub fn new<'a>(
         file: &str,
         passes: Option<usize>,

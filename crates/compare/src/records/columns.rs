@@ -452,8 +452,8 @@ impl Column {
         }
     }
 
-    /// Returns the text of a run's cell in a table; `–` if the figure is unknown. `share` formats a
-    /// count as a share of the count behind it, for example as percent.
+    /// Returns the text of a run's cell in a table; `–` if the figure is unknown. `share` formats
+    /// its first argument, a count, as a share of its second one, for example as percent.
     pub fn cell(&self, results: &Results, run: &Run, share: fn(u64, u64) -> String) -> String {
         match self.value(results, run) {
             Unknown => "–".to_owned(),
@@ -533,8 +533,9 @@ pub fn quantities() -> Vec<String> {
     all.filter(|quantity| !quantity.is_empty()).collect()
 }
 
-/// Returns the steps of a quantity that is a time of steps: `gbuffer+detect_uncertain` for
-/// `ms.gbuffer+detect_uncertain`. Returns `None` for any other quantity.
+/// Returns the steps of a quantity that is a time of steps, each of them [`GBUFFER`] or one of
+/// [`STEPS`]: `gbuffer+detect_uncertain` for `ms.gbuffer+detect_uncertain`. Returns `None` for any
+/// other quantity.
 pub fn steps_of(quantity: &str) -> Option<&str> {
     let steps = quantity.strip_prefix("ms.")?;
     let is_known = |step| step == GBUFFER || STEPS.iter().any(|(known, _)| *known == step);

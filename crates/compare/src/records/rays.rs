@@ -1,5 +1,5 @@
-//! The schemas of `any_hits.json` and `rays.json`, version 1: speed and answers of the engines of
-//! `Trace` on given rays.
+//! The schemas of `any_hits.json` and `rays.json`, version 1: speed and answers of the
+//! [engines](skiagraph_passes::Engine) of `Trace` on given rays.
 //!
 //! ```
 //! use skiagraph_compare::records::rays::per_billion;
@@ -12,7 +12,8 @@
 use crate::records::results::{Adapter, Machine, Scene};
 use serde::{Deserialize, Serialize};
 
-/// Content of `any_hits.json`: any hits per second of every engine.
+/// Content of `any_hits.json`: speed of every engine at finding any hit of a ray, not the closest
+/// one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AnyHits {
     /// Version of this schema: 1.
@@ -23,43 +24,45 @@ pub struct AnyHits {
     pub adapter: Adapter,
     /// Machine on which the rays were traced.
     pub machine: Machine,
-    /// Start of the measurement, in UTC.
+    /// Start of the measurement, in UTC: `2026-11-21T04:30:12Z`.
     pub began: String,
     /// Number of timed turns; each engine traces all rays once in each.
     pub turns: u32,
-    /// The sets of rays.
+    /// The sets of rays: for each scene its shadow rays, then random ones.
     pub sets: Vec<RaySetSpeed>,
 }
 
 /// Speed of the engines on one set of rays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RaySetSpeed {
-    /// Name of the set.
+    /// Name of the set: `park, shadow rays`.
     pub name: String,
     /// Scene through which the rays go.
     pub scene: Scene,
-    /// Number of rays.
+    /// Number of rays in the set.
     pub rays: u64,
-    /// The engines, `Hierarchy` first.
+    /// The engines that the adapter has for these rays, `Hierarchy` first.
     pub engines: Vec<EngineSpeed>,
 }
 
 /// Speed of one engine on one set of rays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EngineSpeed {
-    /// Name of the engine, as documents write it: `Hierarchy`.
+    /// Name of the [`Engine`](skiagraph_passes::Engine), as documents write it: `Hierarchy`.
     pub engine: String,
-    /// Time in which its hierarchy was built and uploaded, in milliseconds.
+    /// Time in which the engine's hierarchy or acceleration structure was built and uploaded, in
+    /// milliseconds.
     pub built_ms: f64,
-    /// Median time from submission to the end, in milliseconds.
+    /// Time in which all rays of the set were traced once, from the start of encoding until the GPU
+    /// was done, by the CPU's clock: the median over the turns, in milliseconds.
     pub ms: f64,
-    /// Millions of rays per second, by the median.
+    /// Millions of rays per second, by the median time [`ms`](Self::ms).
     pub mrays_per_s: f64,
-    /// Number of rays that it found blocked.
+    /// Number of rays that the engine found blocked.
     pub blocked: u64,
-    /// Number of rays that it answered unlike `Hierarchy`.
+    /// Number of rays that only one of the engine and `Hierarchy` found blocked.
     pub unlike_first: u64,
-    /// Number of rays that it did not answer.
+    /// Number of rays that the engine did not answer, because the driver ended the shader's loops.
     pub unanswered: u64,
 }
 
@@ -74,79 +77,86 @@ pub struct Conformance {
     pub adapter: Adapter,
     /// Machine on which the rays were traced.
     pub machine: Machine,
-    /// Start of the test, in UTC.
+    /// Start of the tests, in UTC: `2026-11-21T04:30:12Z`.
     pub began: String,
-    /// Engines that cannot run here, each with the reason.
+    /// Names of the engines that cannot run on this adapter, each with the reason.
     pub unavailable: Vec<(String, String)>,
     /// The tests, each with the same rays for every engine.
     pub tests: Vec<RayTest>,
 }
 
-/// Rays through one solid that have one right answer.
+/// Rays through one [solid](crate::rays::solids::Solid), or through a crowd of triangles, and the
+/// engines' answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RayTest {
-    /// Name of the solid or scene.
+    /// Name of the solid, or `crowd`.
     pub solid: String,
-    /// Its surface, and the errors that it provokes.
+    /// Description of the surface and of the errors that it provokes, as one line.
     pub reason: String,
-    /// Number of its triangles.
+    /// Number of triangles of the surface.
     pub triangles: u64,
-    /// Places at which the rays are aimed: `at edges`.
+    /// Places at which the rays are aimed, the [words](crate::rays::solids::Aim::words) of an aim
+    /// such as `at edges`; `anywhere` in the crowd.
     pub aim: String,
-    /// Right answer: true if the rays are blocked; null where each has its own, by the reference.
+    /// Right answer of all rays: true if they are blocked. Null in the crowd, where each ray has
+    /// its own answer, by the [reference](crate#terms).
     pub is_blocked: Option<bool>,
-    /// Number of rays with a right answer.
+    /// Number of rays that are judged, as their right answer is known.
     pub rays: u64,
-    /// Number of rays besides, whose answer rounding decides: not judged.
+    /// Number of further rays that are not judged, as rounding decides their answer.
     pub indeterminate: u64,
-    /// Answers of the engines.
+    /// Answers of the engines that ran, `Hierarchy` first.
     pub engines: Vec<EngineAnswers>,
 }
 
 /// Answers of one engine in one test.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EngineAnswers {
-    /// Name of the engine, as documents write it: `RayQuery`.
+    /// Name of the [`Engine`](skiagraph_passes::Engine), as documents write it: `RayQuery`.
     pub engine: String,
-    /// Number of blocked rays that it let through: leaks, where the surface is closed.
+    /// Number of rays that are blocked, but that the engine let through: leaks, where the surface
+    /// is closed.
     pub through: u64,
-    /// Number of unblocked rays that it found blocked.
+    /// Number of rays that are not blocked, but that the engine found blocked.
     pub blocked: u64,
-    /// Number of rays that it did not answer, because the driver ended the shader's loops.
+    /// Number of rays that the engine did not answer, because the driver ended the shader's loops.
     pub unanswered: u64,
     /// The first wrong rays, at most [`EXAMPLES`].
     pub examples: Vec<WrongRay>,
 }
 
-/// Most wrong rays that a record holds of one engine in one test.
+/// Greatest number of wrong rays that [`EngineAnswers::examples`] holds.
 pub const EXAMPLES: usize = 8;
 
 /// A ray that was answered wrongly; its numbers are exact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WrongRay {
-    /// Begin of the ray.
+    /// Begin of the ray, in scene units.
     pub origin: [f32; 3],
-    /// Direction of the ray.
+    /// Direction of the ray, of any length.
     pub direction: [f32; 3],
-    /// Greatest t, in lengths of the direction; the least is 0.
+    /// Greatest t of a hit, in lengths of [`direction`](Self::direction); the least is 0.
     pub t_max: f32,
-    /// Primitive that the engine found; null if none.
+    /// Id of the triangle that the engine found, its index in the mesh; null if the engine found
+    /// none.
     pub primitive: Option<u32>,
-    /// Primitive that `Hierarchy` finds; null if none.
+    /// Id of the triangle that `Hierarchy` finds, its index in the mesh; null if it finds none.
     pub expected: Option<u32>,
-    /// Corners of `primitive`, or else of `expected`; null if there is neither.
+    /// Corners of the triangle `primitive`, or if that is null of `expected`, in scene units; null
+    /// if both are null.
     pub corners: Option<[[f32; 3]; 3]>,
 }
 
 impl EngineAnswers {
-    /// Returns the number of rays with a wrong answer, or none.
+    /// Returns the number of rays with a wrong answer or without an answer.
     pub fn wrong(&self) -> u64 {
         self.through + self.blocked + self.unanswered
     }
 }
 
 impl Conformance {
-    /// Returns the number of rays that were answered wrongly, over all engines and tests.
+    /// Returns the number of rays that were answered wrongly or not at all, over all engines and
+    /// tests.
     pub fn wrong(&self) -> u64 {
         let engines = self.tests.iter().flat_map(|test| &test.engines);
         engines.map(EngineAnswers::wrong).sum()
@@ -159,8 +169,9 @@ impl Conformance {
         names.map(|of| of.engine.as_str()).collect()
     }
 
-    /// Sums up an engine's answers: wrong rays, and all. With `blocked`, only rays that are all
-    /// blocked, or all not: those of closed solids.
+    /// Returns the number of rays that the engine with this name answered wrongly or not at all,
+    /// and the number of all judged rays, over the tests. With `blocked`, only tests with this
+    /// [`is_blocked`](RayTest::is_blocked) count: those of closed solids.
     pub fn sum(&self, engine: &str, blocked: Option<bool>) -> (u64, u64) {
         let tests = self.tests.iter();
         let tests = tests.filter(|test| blocked.is_none() || test.is_blocked == blocked);
@@ -172,8 +183,9 @@ impl Conformance {
     }
 }
 
-/// Returns the share of wrong rays in wrong rays per 10⁹, and its upper bound with a certainty of
-/// 95 % (Poisson): where none of n is wrong, 3/n. Rounded to a tenth.
+/// Returns the share of `wrong` among `rays` in wrong rays per 10⁹, and its upper bound with a
+/// certainty of 95 % (Poisson), at most 10⁹; where none of n is wrong, the bound is 3/n. Both are
+/// rounded to a tenth. Without rays they are 0 and 10⁹.
 pub fn per_billion(wrong: u64, rays: u64) -> (f64, f64) {
     if rays == 0 {
         return (0.0, 1e9);

@@ -119,7 +119,7 @@ pub fn with_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
 }
 
 /// Reads a results.json, for example to write a report of it. `place` is a folder that holds one,
-/// or the path of the file.
+/// or the path of the file, which ends in `.json`.
 ///
 /// # Errors
 /// A missing folder or file; a file that cannot be read, or is not a results.json. The message
@@ -201,10 +201,12 @@ pub fn adapter(folder: &Path) -> Result<Option<AdapterRecord>, CompareError> {
 }
 
 /// Reads the adapters in `place`: the adapter.json or the adapters.json of a folder, or a file that
-/// is an adapter.json by another name. Nothing if it has none.
+/// is an adapter.json by another name. Those of adapters.json come first. The list is empty if
+/// `place` has none of these, also if it is another file.
 ///
 /// # Errors
-/// A file that cannot be read, or is not what its name says; the message shows the place.
+/// An adapter.json or adapters.json of the folder that cannot be read, or is not what its name
+/// says; the message shows the place.
 pub fn adapters(place: &Path) -> Result<Vec<AdapterRecord>, CompareError> {
     if place.is_dir() {
         let joined: Option<Vec<AdapterRecord>> = json(&place.join("adapters.json"))?;

@@ -288,7 +288,8 @@ pub struct Run {
     /// format or values of a shadow method's; absent where it was measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unavailable: Option<String>,
-    /// Figures that others have published about the run, from the files of `--beside`.
+    /// Figures that others have published about the run, from the files of `--beside`; absent if
+    /// there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Published>,
 }
@@ -475,8 +476,8 @@ pub struct Measured {
     /// Counts of the certain and the uncertain pixels, and of the wrong ones among them, separately
     /// for pixels that the [reference](crate#terms) lights and pixels in its shadow.
     pub split: Split,
-    /// Number of rays traced in the frame, for a camera path in all frames together; null where the
-    /// graph does not count them.
+    /// Number of rays traced in a frame of a still view, or in all frames of a camera path
+    /// together; null where the graph does not count them.
     pub rays: Option<u64>,
     /// Numbers of pixels on which method and reference disagree. Pixels facing the light are
     /// judged, and those that only the method takes for facing it.
@@ -639,8 +640,8 @@ pub struct Images {
     /// file names contain it. Absent for a still view.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<usize>,
-    /// File name of the picture of the [reference](crate#terms)'s shadows, the same for all
-    /// methods.
+    /// File name of the picture of the [reference](crate#terms)'s shadows; methods share one
+    /// picture for each view, viewport and frame.
     pub reference: String,
     /// File name of the picture of the scene, shaded with the method's shadows.
     pub shaded: String,

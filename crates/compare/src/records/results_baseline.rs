@@ -111,9 +111,11 @@ pub enum Change {
 /// Greatest difference of errors that does not count as a change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Difference of the numbers of wrong pixels.
+    /// Difference of the numbers of wrong pixels: 0 on one adapter and driver, otherwise the larger
+    /// of both bands, but at least 0.05 % of the pixels facing the light.
     pub pixels: u64,
-    /// Difference of the root mean square errors of the [shares of light](crate#terms), 0 to 1.
+    /// Difference of the root mean square errors of the [shares of light](crate#terms), 0 to 1:
+    /// 10⁻⁹ on one adapter and driver, otherwise 0.001.
     pub rmse: f64,
 }
 

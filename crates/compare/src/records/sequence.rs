@@ -132,7 +132,8 @@ impl Sequence {
     }
 
     /// Lists the resources of the scene that took a median of 0.1 ms or more to build again between
-    /// frames: name, `made` or `refitted`, number of frames, and median time in milliseconds.
+    /// frames: name, `made` or `refitted`, number of frames, and median time in milliseconds. They
+    /// are sorted by name.
     pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
         let all = self.frames.iter().flat_map(|frame| &frame.remade);
         let mut times: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();

@@ -218,8 +218,9 @@ pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     sources
 }
 
-/// Returns the content of one results.json with all sources, for the folder `out`; `None` without
-/// sources. Runs whose pictures are in other folders list no pictures in it.
+/// Returns the content of one results.json with all sources, for the folder `out`: the first
+/// source, with the others in [`Results::others`]; `None` without sources. Runs whose pictures are
+/// in other folders list no pictures in it.
 pub fn merged(sources: &[Source], out: &Path) -> Option<Results> {
     let mut each = sources.iter().map(|source| {
         let mut results = source.results.clone();

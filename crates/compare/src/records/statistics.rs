@@ -37,7 +37,7 @@ pub struct FrameTimes {
     /// last; null if there are no timestamps or they cannot be trusted.
     pub gpu_ms: Option<Spread>,
     /// Order statistics of the times from the start of a frame's encoding until the GPU was done,
-    /// by the CPU's clock.
+    /// by the CPU's clock; on a camera path until the outputs were read back.
     pub wall_ms: Spread,
     /// GPU time of each frame in milliseconds, in order; null if the GPU time of any frame is
     /// missing.

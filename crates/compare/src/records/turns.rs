@@ -65,7 +65,8 @@ pub(crate) const RESOLUTION_MS: f64 = 1e-6;
 
 impl PairedRatio {
     /// Divides the time of each frame of `one` by that of the same turn of `other`; entry `i` of
-    /// both lists is of turn `i`. Returns `None` for fewer than [`LEAST_TURNS`] turns.
+    /// both lists is of turn `i`, in the same unit. Entries of the longer list without a partner
+    /// are left out. Returns `None` for fewer than [`LEAST_TURNS`] turns.
     pub fn new(one: &[f64], other: &[f64]) -> Option<Self> {
         let pairs = one.iter().zip(other);
         let ratio = |(one, other): (&f64, &f64)| one.max(RESOLUTION_MS) / other.max(RESOLUTION_MS);

@@ -27,7 +27,8 @@ use shown::shown;
 use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::stress::Report;
 
-/// Greatest size of a page in bytes. A larger one would be slow to open and too large for a mail.
+/// Greatest size in bytes up to which pictures fill a page. A larger page would be slow to open and
+/// too large for a mail.
 pub const LIMIT: usize = 30_000_000;
 
 /// In the order in which they need each other.

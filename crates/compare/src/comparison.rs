@@ -20,6 +20,7 @@
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::idle_params::IdleParams;
+use crate::graphs::light_kinds::kind_and_number;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method;
@@ -173,10 +174,16 @@ impl Comparison {
         for &viewport in &self.viewports {
             self.primary.plan(session, viewport, &provider)?;
         }
-        // A provider describes the same for every view under a light of one kind.
-        let (methods, mut idle) = (&self.methods, IdleParams::default());
-        for light in self.kinds_of_light() {
-            provider.set_light(light);
+        // A provider describes the same for all views under lights of one kind and number.
+        let (methods, mut idle, mut seen) = (&self.methods, IdleParams::default(), Vec::new());
+        for view in &self.views {
+            let viewport = self.viewports.first().copied().unwrap_or([1; 2]);
+            provider.set_view(view.view(), viewport);
+            let lights = kind_and_number(&provider);
+            if seen.contains(&lights) {
+                continue;
+            }
+            seen.push(lights);
             shadow_method::check_plans(methods, &self.viewports, &provider, Some(&device))?;
             idle.note(session.sink, methods, &device, &provider);
         }

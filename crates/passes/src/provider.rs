@@ -145,9 +145,7 @@ impl SceneProvider {
                 _ if self.missing(name).is_some() => {}
                 TLAS => drop(self.build_acceleration_structure(name, device, queue)?),
                 EMBREE => drop(self.build_cpu_work(name)?),
-                // Resources that the executor keeps of the frame before are not ours.
-                _ if self.describe(name).is_some() => drop(self.build(name, device, queue)?),
-                _ => {}
+                _ => drop(self.build(name, device, queue)?),
             }
         }
         self.submit_built(device, queue)

@@ -79,14 +79,15 @@ type Place<'a> = ([u32; 2], Option<&'a str>);
 
 /// Places with something to draw, in the order of the file.
 fn places(results: &Results, wanted: Option<[u32; 2]>) -> Vec<Place<'_>> {
-    let drawn = results.runs.iter().filter(|run| is_drawn(run, wanted));
+    let runs = results.runs.iter();
+    // A graded answer has no wrong pixels.
+    let drawn = runs.filter(|run| is_drawn(run, wanted) && run.is_hard());
     unique(drawn.map(|run| (run.viewport, run.light.as_deref())))
 }
 
 fn front_panel(kept: &Kept, place: Place<'_>, maps: &[u32]) -> Result<Panel, CompareError> {
     let (viewport, light) = place;
     let is_here = |run: &Run| run.light.as_deref() == light;
-    // A graded answer has no wrong pixels.
     let runs = drawn(&kept.results, viewport).filter(|(run, _)| run.is_hard() && is_here(run));
     let runs: Vec<(&Run, &Measured)> = runs.collect();
     let mut series: Vec<Series> = Vec::new();
@@ -380,9 +381,16 @@ fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
 pub fn conditions(kept: &[Kept]) -> Vec<String> {
     let results = || kept.iter().map(|kept| &kept.results);
     let adapters = results().map(|results| results.adapter.to_string());
-    let medians = results().map(|results| results.frames).sorted().dedup();
-    let medians = format!("Medians of {}", medians.map(frames).join(" or "));
-    adapters.sorted().dedup().chain([medians]).collect()
+    let is_still = |run: &Run| {
+        run.measured
+            .as_ref()
+            .is_some_and(|of| of.sequence.is_none())
+    };
+    let still = results().filter(|results| results.runs.iter().any(is_still));
+    let medians = still.map(|results| results.frames).sorted().dedup();
+    let medians = medians.map(frames).join(" or ");
+    let medians = (!medians.is_empty()).then(|| format!("Medians of {medians}"));
+    adapters.sorted().dedup().chain(medians).collect()
 }
 
 #[cfg(test)]
@@ -438,7 +446,7 @@ mod tests {
         (kept.results.runs[0].light, second.light) = (Some("sun".into()), Some("lamp".into()));
         second.measured.as_mut().unwrap().wrong.total = 6;
         kept.results.runs.insert(1, second);
-        let figure = front(&[kept], None).unwrap();
+        let figure = front(std::slice::from_ref(&kept), None).unwrap();
         let [sun, lamp] = &figure.panels[..] else {
             panic!("{figure:?}")
         };
@@ -446,6 +454,12 @@ mod tests {
         assert_eq!(lamp.title, "park, view main, light lamp, 512x256");
         let wrong = |panel: &Panel| panel.series[0].marks[0].y;
         assert!(wrong(sun) > 0.0 && wrong(lamp) == 0.0);
+        // A light under which all answers are graded has none.
+        kept.results.runs[1].measured.as_mut().unwrap().answer =
+            skiagraph_compare::records::results::Answer::Graded;
+        let figure = front(&[kept], None).unwrap();
+        let titles: Vec<&str> = figure.panels.iter().map(|panel| &*panel.title).collect();
+        assert_eq!(titles, [&*sun.title]);
     }
 
     #[test]

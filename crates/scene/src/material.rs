@@ -72,8 +72,8 @@ impl Surfaces {
     }
 
     /// Adds surfaces for triangles that were appended to the mesh, which now has `triangles`
-    /// triangles: the appended ones get the first material and the first texture coordinates, if the
-    /// mesh has any.
+    /// triangles: the appended ones get the first material and the first texture coordinates, if
+    /// the mesh has any.
     pub fn pad(&mut self, triangles: usize) {
         if !self.of.is_empty() {
             self.of.resize(triangles, 0);

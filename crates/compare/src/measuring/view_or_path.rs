@@ -37,7 +37,8 @@ impl ViewOrPath {
         &self.view().name
     }
 
-    fn view(&self) -> &View {
+    /// Returns the view, or the one before a path moves it.
+    pub(crate) fn view(&self) -> &View {
         let (Self::Still(view) | Self::Path(CameraPath { view, .. })) = self;
         view
     }

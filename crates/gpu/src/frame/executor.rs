@@ -21,7 +21,7 @@ use crate::{
     error::{ExecuteError, poll, wait, with_table},
     memory::{
         import::differs,
-        memory::{Memory, ResourceFactory, check_relied_on},
+        memory::{Memory, ResourceFactory, check_bound, check_relied_on},
         physical::{Physical, PingPong},
     },
     pipelines::pipelines::Pipelines,
@@ -618,7 +618,9 @@ impl Executor {
         check_relied_on(&self.state.plan, provider)?;
         for (id, version) in self.state.memory.provided().clone() {
             let state = &mut self.state;
-            if Ok(provider.version(&state.plan.resource(id).name)) == version {
+            let resource = state.plan.resource(id);
+            let is_described = check_bound(resource, provider)?;
+            if is_described && Ok(provider.version(&resource.name)) == version {
                 continue;
             }
             self.presence.check()?;

@@ -190,13 +190,14 @@ impl FramesInFlight {
         Ok(None)
     }
 
-    /// Gives up the GPU times of the oldest frame with requests, and waits for no mapping: they did
-    /// not arrive although the GPU is done.
+    /// Gives up the GPU times of the oldest frame with requests, and waits for no mapping, if the
+    /// GPU is done: they did not arrive.
     pub fn give_up(&mut self) {
         if let Some(frame_in_flight) = self
             .under_way
             .iter_mut()
             .find(|frame_in_flight| frame_in_flight.is_asked())
+            && frame_in_flight.done.progress() == Progress::Done
         {
             frame_in_flight.timer = None;
             frame_in_flight.is_given_up = true;

@@ -292,18 +292,12 @@ impl Memory {
     ) -> Result<(), ExecuteError> {
         let resource = plan.resource(id);
         let (provider, device) = (&mut *factory.provider, factory.device);
-        let planned = match &resource.kind {
-            ResourceKind::Provided(planned) => *planned,
-            ResourceKind::CpuWork => Provided::CPU_WORK,
-            _ => Provided::ACCELERATION_STRUCTURE,
-        };
-        // A provider that has lost a resource says so itself when it is asked for it.
-        let given = provider.describe(&resource.name).unwrap_or(planned);
-        as_planned(&resource.name, Some(planned), Some(given))?;
+        let is_described = check_bound(resource, provider)?;
         let version = provider.version(&resource.name);
         if let Some((plan, memory)) = old
             && let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
             && memory.version(known) == Some(version)
+            && is_described
         {
             self.host.insert(id, physical.clone());
             self.provided.insert(id, Ok(version));
@@ -419,6 +413,23 @@ impl Memory {
 pub(crate) fn check_relied_on(plan: &Plan, provider: &dyn Provider) -> Result<(), ExecuteError> {
     let mut relied_on = plan.relies_on().iter();
     relied_on.try_for_each(|(name, planned)| as_planned(name, *planned, provider.describe(name)))
+}
+
+/// Returns an error if the provider describes a resource otherwise than planned, and false if it
+/// does not describe it any more: asked for it, the provider tells why in its own words.
+pub(crate) fn check_bound(
+    resource: &Resource,
+    provider: &dyn Provider,
+) -> Result<bool, ExecuteError> {
+    let planned = match &resource.kind {
+        ResourceKind::Provided(planned) => *planned,
+        ResourceKind::CpuWork => Provided::CPU_WORK,
+        _ => Provided::ACCELERATION_STRUCTURE,
+    };
+    match provider.describe(&resource.name) {
+        None => Ok(false),
+        given => as_planned(&resource.name, Some(planned), given).map(|()| true),
+    }
 }
 
 /// A plan has counted items and sized buffers by the descriptions that it was made for.

@@ -552,9 +552,9 @@ fn a_count_that_was_missed_is_made_up_for() {
     for encoder in encoders {
         GPU.queue.submit([encoder.finish()]);
     }
-    for _ in 0..3 {
-        frame(&mut executor, &[]);
-    }
+    come_to_show(&mut executor, 10, [4, 12], |executor| {
+        frame(executor, &["items"])
+    });
     has_room(&mut executor, 10, 12);
 }
 

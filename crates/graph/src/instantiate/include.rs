@@ -83,7 +83,7 @@ pub(super) fn said<'e>(
         let inputs = document.inputs.iter().map(|input| &input.name);
         let mut border = inputs.chain(document.outputs.iter().map(|output| &output.name));
         let is_border = border.any(|name| name.as_str() == said.name.as_str());
-        (is_border || at.find_scene(said.name).is_some()) && !own(said.name)
+        (is_border || at.is_of_scene(said.name)) && !own(said.name)
     });
     let set_here = |name: &str| entry.set.iter().any(|(own, _)| **own == *name);
     let mut set = context.set.clone();

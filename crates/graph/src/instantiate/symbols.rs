@@ -327,8 +327,9 @@ impl<'a> SymbolTable<'a> {
     /// Returns the kind for an overridable constant of a shader such as `light_kind`, which gets
     /// the number of the kind of `light`. `None` for other constants.
     pub fn kind_of_wgsl_name(&mut self, constant: &str, scope: ScopeId) -> Option<ProvidedKind> {
-        let name = self.wgsl_name.get(constant.strip_suffix("_kind")?)?.clone();
-        self.provided_kind(&name, scope)
+        let identifier = constant.strip_suffix("_kind")?;
+        let name = self.wgsl_name.get(identifier).cloned();
+        self.provided_kind(&name.unwrap_or(identifier.to_owned()), scope)
     }
 
     /// Returns the target for the shader global `global` in a scope: a material, a provided
@@ -602,6 +603,12 @@ impl<'a> At<'_, 'a> {
     /// Returns the target for the name of a provided resource, as [`SymbolTable::find_scene`] does.
     pub fn find_scene(&mut self, name: &str) -> Option<Reported<Target>> {
         self.symbols.find_scene(name, self.position.scope)
+    }
+
+    /// True if [`find_scene`](Self::find_scene) finds a target for the name. The plan relies on the
+    /// answer.
+    pub fn is_of_scene(&mut self, name: &str) -> bool {
+        self.find_scene(name).is_some() || self.symbols.ask(name).is_some()
     }
 
     /// Returns the resource, or part of it, that a reference at this position means.

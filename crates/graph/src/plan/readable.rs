@@ -11,7 +11,7 @@ use crate::{
         symbols::{At, SymbolTable},
     },
     request::{Capture, PlanRequest},
-    resource::{ResourceKind, Target},
+    resource::{Origin, ResourceKind, Target},
 };
 
 /// Returns names and targets of all outputs and captures that the request wants. `written` tells if
@@ -54,6 +54,9 @@ pub(super) fn readable(
         if !written(&target) {
             let material = material.located();
             at.report(OutputError::UnwrittenOutput { name, material });
+        } else if !is_wanted(&name.value, output.on_request) && is_import(at.symbols(), &target) {
+            // A pass may write an import only where it is listed as an output.
+            continue;
         } else if let Some((what, way_out)) = unreadable(at.symbols(), &target) {
             at.report(OutputError::UnreadableOutput {
                 name,
@@ -136,6 +139,10 @@ pub(super) fn check_captures(
             });
         }
     }
+}
+
+fn is_import(symbols: &SymbolTable<'_>, target: &Target) -> bool {
+    symbols.get(target.id).origin == Origin::Host
 }
 
 /// Describes a resource that cannot be read back, with a way out; `None` for any other.

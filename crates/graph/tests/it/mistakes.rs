@@ -2,7 +2,7 @@
 //! deep nesting, requests for unknown things.
 
 use crate::broken::{folder, request};
-use crate::support::{Files, Triangle, load, plan, right, wrong};
+use crate::support::{Files, Triangle, load, names, plan, right, wrong};
 use skiagraph_graph::{
     Capture, Diagnostics, FolderSources, Graph, Import, ParamValue, PlanRequest, Registry,
 };
@@ -242,6 +242,8 @@ fn a_compressed_texture_is_not_read_back() {
     }
     let found = text(right(load(&files)).plan(&request));
     insta::assert_snapshot!("compressed", found);
+    request.outputs = Some(Vec::new());
+    assert_eq!(names(&right(right(load(&files)).plan(&request))), ["copy"]);
 }
 
 #[test]

@@ -135,6 +135,16 @@ fn a_plan_relies_on_kinds_that_were_asked_for() {
     assert_eq!(kind.words[kind.number as usize], "spot");
 }
 
+/// The items of the frame before are as many as the provider's resource has; no other is known.
+#[test]
+fn a_plan_relies_on_the_resource_whose_last_frame_is_counted() {
+    let condition = "if: \"scene.indices.previous.count > 2\", color";
+    let pass = fill("fill", "image").replace("color", condition);
+    let plan = plan(&[texture("image")], &[&pass], r#""image""#, &[]);
+    let relied_on: Vec<&String> = plan.relies_on().keys().collect();
+    assert_eq!(relied_on, ["scene.indices"]);
+}
+
 /// Only the outputs that are asked for keep their passes.
 #[test]
 fn outputs_by_choice() {

@@ -508,8 +508,8 @@ fn a_bare_obj_needs_a_view_and_a_light() {
 #[test]
 fn a_mesh_has_no_scene_file() {
     let error = SceneLibrary::default().scene_file("house.obj").unwrap_err();
-    assert_snapshot!(error, @"\"house.obj\" is a mesh, which has no scene file: name a scene, or the \
-        path of a .ron file");
+    assert_snapshot!(error, @"\"house.obj\" is a mesh, which has no scene file: name a scene, or \
+        the path of a .ron file");
 }
 
 #[test]

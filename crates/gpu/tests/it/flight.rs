@@ -2,7 +2,7 @@
 
 use crate::support::{Files, Triangle, load, right};
 use crate::tiny::{self, image, u32s};
-use skiagraph_gpu::{Executor, Frame, FrameReport, device};
+use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport, device};
 use skiagraph_graph::{NoProvider, ParamValue, PlanRequest};
 use std::sync::{LazyLock, mpsc::channel};
 use std::time::{Duration, Instant};
@@ -303,4 +303,32 @@ fn while_mapping_is_held(
     }
     go_on.send(()).unwrap();
     executor.finish().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// wgpu-core panics in a wait that times out while another thread polls the device.
+#[test]
+fn threads_that_wait_with_a_timeout_lose_no_device() {
+    let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
+    let mut request = PlanRequest::new(tiny::SIZE, &Triangle);
+    request.features = gpu.device.features();
+    let plan = right(right(load(&slow())).plan(&request));
+    let wait_in_turns = &|timeout: Option<Duration>| {
+        let mut executor = Executor::on(&gpu, plan.clone(), &mut Triangle).unwrap();
+        for _ in 0..400 {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let wanted = Frame::new().with_read(&["number"]);
+            executor.encode(&mut encoder, &wanted).unwrap();
+            gpu.queue.submit([encoder.finish()]);
+            while let Err(error) = executor.finish_within(timeout) {
+                assert!(matches!(error, ExecuteError::Unfinished { .. }), "{error}");
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for timeout in [Some(Duration::from_micros(200)), None] {
+            for _ in 0..2 {
+                scope.spawn(move || wait_in_turns(timeout));
+            }
+        }
+    });
 }

@@ -43,10 +43,11 @@ use std::{collections::BTreeMap, sync::Arc};
 /// reference samples, no files.
 #[derive(Clone, Copy, Debug)]
 pub struct Protocol {
-    /// Number of timed frames of a still view, at least 1. The frame that is judged and pictured is
-    /// an extra one, so that its readback is not timed.
+    /// Number of timed frames of a still view, at least 1; each frame of a camera path is timed
+    /// once. The frame that is judged and pictured is an extra one, so that its readback is not
+    /// timed.
     pub frames: u32,
-    /// Number of untimed warm-up frames before the timed ones.
+    /// Number of untimed warm-up frames before the timed ones; on a path, of its first frame.
     pub warmup: u32,
     /// Number of timed frames in which only the camera changes, so that passes with unchanged
     /// inputs may be skipped; 0 to time none. A camera path is walked a second time with every pass

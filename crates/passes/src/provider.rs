@@ -749,13 +749,14 @@ impl SceneProvider {
     /// or that a removed part had. If it does not fit, the mesh grows by a half, and all of it is
     /// uploaded.
     ///
-    /// A part that fits leaves plans valid that neither bind nor
-    /// [count](skiagraph_graph::Plan::relies_on) masks, materials and texture coordinates
-    /// (`scene.masks`, `scene.materials`, `scene.uvs` and their like), and others if their numbers
-    /// of items stay: in a mesh without masks a part with masked or double-sided triangles changes
-    /// that of masks, and where the mesh or the part has materials a part changes those of
-    /// materials. Plans that are no longer valid, as all are if the mesh grows, must be made anew.
-    /// Until then [`refresh`](skiagraph_gpu::Executor::refresh) returns
+    /// A part that fits leaves every plan valid that neither binds nor
+    /// [counts](skiagraph_graph::Plan::relies_on) masks, materials and texture coordinates
+    /// (`scene.masks`, `scene.materials`, `scene.uvs` and their like). It makes other plans invalid
+    /// if it changes numbers of items that they use. Each masked part changes that of masks, and so
+    /// does the first double-sided one in a mesh without masks. If the mesh or the part has
+    /// materials, those of materials change. All plans are invalid if the mesh grows. Invalid plans
+    /// must be made anew ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)). Until then
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) returns
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     ///
     /// # Errors

@@ -280,8 +280,10 @@ impl<'a> GroundTruthView<'a> {
     }
 
     /// Measures how a method's errors differ between neighbouring pixels that read different layers
-    /// of its shadow map. `layers` is the index of the layer that each pixel reads, row by row from
-    /// the top left. Returns `None` if no neighbouring pixels read different layers.
+    /// of its shadow map. `layers` is the index of the layer that each pixel reads, the method's
+    /// output [`MAP_LAYER`](crate::graphs::preset::MAP_LAYER), row by row from the top left; the
+    /// values of pixels that do not face the light, or are indeterminate, do not count. Returns
+    /// `None` if no [pair](LayerJump) of pixels reads different layers.
     ///
     /// # Errors
     /// Outputs or layers of another size than the [reference](crate#terms).

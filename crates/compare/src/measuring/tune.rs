@@ -67,23 +67,25 @@ const LEAST_PIXELS: u64 = 256 * 256;
 const LONGEST_SIDE: u32 = 8192;
 
 /// Searches good values of the params that documents mark with `tune`, and adds to the comparison,
-/// behind each method, the same method with the best values found; [`Comparison::tuned`] records
-/// the searches. If the comparison has several views, every second one is taken out of it, and
-/// settings are chosen on these; otherwise they are chosen on other views of the scene. Where these
-/// are fewer than three, views are generated that show from other sides what the judged ones show.
-/// Params that a method sets stay as they are. A method whose document promises exact shadows for
-/// all casters is not searched. Values are chosen in the first of the comparison's viewports, and
-/// run in all. If it has fewer than 256 × 256 pixels, they are chosen in a larger one: both sides
-/// are multiplied by the least whole number that gives so many; but not if the comparison's
-/// [`budgets`](Comparison::budgets) limit time or memory, as a larger viewport costs more.
+/// behind each method, the same method with the values of least error that were found. With
+/// [`budgets`](Comparison::budgets), these values exceed no budget that the method keeps itself.
+/// [`Comparison::tuned`] records the searches. If the comparison has several views, every second
+/// one is taken out of it, and settings are chosen on these; otherwise they are chosen on other
+/// views of the scene. Where these are fewer than three, views are generated that show from other
+/// sides what the judged ones show. Params that a method sets stay as they are. A method whose
+/// document promises exact shadows for all casters is not searched, and neither is one that
+/// remembers earlier frames. Values are chosen in the first of the comparison's viewports, and run
+/// in all. If it has fewer than 256 × 256 pixels, they are chosen in a larger one: both sides are
+/// multiplied by the least whole number that gives so many; but not if budgets limit time or
+/// memory, as a larger viewport costs more.
 ///
 /// The work is bounded: plans and frames of a method, those of its tuned setting included, are at
 /// most ten times those of its part in the comparison.
 ///
 /// # Errors
 /// The errors of [`Comparison::check`]; a comparison of camera paths; no method with params to
-/// tune; no other view of the scene; an [early end](crate#terms), a lost device, a reference that
-/// cannot be computed. The comparison is unchanged after an error.
+/// tune; no other view of the scene that can be generated; an [early end](crate#terms), a lost
+/// device, a reference that cannot be computed. The comparison is unchanged after an error.
 pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), CompareError> {
     comparison.check(Session::new(session.gpu, &Silent))?;
     let scene = comparison.scene.clone();

@@ -32,8 +32,9 @@ pub struct AdapterRecord {
     /// Abilities of the adapter, without the machine's host name and load; null if they are
     /// unknown.
     pub abilities: Option<Abilities>,
-    /// The rows that have ended, in the order in which they ended; a row that ran again stands
-    /// last. Rows that the adapter [lacks an ability](Outcome::Lacking) for are included.
+    /// The rows that have ended, in the order in which they ended; the new record of a row that ran
+    /// again stands last and replaces the old one. Rows that the adapter [lacks an
+    /// ability](Outcome::Lacking) for are included.
     pub rows: Vec<RowRecord>,
 }
 

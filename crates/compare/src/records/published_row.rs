@@ -48,7 +48,8 @@ impl FromStr for PublishedFile {
 /// Figures of the reference: they hold for every preset and map.
 const OF_REFERENCE: [&str; 4] = ["facing_light", "facing_away", "lit", "shadow"];
 
-/// Names of the columns of the file, which may stand in any order.
+/// Names of the columns of the file, which may stand in any order: scene, view, viewport, map_size,
+/// preset, quantity, value, source, note.
 pub const HEADER: [&str; 9] = [
     "scene", "view", "viewport", "map_size", "preset", "quantity", "value", "source", "note",
 ];
@@ -97,7 +98,9 @@ impl Row {
     }
 
     /// True if the figure was published for the scene named `scene`, the view and viewport of
-    /// `run`, and, unless it is of the [reference](crate#terms), for its preset and map size.
+    /// `run`, and, unless it is of the [reference](crate#terms), for its map size and its
+    /// [`preset`](Run::preset), which both must spell alike, setting included. A row of several
+    /// presets applies to no run: split it by [`of_each_preset`](Self::of_each_preset).
     pub fn applies_to(&self, scene: &str, run: &Run) -> bool {
         let of_run = self.preset == run.preset && self.map_size == run.map_size;
         (self.scene.as_str(), &self.view, self.viewport) == (scene, &run.view, run.viewport)

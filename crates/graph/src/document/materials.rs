@@ -238,7 +238,7 @@ pub(crate) struct SamplerEntry {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Filter {
-    /// Takes the nearest texel of the nearest mip.
+    /// Takes the nearest texel of the nearest mip; the default.
     #[default]
     Nearest,
     /// Interpolates between texels (bilinear) and between mips (trilinear).
@@ -249,7 +249,7 @@ pub enum Filter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Address {
-    /// The texels of the edge, repeated.
+    /// The texels of the edge, repeated; the default.
     #[default]
     ClampToEdge,
     /// The texture again, side by side.

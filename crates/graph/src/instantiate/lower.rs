@@ -79,7 +79,7 @@ pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
         let scratch = scratch.into_iter().map(|(name, bytes)| {
             let name = format!("{}/{name}", flat.name.value);
             let kind = ResourceKind::Buffer(Buffer {
-                count: Some(bytes / 4),
+                count: Some(bytes.div_ceil(4)),
                 ..Buffer::default()
             });
             symbols.add(Resource::new(name, kind, Origin::Own))

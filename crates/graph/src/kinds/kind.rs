@@ -125,10 +125,11 @@ impl<'a> Lowering<'a> {
         Located::new(name.to_owned(), self.name.span.clone())
     }
 
-    /// Adds a buffer of `bytes` bytes, a multiple of 4, that only this pass uses, and returns its
-    /// handle for steps. A step must write it before another reads it. Each buffer of a pass needs
-    /// its own `name`. A capture reads it as the material `pass/name`, where `pass` is the [full
-    /// name](crate#terms) of the pass.
+    /// Adds a buffer of `bytes` bytes, rounded up to a multiple of 4 and to one item of the shaders
+    /// that bind it (so 0 is allowed), that only this pass uses, and returns its handle for steps.
+    /// A step must write it before another reads it. Each buffer of a pass needs its own `name`. A
+    /// capture reads it as the material `pass/name`, where `pass` is the [full name](crate#terms)
+    /// of the pass.
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)
@@ -184,8 +185,9 @@ impl<'a> Lowering<'a> {
     }
 
     /// Returns the number of [items](crate#terms) of the buffer `name` that the host's
-    /// [provider](crate#terms) describes, such as `scene.indices`. Returns 0 if the provider does
-    /// not know the name or the number, and while a document is loaded.
+    /// [provider](crate#terms) describes, such as `scene.indices`; also if an include binds a
+    /// material to the name. Returns 0 if the provider does not know the name or the number, and
+    /// while a document is loaded.
     pub fn provided_items(&self, name: &str) -> u64 {
         let environment = self.environment.as_ref();
         environment
@@ -193,7 +195,8 @@ impl<'a> Lowering<'a> {
             .unwrap_or(0)
     }
 
-    /// True if the provider has a resource of this name, and while a document is loaded.
+    /// True if the provider has a resource of this name, also if an include binds a material to the
+    /// name; and while a document is loaded.
     pub fn is_provided(&self, name: &str) -> bool {
         let environment = self.environment.as_ref();
         environment.is_none_or(|it| it.is_provided(name))

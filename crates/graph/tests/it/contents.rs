@@ -577,15 +577,16 @@ fn a_kinds_own_buffer_is_no_material() {
     );
 }
 
-/// A kind that has a shader fill a buffer of its own, of 64 bytes.
+/// A kind that has a shader fill a buffer of its own, of so many bytes.
 #[derive(Debug, Deserialize)]
 struct Fill {
+    bytes: u64,
     result: Reference,
 }
 
 impl PassKind for Fill {
     fn lower(&self, pass: &mut Lowering<'_>) {
-        let scratch = Operand::from(pass.scratch("scratch", 64));
+        let scratch = Operand::from(pass.scratch("scratch", self.bytes));
         let mut program = pass.program_of("fill");
         program.bind.push((pass.named("items"), scratch.clone()));
         pass.step(Step::Dispatch(Dispatch {
@@ -599,25 +600,31 @@ impl PassKind for Fill {
     }
 }
 
-/// Its size is that which the kind gives it, whatever items a shader sees in it.
+/// Its size is that which the kind gives it, whatever items a shader sees in it, if there is one.
 #[test]
 fn a_kinds_own_buffer_has_the_size_that_it_asks_for() {
     let mut registry = Registry::standard();
     registry.register::<Fill>("Fill");
-    for item in ["u32", "vec4<u32>"] {
+    let cases = [
+        (64, "u32", 64),
+        (64, "vec4<u32>", 64),
+        (6, "u32", 8),
+        (0, "vec4<u32>", 16),
+    ];
+    for (bytes, item, expected) in cases {
         let shader = format!(
             "var<storage, read_write> items: array<{item}>;
             @compute @workgroup_size(1) fn main() {{ items[0] = {item}(1); }}"
         );
-        let files = Files::graph(
-            r#"materials: [Buffer(name: "result")], passes: [Fill(name: "fill", result: "result")],
-            outputs: ["result"]"#,
-        )
-        .with("fill.wgsl", shader);
+        let document = format!(
+            r#"materials: [Buffer(name: "result")],
+            passes: [Fill(name: "fill", bytes: {bytes}, result: "result")], outputs: ["result"]"#
+        );
+        let files = Files::graph(&document).with("fill.wgsl", shader);
         let graph = right(Graph::load("graph.ron", &registry, &files));
         let found = right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
         for name in ["fill/scratch", "result"] {
-            assert_eq!(buffer(&found, name).bytes, 64, "{name} of {item}");
+            assert_eq!(buffer(&found, name).bytes, expected, "{name} of {item}");
         }
     }
 }

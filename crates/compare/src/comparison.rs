@@ -47,11 +47,13 @@ pub struct Protocol {
     /// once. The frame that is judged and pictured is an extra one, so that its readback is not
     /// timed.
     pub frames: u32,
-    /// Number of untimed warm-up frames before the timed ones; on a path, of its first frame.
+    /// Number of untimed warm-up frames before the timed ones; on a camera path its first frame is
+    /// repeated so often.
     pub warmup: u32,
     /// Number of timed frames in which only the camera changes, so that passes with unchanged
-    /// inputs may be skipped; 0 to time none. A camera path is walked a second time with every pass
-    /// run if passes were skipped, unless this is 0.
+    /// inputs may be skipped; 0 to time none. The first walk along a camera path skips such passes
+    /// always; if it has skipped any, the path is walked a second time with every pass run, unless
+    /// this is 0.
     pub cached_frames: u32,
     /// Number of sample positions within a pixel (0 counts as 1) that the camera takes in turns
     /// along a camera path, frame by frame; the [reference](crate#terms) samples the same ones. All
@@ -64,11 +66,13 @@ pub struct Protocol {
     /// [with an extent](crate#terms), rounded up to an even number of at least four; other lights
     /// take one ray.
     pub reference_samples: u32,
-    /// True if pictures of every run are written into the folder of the results.
+    /// True if pictures of every run are written into the folder of the results; on a camera path,
+    /// of its worst frame ([`Images::frame`](crate::records::results::Images::frame)).
     pub pictures: bool,
     /// Format of the files with the visibility and status of each pixel, by every run and by the
-    /// [reference](crate#terms), that are written into the folder of the results; `None` to write
-    /// none.
+    /// [reference](crate#terms), that are written into the folder of the results
+    /// ([`judged`](crate::pictures::data::judged)), on a camera path of its worst frame; `None` to
+    /// write none.
     pub data: Option<DataFormat>,
 }
 

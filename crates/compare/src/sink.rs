@@ -43,7 +43,7 @@ pub trait Sink: Sync {
     /// consists of several steps.
     fn begin_runs(&self, _total: u64) {}
 
-    /// Receives the end of one run.
+    /// Receives the end of one of these runs; one that cannot run here ends at once.
     fn count_run(&self) {}
 
     /// Receives the end of all runs.

@@ -743,19 +743,21 @@ impl SceneProvider {
         Ok(())
     }
 
-    /// Adds a part to a mesh in parts, and returns its handle. `map` takes it from its own space to
-    /// its place in world space. If it fits into the [room](Self::reserve) that is left, only this
-    /// part is uploaded and gets a hierarchy, and its triangles get primitive ids that are unused
-    /// or that a removed part had. If it does not fit, the mesh grows by a half, and all of it is
-    /// uploaded.
+    /// Adds a part to a mesh in parts, and returns its handle. `mesh` is in the part's own space;
+    /// `map` takes it to its place in world space, as a map of
+    /// [`set_transforms`](Self::set_transforms) does. If it fits into the [room](Self::reserve)
+    /// that is left, only this part is uploaded and gets a hierarchy, and its triangles get
+    /// primitive ids that are unused or that a removed part had. If it does not fit, the mesh grows
+    /// by a half, and all of it is uploaded.
     ///
     /// A part that fits leaves every plan valid that neither binds nor
     /// [counts](skiagraph_graph::Plan::relies_on) masks, materials and texture coordinates
     /// (`scene.masks`, `scene.materials`, `scene.uvs` and their like). It makes other plans invalid
     /// if it changes numbers of items that they use. Each masked part changes that of masks, and so
     /// does the first double-sided one in a mesh without masks. If the mesh or the part has
-    /// materials, those of materials change. All plans are invalid if the mesh grows. Invalid plans
-    /// must be made anew ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)). Until then
+    /// materials, the numbers of items of materials and texture coordinates change. All plans are
+    /// invalid if the mesh grows. Invalid plans must be made anew
+    /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)). Until then
     /// [`refresh`](skiagraph_gpu::Executor::refresh) returns
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     ///

@@ -38,7 +38,9 @@ impl FromStr for Assignment {
 /// A method as the command line names it: `PRESET[@PARAM=VALUE,…]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MethodArgument {
-    /// Name of a built-in method, or path of a graph document.
+    /// Name of a built-in method, or path of a graph document; with the document in an open include
+    /// behind it (`contact.ron@over=msm`) in arguments of
+    /// [`openings`](crate::graphs::openings::arguments).
     pub preset: String,
     /// Assignments of params behind the `@`, for this method alone.
     pub own: Vec<Assignment>,

@@ -267,8 +267,11 @@ impl<'a> Series<'a> {
     /// indices, into [`Comparison::views`] and [`Comparison::viewports`].
     ///
     /// # Errors
-    /// An [early end](crate#terms), a lost device, a file that cannot be written, a reference that
-    /// cannot be computed.
+    /// An [early end](crate#terms), a lost device, a reference that cannot be computed; the errors
+    /// of [`save`](Self::save).
+    ///
+    /// # Panics
+    /// If an index is out of range.
     pub fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
         let places = self.places(view, viewport);
         let (view, viewport) = (

@@ -223,7 +223,8 @@ impl Values {
 /// Returns arrays of the pixels of a method and of the [reference](crate#terms), each behind the
 /// name that ends its file's name. The first list is the method's (`visibility`, `status`), the
 /// second the reference's (`visibility`, `status`, and `indeterminate`: true where rounding may
-/// flip the answer).
+/// flip the answer). Both arrays `visibility` hold [shares of light](crate#terms) as f32, 0 to 1;
+/// hard answers are 0 and 1.
 pub fn judged(outputs: &Outputs, ground_truth: &GroundTruth) -> [Vec<(&'static str, Array)>; 2] {
     let truth = &ground_truth.pixels;
     let array = |values| Array::of_pixels(truth.viewport, values);

@@ -170,13 +170,14 @@ pub struct Material {
     pub name: String,
     /// Format of a texture; null for a buffer.
     pub format: Option<String>,
-    /// Width and height of a texture's mip 0 in texels; `[bytes, 1]` for a buffer.
+    /// Width and height of a texture's mip 0 in texels; for a buffer `[n, 1]`, where n is its size
+    /// in bytes.
     pub size: [u32; 2],
-    /// Number of mip levels.
+    /// Number of mip levels of a texture; 1 for a buffer.
     pub mips: u32,
-    /// Number of array layers.
+    /// Number of array layers of a texture, or of slices of mip 0 of a 3D texture; 1 for a buffer.
     pub layers: u32,
-    /// Bytes of the texture or buffer.
+    /// Memory in bytes that all texels or items take ([`MemoryEntry::bytes`]).
     pub bytes: u64,
     /// Names of the materials that use the same memory at other times of the frame; empty if there
     /// are none.

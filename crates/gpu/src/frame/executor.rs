@@ -553,10 +553,10 @@ impl Executor {
     ///
     /// # Errors
     /// If a resource cannot be built or its description differs from the one that the graph was
-    /// planned for ([`ExecuteError::OtherThanPlanned`], for example with more items or another kind
-    /// of light), or the device is lost. That resource and those after it stay as they are; the
-    /// next call asks for them again. [`Plan::relies_on`] lists resources whose description counts
-    /// although no live pass binds them: if one of them differs, all stay as they are.
+    /// planned for ([`ExecuteError::OtherThanPlanned`], for example in the number of items or the
+    /// kind of light), or the device is lost. That resource and those after it stay as they are;
+    /// the next call asks for them again. [`Plan::relies_on`] lists resources whose description
+    /// counts although no live pass binds them: if one of them differs, all stay as they are.
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         // If it fails half way, some resources are this provider's.
         self.knows_changes &= provider.has_versions();

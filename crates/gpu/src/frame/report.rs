@@ -3,8 +3,9 @@
 use super::{statistics::PassStatistics, times::FrameTiming};
 use crate::readback::Readback;
 
-/// Settings of one frame, for [`Executor::encode`](crate::Executor::encode). The [`Default`]
-/// requests no report and runs only the passes that have to run.
+/// Settings of one frame, for [`Executor::encode`](crate::Executor::encode) and
+/// [`Executor::submit`](crate::Executor::submit). The [`Default`] requests no report and runs only
+/// the passes that have to run.
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct Frame<'a> {

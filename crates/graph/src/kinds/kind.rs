@@ -125,11 +125,11 @@ impl<'a> Lowering<'a> {
         Located::new(name.to_owned(), self.name.span.clone())
     }
 
-    /// Adds a buffer of `bytes` bytes, rounded up to a multiple of 4 and to one item of the shaders
-    /// that bind it (so 0 is allowed), that only this pass uses, and returns its handle for steps.
-    /// A step must write it before another reads it. Each buffer of a pass needs its own `name`. A
-    /// capture reads it as the material `pass/name`, where `pass` is the [full name](crate#terms)
-    /// of the pass.
+    /// Adds a buffer of `bytes` bytes, rounded up to a multiple of 4 and to at least one item of
+    /// the shaders that bind it (so 0 is allowed), that only this pass uses, and returns its handle
+    /// for steps. A step must write it before another reads it, in every frame. Each buffer of a
+    /// pass needs its own `name`. A capture reads it as the material `pass/name`, where `pass` is
+    /// the [full name](crate#terms) of the pass.
     pub fn scratch(&mut self, name: &str, bytes: u64) -> Scratch {
         self.scratch.push((name.to_owned(), bytes));
         Scratch(self.scratch.len() - 1)

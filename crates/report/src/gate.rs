@@ -73,6 +73,17 @@ impl Figure {
         }
     }
 
+    /// The figure of a judged picture, of which `facing` pixels face the light; `None` if pictures
+    /// have no such figure.
+    fn of_picture(self, of: &JudgedPicture, facing: f64) -> Option<f64> {
+        match self {
+            Self::Wrong => Some(100.0 * of.wrong_attributable() as f64 / facing),
+            Self::Rmse => Some(of.graded.rmse_outside_band),
+            Self::Flip => Some(of.graded.flip),
+            Self::Frame | Self::Memory => None,
+        }
+    }
+
     fn text(self, value: f64) -> String {
         match self {
             Self::Wrong => format!("{value:.4} %"),
@@ -158,11 +169,7 @@ impl Gate {
         let facing = judged.pixels.facing_light.max(1) as f64;
         let pictures = judged.pictures.iter().filter(|of| self.is_of(&of.file));
         let line = |of: &JudgedPicture| {
-            let value = match self.figure {
-                Figure::Wrong => 100.0 * of.wrong_attributable() as f64 / facing,
-                Figure::Rmse => of.graded.rmse_outside_band,
-                _ => of.graded.flip,
-            };
+            let value = self.figure.of_picture(of, facing)?;
             let (word, text) = (self.figure.word(), |value| self.figure.text(value));
             let (value, most) = (value > self.most).then(|| (text(value), text(self.most)))?;
             Some(format!("`{}`: {word} {value} is more than {most}", of.file))

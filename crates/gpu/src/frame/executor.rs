@@ -616,10 +616,12 @@ impl Executor {
         built: &mut Vec<ResourceId>,
     ) -> Result<(), ExecuteError> {
         check_relied_on(&self.state.plan, provider)?;
+        let has_versions = provider.has_versions();
         for (id, version) in self.state.memory.provided().clone() {
             let state = &mut self.state;
             let resource = state.plan.resource(id);
-            let is_described = check_bound(resource, provider)?;
+            // Another description is another version.
+            let is_described = has_versions || check_bound(resource, provider)?;
             if is_described && Ok(provider.version(&resource.name)) == version {
                 continue;
             }

@@ -58,13 +58,14 @@ pub fn wrong_surfaces(
     Ok(wrong.into_iter().filter(|&is_wrong| is_wrong).count() as u64)
 }
 
-/// A surface that a renderer may show at a pixel.
+/// A surface that a renderer may show at a pixel, as [`candidates`] finds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
     /// Primitive id (index of a triangle of the mesh), or [`BACKGROUND`].
     pub primitive: u32,
-    /// Least and greatest distance along the viewing direction, in scene units, at which the pixel
-    /// may show the surface; from minus to plus infinity for a surface that is seen edge-on.
+    /// Least and greatest distance along the camera's viewing direction, in scene units, at which
+    /// the pixel may show the surface; from minus to plus infinity for a surface that is seen
+    /// edge-on, and from the far plane's distance to infinity for the background.
     pub distances: [f64; 2],
 }
 

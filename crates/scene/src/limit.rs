@@ -51,7 +51,8 @@ impl Limit {
         Ok(bytes)
     }
 
-    /// Reads the text of the file at `path`, UTF-8 or UTF-16, without its byte order mark.
+    /// Reads the text of the file at `path`, UTF-8 or UTF-16, with or without a byte order mark,
+    /// which is left out.
     ///
     /// # Errors
     /// The errors of [`Self::read`]; bytes that are neither encoding.

@@ -59,10 +59,10 @@ pub(super) struct Own {
 impl HostMesh {
     /// Makes the mesh of vertices whose bytes at rest are `rest`, from the first vertex on: as many
     /// as the count times the stride; what follows the last attribute of the last vertex may be
-    /// missing. Vertices of equal position at rest are one from then on: the first of them counts
-    /// for all. Bounds are those of the vertices at rest. With a
-    /// [decoder](HostVertices::with_decoder) of the host it waits for the GPU, which decodes the
-    /// vertices at rest.
+    /// missing. Vertices of equal position at rest have one position from then on, that of the
+    /// first of them; normals that differ at rest stay apart. Bounds are those of the vertices at
+    /// rest. With a [decoder](HostVertices::with_decoder) of the host it waits for the GPU, which
+    /// decodes the vertices at rest.
     ///
     /// # Errors
     /// [`HostMeshError`] if the vertices cannot be read as they are described, or form no mesh.

@@ -234,7 +234,10 @@ impl OwnScene {
     }
 
     /// Returns the scene file of this scene, which [`of_mesh`](Self::of_mesh) loaded with `options`
-    /// from the mesh file `mesh`, with `paths` as its camera paths.
+    /// from the mesh file `mesh`, with `paths` as its camera paths. It holds the path `mesh` as it
+    /// is, and the views of [`scene`](Self::scene).
+    /// [`write_scene`](crate::files::scene::write_scene) writes the path relative to the file, and
+    /// is also given the result of [`views`](Self::views).
     pub fn file(
         &self,
         mesh: &str,

@@ -74,8 +74,8 @@ pub enum ExecuteError {
         why: ProviderError,
     },
     /// The [`Provider`](crate::Provider) now describes a resource in another way than when the
-    /// graph was planned: with another binding, number of items, bytes per item or kind of light;
-    /// or a resource on which the plan [relies](skiagraph_graph::Plan::relies_on) has come or gone.
+    /// graph was planned: with another binding, number of items, bytes per item or kind; or a
+    /// resource on which the plan [relies](skiagraph_graph::Plan::relies_on) has come or gone.
     #[error(
         "{}: plan the graph anew (`executor.plan().with(|request| request.provider = …)`) and hand \
          the plan to `replace_graph`",

@@ -50,10 +50,10 @@ pub struct Protocol {
     /// Number of untimed warm-up frames before the timed ones; on a camera path its first frame is
     /// repeated so often.
     pub warmup: u32,
-    /// Number of timed frames in which only the camera changes, so that passes with unchanged
-    /// inputs may be skipped; 0 to time none. The first walk along a camera path skips such passes
-    /// always; if it has skipped any, the path is walked a second time with every pass run, unless
-    /// this is 0.
+    /// Number of timed frames of a still view in which only the camera changes, so that passes with
+    /// unchanged inputs may be skipped; 0 to time none. The walk along a camera path always skips
+    /// such passes; if it has skipped any and this is not 0, the path is walked a second time with
+    /// every pass run ([`Sequence::every_pass`](crate::records::sequence::Sequence::every_pass)).
     pub cached_frames: u32,
     /// Number of sample positions within a pixel (0 counts as 1) that the camera takes in turns
     /// along a camera path, frame by frame; the [reference](crate#terms) samples the same ones. All

@@ -11,7 +11,9 @@ use std::collections::BTreeMap;
 /// or are numbers of items as below. A shader's global has underscores in the place of the dots:
 /// `scene_positions`. A list whose items differ in kind is described as a whole, as `lights` with
 /// its number of [items](crate#terms), and item by item as `lights.0`, `lights.1` and so on: a
-/// document's `lights[1]` is the resource `lights.1`.
+/// document's `lights[1]` is the resource `lights.1`. Of resources named `scene.…` the flag
+/// `changed_scene` of the uniform [`frame`](crate::FRAME_BYTES) tells changes, and `changed_light`
+/// of `light`, `lights`, `light_area`, `light_areas` and `scene.light_…`.
 pub trait Describe {
     /// Returns every name that [`Describe::describe`] knows. Error messages suggest names from this
     /// list.

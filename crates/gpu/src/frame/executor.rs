@@ -556,7 +556,9 @@ impl Executor {
     /// planned for ([`ExecuteError::OtherThanPlanned`], for example in the number of items or the
     /// kind of light), or the device is lost. That resource and those after it stay as they are;
     /// the next call asks for them again. [`Plan::relies_on`] lists resources whose description
-    /// counts although no live pass binds them: if one of them differs, all stay as they are.
+    /// counts although no live pass binds them: if one of them differs, all stay as they are. The
+    /// way out is another plan: [`Plan::with`], with the provider set, and
+    /// [`replace_graph`](Self::replace_graph).
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         // If it fails half way, some resources are this provider's.
         self.knows_changes &= provider.has_versions();

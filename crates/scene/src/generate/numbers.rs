@@ -54,7 +54,7 @@ impl Random {
 }
 
 /// Returns the cosine and the sine, in this order, of an angle that is given as a fraction of a
-/// full turn.
+/// full turn: any finite number, also a negative one or more than one turn.
 pub fn turn(fraction: f64) -> (f64, f64) {
     // A quarter turn at most goes through the series: 12 terms are exact to the last bit of an f32
     // many times over.

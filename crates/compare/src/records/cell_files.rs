@@ -148,8 +148,8 @@ pub(crate) fn at_odds(run: &Run, places: [&Path; 2], why: &str) -> CompareError 
 /// The measured cells of folders, joined.
 #[derive(Debug, Default)]
 pub struct Joined {
-    /// The cells, each as results with one run, in the order of their plans. A cell that was measured
-    /// on several adapters has an entry for each.
+    /// The cells, each as results with one run, in the order of their plans. A cell that was
+    /// measured on several adapters has an entry for each.
     pub kept: Vec<Kept>,
     /// Remarks for the user.
     pub notes: Vec<String>,

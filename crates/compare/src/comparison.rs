@@ -180,15 +180,14 @@ impl Comparison {
             self.primary.plan(session, viewport, &provider)?;
         }
         // A provider describes the same for all views under lights of one kind and number.
-        let (methods, mut idle, mut seen) = (&self.methods, IdleParams::default(), Vec::new());
-        for view in &self.views {
-            let viewport = self.viewports.first().copied().unwrap_or([1; 2]);
-            provider.set_view(view.view(), viewport);
-            let lights = kind_and_number(&provider);
-            if seen.contains(&lights) {
-                continue;
-            }
-            seen.push(lights);
+        let (methods, mut idle) = (&self.methods, IdleParams::default());
+        let lights = |view: &&ViewOrPath| {
+            provider.set_view(view.view(), [1; 2]);
+            kind_and_number(&provider)
+        };
+        let views: Vec<&ViewOrPath> = self.views.iter().unique_by(lights).collect();
+        for view in views {
+            provider.set_view(view.view(), [1; 2]);
             shadow_method::check_plans(methods, &self.viewports, &provider, Some(&device))?;
             idle.note(session.sink, methods, &device, &provider);
         }

@@ -14,6 +14,7 @@ use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{self, FrameMode, Times};
 use crate::records::budgets::Budgets;
 use crate::sink::Session;
+use itertools::Itertools;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{LightKind, View};
@@ -223,16 +224,11 @@ impl<'a> Trials<'a> {
 
     /// One view for each kind of light and number of lights: others may need other plans.
     fn one_of_each_light(&mut self) -> Vec<&'a TrialView<'a>> {
-        let mut seen = Vec::new();
-        let mut views = self.views.clone();
-        views.retain(|view| {
+        let lights = |view: &&TrialView| {
             self.provider.set_view(&view.view, self.viewport);
-            let lights = kind_and_number(self.provider);
-            let is_new = !seen.contains(&lights);
-            seen.push(lights);
-            is_new
-        });
-        views
+            kind_and_number(self.provider)
+        };
+        self.views.iter().copied().unique_by(lights).collect()
     }
 
     /// Median milliseconds of a frame with every pass; `None` if it cannot be planned.

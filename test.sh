@@ -30,5 +30,5 @@ if [ -z "$all" ]; then
     cargo test --workspace --locked "$@"
 else
     # The others have steps of their own: ray queries need another adapter, `ci_long_` takes longer still.
-    cargo test --workspace --locked "$@" -- --include-ignored --skip ray_query:: --skip moving_rays:: --skip ci_long_
+    cargo test --workspace --locked "$@" -- --include-ignored --skip ray_query --skip moving_rays:: --skip ci_long_
 fi

@@ -4,8 +4,7 @@
 
 mod engines;
 
-use engines::{Engine, RAY_QUERY, Rays, engines, rays};
-use skiagraph_compare::sink::{Session, Silent};
+use engines::{Engine, Rays, engines, rays, tracer::RAY_QUERY};
 use skiagraph_gpu::device;
 use std::time::Duration;
 
@@ -34,9 +33,8 @@ fn main() {
     }
     println!("| rays | engine | built in, ms | Mrays/s | blocked | unlike `Hierarchy` |");
     println!("|---|---|---|---|---|---|");
-    let session = Session::new(&gpu, &Silent);
-    for rays in rays(session, edge) {
-        let mut engines = engines(session, &rays);
+    for rays in rays(&gpu, edge) {
+        let mut engines = engines(&gpu, &rays);
         let mut times = vec![Vec::new(); engines.len()];
         // Turn by turn, so that what else the machine does meets all of them.
         for turn in 0..=turns {

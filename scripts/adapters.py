@@ -5,9 +5,7 @@
     scripts/adapters.py DIR --equal 'Mesa 25'  whose errors must be those of the first, to the pixel
 
 On every adapter, methods that promise to be exact have no wrong pixel outside the band, methods that
-must answer alike do so to the bit, rays of the compute hierarchy are right, and no row crashed,
-failed, hung or lost the device. Wrong rays of the driver's own ray queries are printed and are no
-fault of these methods. Shares of wrong pixels are within 0.05 points of the first adapter's: of an
+must answer alike do so to the bit, and no row crashed, failed, hung or lost the device. Shares of wrong pixels are within 0.05 points of the first adapter's: of an
 exact method in each cell, or within the share that rounding decides there, of any other over the
 cells of a row. Exit 0 if all of it holds, 1 if not.
 """
@@ -34,21 +32,10 @@ def points(cell, count):
     return 100 * cell[count] / max(cell["facing"], 1)
 
 
-def wrong_rays(row, ours):
-    """Rays by engine and test that are answered wrongly: by the compute hierarchy, or by the driver."""
-    for test in row["figures"].get("rays", {}).get("tests", []):
-        for engine in test["engines"]:
-            wrong = engine["through"] + engine["blocked"] + engine["unanswered"]
-            if wrong and (engine["engine"] == "Hierarchy") == ours:
-                yield f"{test['solid']} {test['aim']}: {wrong} wrong rays of {engine['engine']}"
-
-
 def own_faults(record):
     for row in record["rows"]:
         figures = row["figures"]
-        # The row of rays ends with 1 where any are wrong; those of the hierarchy are told below.
-        is_judged = row["exit"] == 1 and any(wrong_rays(row, ours=False))
-        if row["outcome"] not in ("done", "lacking") and not is_judged:
+        if row["outcome"] not in ("done", "lacking"):
             yield f"{row['row']}: {row['outcome']}: {' / '.join(row['said'][-3:])}"
         for cell in figures.get("cells", []):
             if cell["is_exact"] and cell["wrong_outside"]:
@@ -56,7 +43,6 @@ def own_faults(record):
         for equal in figures.get("equal", []):
             if equal["differing"]:
                 yield f"{equal['methods']} on {equal['view']}: {equal['differing']} pixels differ"
-        yield from wrong_rays(row, ours=True)
 
 
 def faults_beside(first, record, must_be_equal):
@@ -111,8 +97,6 @@ def main():
         if worst[1]:
             print(f"  most points apart in a cell: {worst[0]:.3f}, {worst[1]}")
         print("".join(f"  FAILED {fault}\n" for fault in found), end="")
-        for row in record["rows"]:
-            print("".join(f"  the driver's {wrong}\n" for wrong in wrong_rays(row, ours=False)), end="")
     if not met or len(records) < 2:
         failed += 1
         print(f"FAILED {len(records)} adapters, of `{args.equal}` none" if not met else "FAILED only one adapter")

@@ -2,20 +2,13 @@
 
 #[cfg(feature = "embree")]
 mod embree;
+pub mod tracer;
 
-use skiagraph_compare::{
-    rays::{
-        speed::random_rays,
-        tracer::{RaySet, Tracer, shadow_rays},
-    },
-    sink::Session,
-};
+use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::{Engine as Word, SceneProvider};
 use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
 use std::{sync::Arc, time::Duration};
-
-/// Features that `RayQuery` asks for.
-pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
+use tracer::{RAY_QUERY, RaySet, Tracer, random_rays, shadow_rays};
 
 /// Rays through a scene.
 pub struct Rays {
@@ -36,7 +29,7 @@ pub struct Engine<'a> {
 }
 
 /// The sets of rays; shadow rays are those of `edge` × `edge` pixels.
-pub fn rays(session: Session, edge: u32) -> Vec<Rays> {
+pub fn rays(gpu: &Gpu, edge: u32) -> Vec<Rays> {
     let load = |name: &str| {
         let request = SceneRequest {
             argument: name.to_owned(),
@@ -45,19 +38,15 @@ pub fn rays(session: Session, edge: u32) -> Vec<Rays> {
         let loaded = SceneLibrary::from_environment().load(&request);
         loaded.map(|(scene, _)| Arc::new(scene))
     };
-    let shadow = |name: &str, scene: &Arc<Scene>| {
-        let set = shadow_rays(session, name, scene, edge);
-        Rays {
-            scene: Arc::clone(scene),
-            set: set.unwrap_or_else(|why| panic!("{why}")),
-        }
+    let shadow = |name: &str, scene: &Arc<Scene>| Rays {
+        scene: Arc::clone(scene),
+        set: shadow_rays(gpu, name, scene, edge),
     };
     let mut sets = Vec::new();
     match load("sponza") {
         Ok(scene) => {
             sets.push(shadow("Sponza `main`", &scene));
-            let random = random_rays(&scene, (edge * edge) as usize);
-            let set = RaySet::new("Sponza, random", random);
+            let set = random_rays("Sponza, random", &scene, (edge * edge) as usize);
             sets.push(Rays { scene, set });
         }
         Err(why) => println!("without Sponza: {why}"),
@@ -68,18 +57,14 @@ pub fn rays(session: Session, edge: u32) -> Vec<Rays> {
 }
 
 /// The engines that there are for these rays, the compute hierarchy first.
-pub fn engines<'a>(session: Session<'a>, rays: &'a Rays) -> Vec<Engine<'a>> {
+pub fn engines<'a>(gpu: &Gpu, rays: &'a Rays) -> Vec<Engine<'a>> {
     let mut provider = SceneProvider::new(Arc::clone(&rays.scene));
     let mut engine = |word: Word| {
-        let tracer = Tracer::new(session, &mut provider, &rays.set, word);
-        let mut tracer = tracer.unwrap_or_else(|why| panic!("{why}"));
+        let mut tracer = Tracer::new(gpu, &mut provider, &rays.set, word);
         Engine {
             name: format!("{word:?}"),
             built: tracer.built,
-            trace: Box::new(move || {
-                let (time, hits) = tracer.trace().unwrap_or_else(|why| panic!("{why}"));
-                (time, hits.iter().map(|hit| hit.is_blocked()).collect())
-            }),
+            trace: Box::new(move || tracer.trace()),
             blocked: Vec::new(),
         }
     };
@@ -87,7 +72,7 @@ pub fn engines<'a>(session: Session<'a>, rays: &'a Rays) -> Vec<Engine<'a>> {
     if rays.set.to_light {
         all.push(engine(Word::LightSpace));
     }
-    if session.gpu.device.features().contains(RAY_QUERY) {
+    if gpu.device.features().contains(RAY_QUERY) {
         all.push(engine(Word::RayQuery));
     }
     #[cfg(feature = "embree")]

@@ -63,4 +63,5 @@ mod texels;
 mod trace;
 mod unit_visibility;
 mod views;
+mod watertight;
 mod work;

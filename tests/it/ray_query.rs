@@ -2,7 +2,7 @@
 //!
 //! A suite of its own, for an adapter with `EXPERIMENTAL_RAY_QUERY`: without one each of these
 //! tests fails, and a plain `cargo test` leaves them out and says so. `.ci/run` gives it Mesa 25:
-//! `env $(scripts/mesa25.sh) cargo test -p skiagraph-tests --test ray_query -- --ignored`
+//! `env $(scripts/mesa25.sh) cargo test -p skiagraph-tests --test across -- --ignored ray_query`
 
 use crate::support::{
     bench::Bench,

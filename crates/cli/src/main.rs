@@ -59,7 +59,6 @@ fn main() -> ExitCode {
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor(args) => commands::doctor::doctor(args, gpu),
         Command::Adapter(args) => commands::adapter::adapter(args, gpu),
-        Command::AnyHits(args) => commands::rays::any_hits(args, gpu),
         Command::View(args) => commands::view::view(args, gpu),
     };
     match outcome {

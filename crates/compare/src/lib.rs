@@ -37,7 +37,6 @@
 //! - [`records`]: holds measurements as plain data, and reads and writes their files.
 //! - [`pictures`]: writes texels as pictures.
 //! - [`foreign`]: judges pictures of other renderers.
-//! - [`rays`]: times and judges rays without a method.
 //! - [`adapters`]: tests how right and how fast methods are on one GPU adapter.
 //! - [`files`]: writes, locks and watches files.
 //!
@@ -87,7 +86,6 @@ pub mod own_scene;
 pub mod own_scene_notes;
 pub mod pictures;
 pub mod quantities;
-pub mod rays;
 pub mod records;
 pub mod sink;
 pub mod size;

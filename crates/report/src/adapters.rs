@@ -3,7 +3,6 @@
 //!
 //! Every table has a row for each adapter, so that two drivers of one GPU stand under each other.
 
-use crate::ray_text::rate;
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::abilities::Ability;
@@ -51,17 +50,6 @@ pub fn markdown(records: &[AdapterRecord]) -> String {
              more than 0.001."
         ),
         beside_first(records),
-    );
-    add(
-        "Rays",
-        "Leaks: of 10⁹ rays at closed surfaces, let through. Wrong: of 10⁹ rays of all tests. Both \
-         with the bound of 95 % certainty that their number allows.",
-        rays(records),
-    );
-    add(
-        "Rays a second",
-        "Millions of any hits a second, by the CPU's clock from submission to the end.",
-        speed(records),
     );
     add(
         "A frame by its size",
@@ -281,68 +269,6 @@ pub fn differences(one: &AdapterRecord, other: &AdapterRecord) -> Vec<Difference
         }
     };
     both.map(difference).collect()
-}
-
-fn rays(records: &[AdapterRecord]) -> Table {
-    let heads = [
-        "", "adapter", "engine", "rays", "leaks", "of 10⁹", "wrong", "of 10⁹",
-    ];
-    let rows = records.iter().enumerate().flat_map(|(index, record)| {
-        let found = record.row("rays").and_then(|row| row.figures.rays.as_ref());
-        let engines = found.into_iter().flat_map(|found| {
-            let engines = found.engines().into_iter();
-            engines.map(move |engine| (engine, found))
-        });
-        engines.map(move |(engine, found)| {
-            let (leaks, at) = found.sum(engine, Some(true));
-            let (wrong, all) = found.sum(engine, None);
-            vec![
-                number(index),
-                record.adapter().unwrap_or_default(),
-                engine.to_owned(),
-                thousands(all),
-                thousands(leaks),
-                rate(leaks, at),
-                thousands(wrong),
-                rate(wrong, all),
-            ]
-        })
-    });
-    Table::new(heads, 3, rows)
-}
-
-fn speed(records: &[AdapterRecord]) -> Table {
-    let sets = |record: &AdapterRecord| {
-        let row = record.row("any_hits");
-        row.map_or_else(Vec::new, |row| row.figures.any_hits.clone())
-    };
-    let names = unique(records.iter().flat_map(|record| {
-        let sets = sets(record).into_iter();
-        sets.map(|set| set.name)
-    }));
-    let heads = ["", "adapter", "engine"].into_iter().map(str::to_owned);
-    let heads = heads.chain(names.iter().cloned());
-    let rows = records.iter().enumerate().flat_map(|(index, record)| {
-        let sets = sets(record);
-        let engines = sets.iter().flat_map(|set| &set.engines);
-        let engines = unique(engines.map(|engine| engine.engine.clone()));
-        let names = &names;
-        let row = move |engine: String| {
-            let speed = |name: &String| {
-                let mut own = sets.iter().filter(|set| set.name == *name);
-                let own = own.find_map(|set| set.engines.iter().find(|it| it.engine == engine));
-                own.map_or("–".into(), |it| format!("{:.2}", it.mrays_per_s))
-            };
-            let own = [
-                number(index),
-                record.adapter().unwrap_or_default(),
-                engine.clone(),
-            ];
-            own.into_iter().chain(names.iter().map(speed)).collect()
-        };
-        engines.into_iter().map(row).collect::<Vec<Vec<String>>>()
-    });
-    Table::new(heads, 3, rows.collect::<Vec<_>>())
 }
 
 /// The cells of the rows that are chosen.

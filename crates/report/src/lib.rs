@@ -30,7 +30,6 @@ pub mod published_charts;
 pub mod published_left_out;
 pub mod published_panels;
 pub mod raster;
-pub mod ray_text;
 pub mod results_table;
 #[cfg(test)]
 mod samples;

@@ -8,6 +8,7 @@ pub mod map_fit;
 pub mod meshes;
 pub mod random;
 pub mod scenes;
+pub mod solids;
 
 use skiagraph_graph::Sources;
 use skiagraph_passes::EmbeddedSources;

@@ -4,9 +4,9 @@
 
 use crate::args::{
     commands::{
-        AdapterArgs, AnyHitsArgs, ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, DoctorArgs,
-        GraphArgs, JudgeArgs, MergeArgs, NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs,
-        SchemaArgs, ShowArgs, StressArgs, TruthArgs, ViewArgs,
+        AdapterArgs, ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, DoctorArgs, GraphArgs,
+        JudgeArgs, MergeArgs, NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs,
+        ShowArgs, StressArgs, TruthArgs, ViewArgs,
     },
     shared::GpuArgs,
 };
@@ -191,13 +191,6 @@ pub enum Command {
         after_help = "Examples:\n  skiagraph adapter\n  skiagraph adapter --backend gl --out gl"
     )]
     Adapter(AdapterArgs),
-    /// Measure how many rays a second each engine answers with any hit: the compute hierarchies,
-    /// and the driver's ray queries where there are any.
-    #[command(
-        name = "any_hits",
-        after_help = "Example:\n  skiagraph any_hits --scene park --scene sponza"
-    )]
-    AnyHits(AnyHitsArgs),
     /// Show methods in a window: fly through the scene, turn the light, move params, look at any
     /// material, see where a method is wrong. Changed files are read again while it runs.
     #[command(after_help = "Examples:\n  skiagraph view\n  \

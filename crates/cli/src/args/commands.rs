@@ -420,14 +420,7 @@ pub struct StressArgs {
     /// Folder for the pictures of every method on every case: shaded, visibility, error, uncertain.
     #[arg(long, value_name = "DIR")]
     pub save: Option<PathBuf>,
-    /// Trace N rays of each kind instead, at solids whose right answers are known, by the compute
-    /// hierarchy and the driver's ray queries: leaks, and wrong rays of 10^9.
-    #[arg(long, value_name = "N",
-          conflicts_with_all = ["presets", "cases", "params", "exact", "save"],
-          value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
-    pub rays: Option<u64>,
-    /// Folder for stress.json, written anew after every case; of --rays for rays.json and rays.md,
-    /// a report for the driver's maker.
+    /// Folder for stress.json, written anew after every case.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Format of the matrix on standard output.
@@ -450,25 +443,6 @@ pub struct DoctorArgs {
     /// Format of the abilities on standard output.
     #[arg(long, value_enum, default_value_t = RecordFormat::Table)]
     pub format: RecordFormat,
-}
-
-/// Arguments of `skiagraph any_hits`.
-#[derive(Args, Debug)]
-pub struct AnyHitsArgs {
-    /// Built-in scene, scene file or mesh. May be repeated.
-    #[arg(long = "scene", value_name = "SCENE", default_value = "park")]
-    pub scenes: Vec<String>,
-    /// Pixels along an edge of the picture whose shadow rays are traced; as many random rays are
-    /// traced besides.
-    #[arg(long, value_name = "N", default_value_t = 512,
-          value_parser = clap::value_parser!(u32).range(1..=2048))]
-    pub size: u32,
-    /// Timed turns, in each of which every engine traces all rays.
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = frames(1))]
-    pub turns: u32,
-    /// Folder for any_hits.json.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
 }
 
 /// Arguments of `skiagraph adapter`.

@@ -13,7 +13,6 @@ pub mod merge;
 pub mod new;
 pub mod presets;
 pub mod profile;
-pub mod rays;
 pub mod report;
 pub mod run;
 pub mod run_sequence;

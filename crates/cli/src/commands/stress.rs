@@ -2,7 +2,6 @@
 
 use crate::args::commands::{RecordFormat, StressArgs};
 use crate::args::shared::GpuArgs;
-use crate::commands::rays::conformance;
 use crate::error::CliError;
 use crate::terminal::console::print;
 use crate::terminal::{Terminal, interrupt, progress};
@@ -38,9 +37,6 @@ use std::{path::Path, sync::Arc};
 pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if args.list {
         return print(&stress_matrix::catalogue());
-    }
-    if let Some(count) = args.rays {
-        return conformance(count, args, gpu);
     }
     let cases = cases(&args.cases)?;
     let sources = preset::sources(&Terminal);

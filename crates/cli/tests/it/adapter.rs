@@ -1,4 +1,4 @@
-//! `skiagraph adapter` and `any_hits`: rows in processes of their own, kept and joined.
+//! `skiagraph adapter`: rows in processes of their own, kept and joined.
 
 use crate::support::skiagraph;
 use serde_json::Value;
@@ -95,42 +95,10 @@ fn what_cannot_be_asked_is_told() {
         ("adapter --small --only hardd", 2, "hard"),
         ("adapter --adapter nothing-like-it", 3, "nothing-like-it"),
         ("adapter --minutes 0", 2, "1..=1440"),
-        ("stress rt --rays 5", 2, "cannot be used with"),
-        ("any_hits --scene nothing", 1, "nothing"),
     ] {
         let output = skiagraph(folder.path(), line);
         let told = text(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{line}: {told}");
         assert!(told.contains(words), "{line}: {told}");
-    }
-}
-
-#[test]
-fn engines_are_timed_on_the_same_rays() {
-    let folder = tempfile::tempdir().unwrap();
-    fine(skiagraph(
-        folder.path(),
-        "any_hits --size 24 --turns 1 --out out",
-    ));
-    let sets = json(&folder.path().join("out/any_hits.json"))["sets"].clone();
-    for set in sets.as_array().unwrap() {
-        let engines = set["engines"].as_array().unwrap();
-        assert!(engines[0]["blocked"].as_u64() > Some(0), "{set}");
-        assert!(engines.iter().all(|it| it["unlike_first"] == 0), "{set}");
-    }
-    assert_eq!(sets[0]["engines"][1]["engine"], "LightSpace");
-}
-
-#[test]
-fn a_report_for_the_drivers_maker_is_written() {
-    let folder = tempfile::tempdir().unwrap();
-    fine(skiagraph(folder.path(), "stress --rays 40 --out out"));
-    let report = fs::read_to_string(folder.path().join("out/rays.md")).unwrap();
-    for words in [
-        "# Ray queries: ",
-        "| far_ball | at corners | 40 |",
-        "rays at closed surfaces leak",
-    ] {
-        assert!(report.contains(words), "{words}: {report}");
     }
 }

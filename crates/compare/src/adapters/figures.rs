@@ -4,7 +4,6 @@ use crate::adapters::rows::Row;
 use crate::error::CompareError;
 use crate::pictures::run_pictures::visibility_npy;
 use crate::records::adapter::{CellFigures, Equality, Figures, HardFigures};
-use crate::records::rays::AnyHits;
 use crate::records::read_back;
 use crate::records::results::{Answer, Results, Run};
 use crate::records::stress::{Cell, Report, Verdict};
@@ -24,9 +23,6 @@ pub(super) fn of_folder(row: &Row, folder: &Path) -> Result<Figures, CompareErro
     if let Some(report) = read_back::stress(folder)? {
         figures.hard = hard(&report);
     }
-    figures.rays = read_back::json(&folder.join("rays.json"))?;
-    let speed: Option<AnyHits> = read_back::json(&folder.join("any_hits.json"))?;
-    figures.any_hits = speed.map_or_else(Vec::new, |speed| speed.sets);
     Ok(figures)
 }
 

@@ -3,7 +3,7 @@
 //! ```
 //! use skiagraph_compare::adapters::rows::rows;
 //!
-//! for row in rows(true, false) {
+//! for row in rows(true) {
 //!     println!("{}: skiagraph {} ({} s)", row.name, row.command.join(" "), row.seconds);
 //! }
 //! ```
@@ -61,9 +61,6 @@ const LINE: Line = Line {
 /// Hard answers of one scene that are the same bits, whichever way they are found.
 const HARD_ALIKE: &[&[&str]] = &[&["rt", "light_buffer", "light_buffer@stage=fragment"]];
 
-/// Rays of each kind on a GPU; a software adapter traces a fortieth.
-const RAYS: u64 = 4_000_000;
-
 const LINES: &[Line] = &[
     Line {
         name: "hard",
@@ -92,14 +89,6 @@ const LINES: &[Line] = &[
         full: "stress rt rt_area --size 64x64 --map-size 64 --set engine=ray_query --set samples=4",
         small: "stress rt --size 32x32 --map-size 32 --set engine=ray_query --case torus",
         needs: Some(Ability::RayQuery),
-        ..LINE
-    },
-    Line {
-        name: "rays",
-        asks: "are closed surfaces watertight, and how many of 10^9 rays are wrong?",
-        seconds: 150,
-        full: "stress --rays {rays}",
-        small: "stress --rays 2000",
         ..LINE
     },
     Line {
@@ -134,14 +123,6 @@ const LINES: &[Line] = &[
                 --reference-samples 16 --set samples=4 --data npy --frames 1",
         unproven_on: &["gl"],
         alike: &[&["rt_area", "light_buffer_area"]],
-        ..LINE
-    },
-    Line {
-        name: "any_hits",
-        asks: "how many rays a second does each engine answer?",
-        seconds: 90,
-        full: "any_hits --scene park --scene sponza --size 512 --turns 5",
-        small: "any_hits --scene park --size 48 --turns 1",
         ..LINE
     },
     Line {
@@ -199,13 +180,10 @@ const LINES: &[Line] = &[
 const COMPARED: &str = "--warmup 1 --cached-frames 0 --images none --resume";
 
 /// Returns the rows in the order in which they run. If `is_small` is true, they are fewer and
-/// measure little, to try in short time that all works. If `is_software` is true, they trace fewer
-/// rays.
-pub fn rows(is_small: bool, is_software: bool) -> Vec<Row> {
-    let rays = if is_software { RAYS / 40 } else { RAYS };
+/// measure little, to try in short time that all works.
+pub fn rows(is_small: bool) -> Vec<Row> {
     let row = |line: &Line| {
         let words = if is_small { line.small } else { line.full };
-        let words = words.replace("{rays}", &rays.to_string());
         let more = if words.starts_with("compare") {
             COMPARED
         } else {

@@ -112,10 +112,8 @@ const FRAME_SECONDS: &str = "25";
 pub fn run(request: &AdapterRequest, sink: &dyn Sink) -> Result<Finished, CompareError> {
     let began = Instant::now();
     let abilities = abilities(request, sink)?;
-    let adapter = abilities.adapter.clone();
-    sink.note(&format!("adapter: {adapter}"));
-    let is_software = adapter.device_type == "Cpu";
-    let rows = chosen(request, is_software)?;
+    sink.note(&format!("adapter: {}", abilities.adapter));
+    let rows = chosen(request)?;
     let folder = request.out.clone().unwrap_or_else(|| folder_of(&abilities));
     check_folder(&folder)?;
     let Some(_claimed) = lock::claim(&folder, lock::ADAPTER, sink)? else {
@@ -177,8 +175,8 @@ pub fn run(request: &AdapterRequest, sink: &dyn Sink) -> Result<Finished, Compar
 }
 
 /// The rows that are asked for.
-fn chosen(request: &AdapterRequest, is_software: bool) -> Result<Vec<Row>, CompareError> {
-    let mut rows = rows(request.is_small, is_software);
+fn chosen(request: &AdapterRequest) -> Result<Vec<Row>, CompareError> {
+    let mut rows = rows(request.is_small);
     let known: Vec<&str> = rows.iter().map(|row| row.name).collect();
     if let Some(name) = request.only.iter().find(|it| !known.contains(&it.as_str())) {
         let what = format!("unknown row `{name}`");
@@ -384,9 +382,6 @@ fn told(row: &RowRecord, cut: Option<&str>) -> String {
     }
     for method in row.figures.hard.iter().filter(|it| it.failed > 0) {
         text += &format!("; {} fails {} cases", method.method, method.failed);
-    }
-    if let Some(rays) = &row.figures.rays {
-        text += &format!("; {} rays wrong", rays.wrong());
     }
     text
 }

@@ -14,7 +14,6 @@
 //! ```
 
 use crate::records::abilities::Abilities;
-use crate::records::rays::{Conformance, RaySetSpeed};
 use serde::{Deserialize, Serialize};
 
 /// Content of `adapter.json`.
@@ -110,12 +109,6 @@ pub struct Figures {
     /// Sums over the hard cases, one entry for each method that could run, from `stress.json`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hard: Vec<HardFigures>,
-    /// Answers of ray engines to rays whose right answer is known, from `rays.json`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rays: Option<Conformance>,
-    /// Speed of ray engines, one entry for each set of rays, from `any_hits.json`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub any_hits: Vec<RaySetSpeed>,
 }
 
 /// Figures of one method on one view in one viewport.

@@ -34,7 +34,6 @@ pub mod judged_pictures;
 pub mod profile;
 pub mod published;
 pub mod published_row;
-pub mod rays;
 pub mod read_back;
 pub mod results;
 pub mod results_baseline;

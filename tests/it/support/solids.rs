@@ -1,20 +1,11 @@
 //! Closed solids around a centre, and rays whose answers follow from that alone: one from the
 //! centre outward, or from outside to the centre, meets the surface, however a tracer rounds. A ray
 //! that ends before the nearest corner does not.
-//!
-//! ```
-//! use skiagraph_compare::rays::solids::{Aim, solids};
-//!
-//! let solid = solids().remove(0);
-//! let rays = solid.rays(Aim::Corners, 1000, 1);
-//! assert_eq!(rays.len(), 1000);
-//! assert!(rays.iter().all(|ray| ray.t_min == 0.0 && ray.t_max.is_finite()));
-//! ```
 
-use crate::rays::tracer::Ray;
+use super::brute::Ray;
 use glam::DVec3;
 use skiagraph_scene::{
-    DirectionalLight, Indexed, Light, LightKind, Mesh, Scene,
+    Indexed, Mesh,
     generate::numbers::{Random, turn},
 };
 
@@ -22,8 +13,6 @@ use skiagraph_scene::{
 pub struct Solid {
     /// Name for tables.
     pub name: &'static str,
-    /// Description of the surface and of the errors that it provokes, as one line.
-    pub reason: &'static str,
     /// Mesh of the surface, in scene units; triangles share the corners of their edges.
     pub mesh: Mesh,
     centre: DVec3,
@@ -48,16 +37,6 @@ impl Aim {
     /// All aims, in the order in which they are tested.
     pub const ALL: [Self; 4] = [Self::Corners, Self::Edges, Self::Inside, Self::Short];
 
-    /// Returns the aim in words, for tables: `at corners`.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Corners => "at corners",
-            Self::Edges => "at edges",
-            Self::Inside => "inside triangles",
-            Self::Short => "short of the surface",
-        }
-    }
-
     /// True if the right answer is that rays of this aim are blocked.
     pub fn is_blocked(self) -> bool {
         self != Self::Short
@@ -69,41 +48,28 @@ pub fn solids() -> Vec<Solid> {
     let mut random = Random::new(7);
     let heights: Vec<f64> = (0..=64 * 128).map(|_| random.range(0.2, 1.0)).collect();
     vec![
-        Solid::new(
-            "ball",
-            "16,128 triangles, slivers at both poles",
-            [64, 128],
-            DVec3::ZERO,
-            |_, _, point| point,
-        ),
+        // 16,128 triangles, slivers at both poles.
+        Solid::new("ball", [64, 128], DVec3::ZERO, |_, _, point| point),
+        // The same 1,300 radii from the origin: corners and rays round to 2^-13.
         Solid::new(
             "far_ball",
-            "the same 1,300 radii from the origin: corners and rays round to 2^-13",
             [64, 128],
             DVec3::new(1000.25, 700.5, -400.125),
             |_, _, point| point,
         ),
-        Solid::new(
-            "flat_ball",
-            "a ball of 64 × 1 × 1/64: most triangles are seen edge-on",
-            [64, 128],
-            DVec3::ZERO,
-            |_, _, point| point * DVec3::new(64.0, 1.0, 1.0 / 64.0),
-        ),
+        // A ball of 64 × 1 × 1/64: most triangles are seen edge-on.
+        Solid::new("flat_ball", [64, 128], DVec3::ZERO, |_, _, point| {
+            point * DVec3::new(64.0, 1.0, 1.0 / 64.0)
+        }),
+        // A random height for each corner: a ray passes many faces at grazing angles.
         Solid::new(
             "spikes",
-            "a random height for each corner: a ray passes many faces at grazing angles",
             [64, 128],
             DVec3::ZERO,
             move |row, column, point| point * heights[(row * 128 + column % 128) as usize],
         ),
-        Solid::new(
-            "dense_ball",
-            "523,264 triangles: edges are 1/340 of a radius long",
-            [512, 512],
-            DVec3::ZERO,
-            |_, _, point| point,
-        ),
+        // 523,264 triangles: edges are 1/340 of a radius long.
+        Solid::new("dense_ball", [512, 512], DVec3::ZERO, |_, _, point| point),
     ]
 }
 
@@ -119,7 +85,6 @@ impl Solid {
     /// The ball of `rows` × `columns` cells, each corner moved by `place`, then all by `centre`.
     fn new(
         name: &'static str,
-        reason: &'static str,
         [rows, columns]: [u32; 2],
         centre: DVec3,
         place: impl Fn(u32, u32, DVec3) -> DVec3,
@@ -167,21 +132,9 @@ impl Solid {
         });
         Self {
             name,
-            reason,
             mesh,
             centre,
             reach,
-        }
-    }
-
-    /// Returns the solid as a scene without views, under one directional light.
-    pub fn scene(&self) -> Scene {
-        let sun = LightKind::from(DirectionalLight::new(DVec3::NEG_Y));
-        Scene {
-            name: self.name.into(),
-            mesh: self.mesh.clone(),
-            views: Vec::new(),
-            lights: vec![Light::only(sun)],
         }
     }
 

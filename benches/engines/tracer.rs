@@ -1,0 +1,281 @@
+//! Traces given rays by one engine of `Trace`, without a method around it.
+
+use glam::Vec3;
+use skiagraph_gpu::{Content, Executor, Frame, Provider, ProviderError, device::Gpu};
+use skiagraph_graph::{
+    Capture, Describe, Graph, MemorySources, Plan, PlanRequest, Provided, ProvidedBinding, Sources,
+};
+use skiagraph_passes::{EmbeddedSources, Engine, SceneProvider, registry};
+use skiagraph_scene::{Scene, generate::numbers::Random};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
+use wgpu::util::DeviceExt;
+
+/// A ray as the shaders have it: it is blocked by a triangle at t if `t_min` < t ≤ `t_max`.
+#[repr(C)]
+#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct Ray {
+    origin: Vec3,
+    t_min: f32,
+    direction: Vec3,
+    t_max: f32,
+}
+
+/// Rays that are traced together.
+pub struct RaySet {
+    pub name: String,
+    pub rays: Vec<Ray>,
+    /// For each ray the triangle that it passes through unblocked; empty if there is none.
+    pub skip: Vec<u32>,
+    /// True if each ray points to the scene's light, which is directional.
+    pub to_light: bool,
+}
+
+/// One engine with the rays that it traces.
+pub struct Tracer {
+    executor: Executor,
+    gpu: Gpu,
+    /// Time in which the engine's hierarchy or acceleration structure was built and uploaded.
+    pub built: Duration,
+}
+
+/// Feature that the engine `RayQuery` needs.
+pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
+
+/// Least primitive id that is none.
+const NONE: u32 = 0xffff_fffd;
+
+impl Tracer {
+    /// Prepares an engine for rays through a scene, whose provider keeps the engine's hierarchy.
+    pub fn new(gpu: &Gpu, scene: &mut SceneProvider, set: &RaySet, engine: Engine) -> Self {
+        let count = [set.rays.len() as u32];
+        let mut given = Given { scene, set, count };
+        let (device, queue) = (&gpu.device, &gpu.queue);
+        let uploaded = |given: &mut Given| {
+            given.submit_built(device, queue).expect("nothing is lost");
+            drop(device.poll(wgpu::PollType::wait_indefinitely()));
+        };
+        // All engines share the mesh's uploads, which are no part of the time.
+        for shared in ["scene.positions", "scene.indices"] {
+            given.build(shared, device, queue).expect("in memory");
+        }
+        uploaded(&mut given);
+        let began = Instant::now();
+        match engine {
+            Engine::Hierarchy => drop(given.build("scene.bvh_nodes", device, queue)),
+            Engine::LightSpace => drop(given.build("scene.light_space_nodes", device, queue)),
+            Engine::RayQuery => {
+                drop(given.build_acceleration_structure("scene.tlas", device, queue));
+            }
+            Engine::Embree => {}
+        }
+        uploaded(&mut given);
+        let built = began.elapsed();
+        let document = document(set, engine);
+        let files = MemorySources::new([("any_hits.ron", document.as_str())]);
+        let plan = plan(
+            gpu,
+            "any_hits.ron",
+            &files.over(EmbeddedSources),
+            1,
+            &given,
+            &[],
+        );
+        let executor = Executor::on(gpu, plan, &mut given);
+        Self {
+            executor: executor.unwrap_or_else(|why| panic!("{why}")),
+            gpu: gpu.clone(),
+            built,
+        }
+    }
+
+    /// Traces all rays once, for any hit: the time from the start of encoding until the GPU was
+    /// done, by the CPU's clock, and which rays are blocked.
+    pub fn trace(&mut self) -> (Duration, Vec<bool>) {
+        let began = Instant::now();
+        run(&self.gpu, &mut self.executor, &Frame::new().with_all(true));
+        let time = began.elapsed();
+        // Read back by a frame of its own, which is not timed.
+        let hits = read(&self.gpu, &mut self.executor, &["hits"]).remove(0);
+        let blocked = hits.chunks_exact(4).map(|hit| hit[1] < NONE);
+        (time, blocked.collect())
+    }
+}
+
+fn run(gpu: &Gpu, executor: &mut Executor, frame: &Frame) -> Vec<Content> {
+    executor.submit(frame, &|| false).expect("the passes run");
+    drop(gpu.device.poll(wgpu::PollType::wait_indefinitely()));
+    let report = executor.finish().expect("the frame is done");
+    let readbacks = report.readbacks.into_iter();
+    readbacks.map(|readback| readback.content).collect()
+}
+
+fn read(gpu: &Gpu, executor: &mut Executor, names: &[&str]) -> Vec<Vec<u32>> {
+    let contents = run(gpu, executor, &Frame::new().with_read(names)).into_iter();
+    contents.filter_map(|content| content.as_u32()).collect()
+}
+
+/// Returns the shadow rays that the preset `rt` traces at `edge` × `edge` pixels of the scene's
+/// first view.
+pub fn shadow_rays(gpu: &Gpu, name: &str, scene: &Arc<Scene>, edge: u32) -> RaySet {
+    let mut provider = SceneProvider::new(Arc::clone(scene));
+    provider.set_view(&scene.views[0], [edge; 2]);
+    let names = ["rays", "ray_primitives", "ray_count"];
+    let plan = plan(
+        gpu,
+        "pipelines/rt.ron",
+        &EmbeddedSources,
+        edge,
+        &provider,
+        &names,
+    );
+    let executor = Executor::on(gpu, plan, &mut provider);
+    let mut executor = executor.unwrap_or_else(|why| panic!("{why}"));
+    let mut contents = read(gpu, &mut executor, &names);
+    let count = contents[2][0] as usize;
+    contents[1].truncate(count);
+    let mut rays: Vec<Ray> = bytemuck::pod_collect_to_vec(&contents[0]);
+    rays.truncate(count);
+    RaySet {
+        name: name.to_owned(),
+        rays,
+        skip: contents.swap_remove(1),
+        to_light: scene.light_of(&scene.views[0]).directional().is_some(),
+    }
+}
+
+/// Returns `count` rays from anywhere in the scene's bounding box in any direction, a tenth of the
+/// box's diagonal long on average; the same on every machine.
+pub fn random_rays(name: &str, scene: &Scene, count: usize) -> RaySet {
+    let (low, high) = scene.mesh.bounds().unwrap_or_default();
+    let mut random = Random::new(1);
+    let mut vector = || {
+        let mut unit = || random.range(0.0, 1.0) as f32;
+        Vec3::new(unit(), unit(), unit())
+    };
+    let ray = |_| Ray {
+        origin: low + vector() * (high - low),
+        t_min: 0.0,
+        direction: vector() * 2.0 - 1.0,
+        t_max: 0.1 * (high - low).length(),
+    };
+    RaySet {
+        name: name.to_owned(),
+        rays: (0..count).map(ray).collect(),
+        skip: Vec::new(),
+        to_light: false,
+    }
+}
+
+fn plan(
+    gpu: &Gpu,
+    path: &str,
+    sources: &dyn Sources,
+    edge: u32,
+    provider: &dyn Describe,
+    captures: &[&str],
+) -> Plan {
+    let graph = Graph::load(path, &registry(), sources).unwrap_or_else(|why| panic!("{why}"));
+    let mut request = PlanRequest::new([edge; 2], provider);
+    request.limits = gpu.device.limits();
+    request.features = gpu.device.features();
+    request.captures = captures.iter().map(|name| Capture::new(*name)).collect();
+    graph.plan(&request).unwrap_or_else(|why| panic!("{why}"))
+}
+
+/// A graph of one pass, which traces.
+fn document(set: &RaySet, engine: Engine) -> String {
+    let direction = if set.to_light {
+        ", direction: Light"
+    } else {
+        ""
+    };
+    let skip = if set.skip.is_empty() {
+        ""
+    } else {
+        r#", skip: "given.skip""#
+    };
+    format!(
+        r#"(
+            format: 3,
+            materials: [Buffer(name: "hits", count: "given.rays.count")],
+            passes: [
+                Trace(
+                    name: "trace", rays: "given.rays", hits: "hits", count: "given.number",
+                    mode: Any, engine: {engine:?}{direction}{skip},
+                ),
+            ],
+            outputs: ["hits"],
+        )"#
+    )
+}
+
+/// A scene with rays.
+struct Given<'a> {
+    scene: &'a mut SceneProvider,
+    set: &'a RaySet,
+    count: [u32; 1],
+}
+
+impl Given<'_> {
+    fn content(&self, name: &str) -> Option<(&[u8], u64)> {
+        match name {
+            "given.rays" => Some((bytemuck::cast_slice(&self.set.rays), 32)),
+            "given.skip" => Some((bytemuck::cast_slice(&self.set.skip), 4)),
+            "given.number" => Some((bytemuck::cast_slice(&self.count), 4)),
+            _ => None,
+        }
+    }
+}
+
+impl Describe for Given<'_> {
+    fn names(&self) -> Vec<String> {
+        self.scene.names()
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        let Some((content, stride)) = self.content(name) else {
+            return self.scene.describe(name);
+        };
+        let count = content.len() as u64 / stride;
+        Some(Provided::new(ProvidedBinding::Storage, Some(count), stride))
+    }
+}
+
+impl Provider for Given<'_> {
+    fn build(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        let Some((contents, _)) = self.content(name) else {
+            return self.scene.build(name, device, queue);
+        };
+        let descriptor = wgpu::util::BufferInitDescriptor {
+            label: Some(name),
+            contents,
+            usage: wgpu::BufferUsages::STORAGE,
+        };
+        Ok(device.create_buffer_init(&descriptor))
+    }
+
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), ProviderError> {
+        self.scene.submit_built(device, queue)
+    }
+
+    fn build_acceleration_structure(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Tlas, ProviderError> {
+        self.scene.build_acceleration_structure(name, device, queue)
+    }
+}

@@ -32,8 +32,8 @@ fn no_ray_passes_through_a_closed_surface() {
     }
 }
 
-/// Vulkan expects watertight tests of a driver's ray queries, but does not demand them: Mesa 25 lets
-/// rays through that meet a corner, and no others.
+/// Vulkan expects watertight tests of a driver's ray queries, but does not demand them: Mesa 25
+/// lets rays through that meet a corner, and no others.
 #[test]
 #[ignore = "an adapter with ray queries: `.ci/run` runs it on Mesa 25"]
 fn ray_query_leaks_at_corners_alone() {

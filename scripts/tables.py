@@ -72,10 +72,10 @@ def main():
     parser.add_argument("documents", nargs="*", default=DOCUMENTS, metavar="DOCUMENT")
     parser.add_argument("--program", default=str(ROOT / "target/release/skiagraph"))
     parser.add_argument("--check", action="store_true")
-    for option in ("--size", "--map-size", "--view"):
-        parser.add_argument(option)
+    parser.add_argument("--size")
+    parser.add_argument("--map-size")
     given = parser.parse_args()
-    part = {"--size": given.size, "--map-size": given.map_size, "--view": given.view}
+    part = {"--size": given.size, "--map-size": given.map_size}
     part = {option: value for option, value in part.items() if value}
     if part and not given.check:
         parser.error("a part of a document can only be checked")

@@ -271,3 +271,26 @@ fn what_the_pages_point_at_is_there() {
         .collect();
     assert!(missing.is_empty(), "{missing:#?}");
 }
+
+/// Lights of `park_soft`, as docs/tutorial.md tells them.
+#[test]
+fn the_tutorials_suns_are_as_wide_as_it_says() {
+    let request = SceneRequest {
+        argument: "park_soft".to_owned(),
+        obj: None,
+    };
+    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let wide = scene.views.iter().filter(|view| view.light.is_some());
+    let wide: Vec<&str> = wide.map(|view| view.name.as_str()).collect();
+    assert_eq!(wide, ["bench_wide", "flowers_wide", "trees_wide"]);
+    let file = include_str!("../../scenes/park_soft.ron");
+    let wide_suns = file.matches("angle_degrees: 5)").count();
+    assert_eq!(
+        (file.matches("angle_degrees: 0.53").count(), wide_suns),
+        (1, 3)
+    );
+    let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let tutorial: Vec<&str> = tutorial.split_whitespace().collect();
+    let says = "a sun of half a degree and, in the views called wide, one of five";
+    assert!(tutorial.join(" ").contains(says));
+}

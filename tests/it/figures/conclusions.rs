@@ -2,7 +2,7 @@
 
 use super::{
     Document, Figure, MAPS, Pages, Row, faster::Faster, least_and_most, median, of_h200, published,
-    read, table, wrap,
+    read, table,
 };
 
 /// Milliseconds for a ray of a hybrid as multiples of those for a ray of `rt` in the same viewport.
@@ -130,9 +130,10 @@ fn the_dissertations_conclusions_are_held_against_the_tables() {
             format!("`nsm`, map 2048²: {wide} % at 1920×1080, {wider} % at 3840×2160"),
         ),
         row(
-            "*Map size*: a finer map leaves fewer wrong pixels to `nsm`, fewer rays to hybrids, and more certain wrong \
-             pixels to `crsm` (5.3.3, 5.4.2)",
-            "holds; the last are [open casters](methods.md#open-casters) alone",
+            "*Map size*: a finer map leaves fewer wrong pixels to `nsm`, fewer rays to hybrids, \
+             and more certain wrong pixels to `crsm` (5.3.3, 5.4.2)",
+            "holds; the last are [open casters](methods.md#open-casters), all with \
+             `depth=conservative`",
             format!(
                 "maps 512² … 4096²: `nsm_d` wrong {} %; `crsm_d` certain wrong {} %",
                 by_map("nsm_d", "wrong %"),
@@ -142,10 +143,11 @@ fn the_dissertations_conclusions_are_held_against_the_tables() {
         ),
         row(
             "*Adjacency* does not pay: a shadow map with neighbours takes too long (6.2, 6.9)",
-            "no longer: [half planes](methods.md#crsma-shrink-only-where-the-surface-ends) instead of up to four \
-             triangles each",
+            "no longer: [half planes](methods.md#crsma-shrink-only-where-the-surface-ends) \
+             instead of up to four triangles each",
             format!(
-                "the map takes {:.2} times as long as `crsm_d`'s (D {:.1} times), median of 12 cells",
+                "the map takes {:.2} times as long as `crsm_d`'s (D {:.1} times), median of 12 \
+                 cells",
                 map_steps(false),
                 map_steps(true),
             ),
@@ -155,7 +157,8 @@ fn the_dissertations_conclusions_are_held_against_the_tables() {
             "*Feasibility*: hybrids seldom beat a ray for every pixel (6.8, 6.9)",
             "holds where rays are cheap; on a CPU hybrids win",
             format!(
-                "faster frames than `rt` in {} of {} cells on Sponza and {} of {} on `bench` (D {} of {} in all)",
+                "faster frames than `rt` in {} of {} cells on Sponza and {} of {} on `bench` (D {} \
+                 of {} in all)",
                 on_sponza.by_frames,
                 on_sponza.cells,
                 on_bench.by_frames,
@@ -179,8 +182,8 @@ fn the_dissertations_conclusions_are_held_against_the_tables() {
             "*Tessellation*: adjacency helps less where triangles are small (7)",
             "not in D's own tables: its Flowers have the smallest triangles. Sponza gains least",
             format!(
-                "rays saved, 1024² pixels and map: flowers_with {}, trees_against {}, Sponza {}; by `crsma` as it is \
-                 {saved_by_ours:.0} % on Sponza",
+                "rays saved, 1024² pixels and map: flowers_with {}, trees_against {}, Sponza {}; \
+                 by `crsma` as it is {saved_by_ours:.0} % on Sponza",
                 saved(&bench_d, "flowers_with", "_d"),
                 saved(&bench_d, "trees_against", "_d"),
                 saved(&sponza_d, "main", "_d"),
@@ -189,8 +192,8 @@ fn the_dissertations_conclusions_are_held_against_the_tables() {
         ),
         row(
             "*Errors*: `crsm` and `crsma` are almost free of them (5.5, 7)",
-            "`crsm` and `crsma_full` are free of them on closed casters, [proven](precision.md); `crsma` is \
-             [no proof](methods.md#crsma-why-it-is-no-proof)",
+            "`crsm` and `crsma_full` are free of them on closed casters, [proven](precision.md); \
+             `crsma` is [no proof](methods.md#crsma-why-it-is-no-proof)",
             "none in the hard cases that they claim".to_owned(),
             "none in the hard cases and in `park`'s nine views".to_owned(),
         ),
@@ -243,13 +246,14 @@ fn the_dissertations_conclusions_are_held_against_the_tables() {
         let [least, most] = least_and_most(costs.iter().copied());
         format!("{:.1} ({least:.1} to {most:.1})", median(costs.into_iter()))
     });
-    pages.hold(page, "rays", &wrap(&format!(
-        "Sponza in D's 17 screen sizes (table 19), a ray for each pixel, as a line over the rays: D {:.1} ms and {:.1} \
-         ns a ray, which leaves {:.1} % of the variance; ours ([sizes](results/sizes.md)) {:.0} ms and {:.0} ns, \
-         {:.1} %. But a ray of a hybrid costs more than one of `rt`, since those at contours and in shadows are the \
-         long and scattered ones: on Sponza {}, median and range of 12 cells as multiples of `rt`'s in the same \
-         viewport. D's own tables 22, 23 and 25 show it, too: {}, though with few rays that is mostly what a call \
-         takes without any. So hybrids save less time than rays.",
+    let text = format!(
+        "Sponza in D's 17 screen sizes (table 19), a ray for each pixel, as a line over the rays: \
+         D {:.1} ms and {:.1} ns a ray, which leaves {:.1} % of the variance; ours \
+         ([sizes](results/sizes.md)) {:.0} ms and {:.0} ns, {:.1} %. But a ray of a hybrid costs \
+         more than one of `rt`, since those at contours and in shadows are the long and scattered \
+         ones: on Sponza {}, median and range of 12 cells as multiples of `rt`'s in the same \
+         viewport. D's own tables 22, 23 and 25 show it, too: {}, though with few rays that is \
+         mostly what a call takes without any. So hybrids save less time than rays.",
         theirs[0],
         theirs[1],
         100.0 * theirs[2],
@@ -258,6 +262,7 @@ fn the_dissertations_conclusions_are_held_against_the_tables() {
         100.0 * ours[2],
         joined(&per_ray(&sponza_d)),
         joined(&their_costs),
-    )));
+    );
+    pages.say(page, "rays", &text);
     pages.end();
 }

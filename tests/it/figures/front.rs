@@ -14,17 +14,19 @@ fn the_readme_says_what_the_tables_say() {
         let [own, rt] = ["light_buffer", "rt"].map(|method| frame(viewport, method).less_gbuffer());
         100.0 * own / rt
     };
-    pages.hold("README.md", "choice", &wrap(&format!(
-        "**Hard shadows without a wrong pixel: `rt` where rays are cheap, [`light_buffer`](docs/light_buffer.md) where \
-         they are expensive.** On the one GPU measured, a compute card, `rt` is the fastest method of all where every \
-         pass runs and no mesh moves; on a CPU `light_buffer` takes {:.0} % of its time at 512² pixels, {:.0} % at \
-         1024² and {:.0} % at 1920×1080. With wrong pixels, but without anything to trace: `nsm@fit=receivers`. Soft \
-         ones: `rt_area`, `pcss`, or filtered maps ([all methods](docs/presets.md)). Measure on your own scene and \
-         machine first:",
+    let text = format!(
+        "**Hard shadows without a wrong pixel: `rt` where rays are cheap, \
+         [`light_buffer`](docs/light_buffer.md) where they are expensive.** On the one GPU \
+         measured, a compute card, `rt` is the fastest method of all where every pass runs and no \
+         mesh moves; on a CPU `light_buffer` takes {:.0} % of its time at 512² pixels, {:.0} % at \
+         1024² and {:.0} % at 1920×1080. With wrong pixels, but without anything to trace: \
+         `nsm@fit=receivers`. Soft ones: `rt_area`, `pcss`, or filtered maps ([all \
+         methods](docs/presets.md)). Measure on your own scene and machine first:",
         ratio("512×512"),
         ratio("1024×1024"),
         ratio("1920×1080"),
-    )));
+    );
+    pages.say("README.md", "choice", &text);
     // Every row of times on the H200 has `rt` first, and no mesh moves there.
     let times = read("docs/results/h200.md");
     let times = times
@@ -121,8 +123,9 @@ fn the_readme_says_what_the_tables_say() {
         .next()
         .unwrap();
     let note = format!(
-        "(Medians of {frames} and 51 frames: llvmpipe, Mesa 22.3.6, two shared cores, {}; NVIDIA H200, no ray queries, \
-         2026-11-26, which [draws slowly](docs/results/h200.md). [More](docs/results.md).)",
+        "(Medians of {frames} and 51 frames: llvmpipe, Mesa 22.3.6, two shared cores, {}; NVIDIA \
+         H200, no ray queries, 2026-11-26, which [draws slowly](docs/results/h200.md). \
+         [More](docs/results.md).)",
         sponza.head("date"),
     );
     assert!(sponza.head("adapter").contains("llvmpipe Mesa 22.3.6"));

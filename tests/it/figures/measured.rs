@@ -1,8 +1,8 @@
 //! docs/results.md and docs/methods.md.
 
 use super::{
-    Document, Figure, MAPS, Pages, STEPS, VIEWS, faster::Faster, least_and_most, ms, share,
-    signed, table, thousands, wrap,
+    Document, Figure, MAPS, Pages, STEPS, VIEWS, faster::Faster, least_and_most, ms, share, signed,
+    table, thousands, wrap,
 };
 
 #[test]
@@ -28,13 +28,15 @@ fn results_say_what_their_tables_say() {
         most_off("512×512").max(larger) <= 20.0 && of_sponza < 0.0002,
         "{larger} pixels, {of_sponza}"
     );
-    pages.hold(page, "counts", &wrap(&format!(
-        "**Its counts.** Eight views of `bench` have its pixels that face the light, its lit ones and those in \
-         shadow to {:.0} at 512² and to {larger:.0} of two million in larger viewports; Sponza's to {:.3} % \
+    let text = format!(
+        "**Its counts.** Eight views of `bench` have its pixels that face the light, its lit ones \
+         and those in shadow to {:.0} at 512² and to {larger:.0} of two million in larger \
+         viewports; Sponza's to {:.3} % \
          ([methods.md](methods.md#the-reference-against-the-dissertations-counts)).",
         most_off("512×512"),
         100.0 * of_sponza,
-    )));
+    );
+    pages.say(page, "counts", &text);
 
     let row = |method: &str, map| sponza_d.row("main", "1024×1024", method, map);
     let line = |head: &str, figure: &dyn Fn(u32) -> Figure| {
@@ -75,11 +77,12 @@ fn results_say_what_their_tables_say() {
         rows.map(|row| sponza_d.uncertain(row).off().abs())
             .fold(0.0, f64::max)
     });
-    pages.hold(page, "rays", &wrap(&format!(
-        "At 512² pixels the rays of table 22 are ours to {:.2} points of PFL for `hybrid_pcf_d`, {:.2} for \
-         `crsm_d`, {:.2} for `crsma_d`.",
+    let text = format!(
+        "At 512² pixels the rays of table 22 are ours to {:.2} points of PFL for `hybrid_pcf_d`, \
+         {:.2} for `crsm_d`, {:.2} for `crsma_d`.",
         points[0], points[1], points[2],
-    )));
+    );
+    pages.say(page, "rays", &text);
 
     let lines = VIEWS.into_iter().chain(["flowers_side"]).map(|view| {
         let row = |method: &str| bench_d.row(view, "1024×1024", method, 1024);
@@ -124,12 +127,12 @@ fn results_say_what_their_tables_say() {
     let wrong = known("nsm_d")
         .filter_map(|row| row.figure("wrong %").filter(|wrong| wrong.theirs.is_some()));
     let lit = row("crsm_d", 1024).figure("wrong lit").unwrap();
-    pages.hold(page, "cells", &wrap(&format!(
-        "(Tables 59 to 82; the columns of `nsm` 36 to 58.) Of the {cells} cells of `hybrid_pcf_d` for which D gives \
-         rays, `flowers_side` left out, {pcf} are within 0.1 % of D's count; of `crsm_d` {} of {}, of `crsma_d` {}, \
-         and {} within 0.5 %. Of `nsm_d` all {} wrong shares are within {:.2} points. On Sponza, 1024² pixels, map \
-         1024², `crsm_d` shows {} pixels wrongly lit, D {} (table 15). `tests/it/dissertation.rs` runs some of these \
-         cells.",
+    let text = format!(
+        "(Tables 59 to 82; the columns of `nsm` 36 to 58.) Of the {cells} cells of `hybrid_pcf_d` \
+         for which D gives rays, `flowers_side` left out, {pcf} are within 0.1 % of D's count; of \
+         `crsm_d` {} of {}, of `crsma_d` {}, and {} within 0.5 %. Of `nsm_d` all {} wrong shares \
+         are within {:.2} points. On Sponza, 1024² pixels, map 1024², `crsm_d` shows {} pixels \
+         wrongly lit, D {} (table 15). `tests/it/dissertation.rs` runs some of these cells.",
         within("crsm_d", 0.001).1,
         within("crsm_d", 0.001).0,
         within("crsma_d", 0.001).1,
@@ -138,7 +141,8 @@ fn results_say_what_their_tables_say() {
         wrong.map(|wrong| wrong.off().abs()).fold(0.0, f64::max),
         thousands(lit.ours),
         thousands(lit.theirs.unwrap()),
-    )));
+    );
+    pages.say(page, "cells", &text);
 
     let more = |method: &str| {
         let views = VIEWS.into_iter().filter(|view| *view != "flowers_with");
@@ -155,15 +159,17 @@ fn results_say_what_their_tables_say() {
     };
     let ([a, b], [c, d]) = (more("crsm_d"), more("crsma_d"));
     let trees = bench_d.uncertain(bench_d.row("trees_against", "1024×1024", "crsm_d", 512));
-    pages.hold(page, "open", &wrap(&format!(
-        "- **Open:** `crsm_d` and `crsma_d` at 1024² pixels, map 512², in seven views of `bench`: ours have {a:.0} to \
-         {b:.0} % and {c:.0} to {d:.0} % more rays than D's (`trees_against`, `crsm_d`: {:.2} % uncertain, D {:.2}), \
-         while `hybrid_pcf_d` and `nsm_d` there are D's, and so are all other maps and `flowers_with`. They are another \
-         run's, as table 18's 53.60 % is beside table 22's 82.47 % (each sums to PFL). Not found which: n of 1/16 to 1, \
-         maps of 768² and 1024² do not give them.",
+    let text = format!(
+        "- **Open:** `crsm_d` and `crsma_d` at 1024² pixels, map 512², in seven views of `bench`: \
+         ours have {a:.0} to {b:.0} % and {c:.0} to {d:.0} % more rays than D's (`trees_against`, \
+         `crsm_d`: {:.2} % uncertain, D {:.2}), while `hybrid_pcf_d` and `nsm_d` there are D's, \
+         and so are all other maps and `flowers_with`. They are another run's, as table 18's \
+         53.60 % is beside table 22's 82.47 % (each sums to PFL). Not found which: n of 1/16 to \
+         1, maps of 768² and 1024² do not give them.",
         trees.ours,
         trees.theirs.unwrap(),
-    )).replace('\n', "\n  "));
+    );
+    pages.say_item(page, "open", &text);
 
     let appendix = |view: &str| view != "main";
     let hybrids = ["hybrid_pcf", "crsm", "crsma"];
@@ -185,10 +191,11 @@ fn results_say_what_their_tables_say() {
     let theirs = Faster::of_theirs(appendix, &["crsma"], "crsm");
     let on_sponza = Faster::of_theirs(|view| view == "main", &["crsma"], "crsm");
     let of = |faster: Faster| format!("{} of {}", faster.by_frames, faster.cells);
-    pages.hold(page, "adjacency", &wrap(&format!(
-        "`crsma` beats `crsm` in {} of the appendix's {} cells by sums (tables 88, 95, 102) and in {} by frames (89, \
-         96, 103), in {} of Sponza's {}; D's own verdict is that adjacency does not pay. Ours, by frames: {} on `bench` \
-         and {} on Sponza under D's conventions, {} and {} under ours, whose map with neighbours costs hardly more.",
+    let text = format!(
+        "`crsma` beats `crsm` in {} of the appendix's {} cells by sums (tables 88, 95, 102) and \
+         in {} by frames (89, 96, 103), in {} of Sponza's {}; D's own verdict is that adjacency \
+         does not pay. Ours, by frames: {} on `bench` and {} on Sponza under D's conventions, {} \
+         and {} under ours, whose map with neighbours costs hardly more.",
         theirs.by_steps,
         theirs.cells,
         theirs.by_frames,
@@ -198,7 +205,8 @@ fn results_say_what_their_tables_say() {
         of(Faster::than_crsm(&sponza_d, "_d")),
         of(Faster::than_crsm(&bench, "")),
         of(Faster::than_crsm(&sponza, "")),
-    )));
+    );
+    pages.say(page, "adjacency", &text);
 
     let methods = "rt nsm hybrid_pcf crsm crsm_single crsm_depth crsma crsma_full light_buffer";
     let rows = methods.split(' ').map(|method| {
@@ -236,9 +244,9 @@ fn results_say_what_their_tables_say() {
     ];
     let [least, most] = least_and_most(rows.map(|row| row.ours("gbuffer ms")));
     let note = format!(
-        "The sums include drawing the view, {least:.0} to {most:.0} ms, and steps without a column. `fill_rays` cost D \
-         more than tracing (8.31 and 7.39 ms, tables 22 and 23); here it is a prefix sum within a workgroup and one \
-         atomic per group."
+        "The sums include drawing the view, {least:.0} to {most:.0} ms, and steps without a \
+         column. `fill_rays` cost D more than tracing (8.31 and 7.39 ms, tables 22 and 23); here \
+         it is a prefix sum within a workgroup and one atomic per group."
     );
     pages.hold(
         page,
@@ -267,17 +275,21 @@ fn results_say_what_their_tables_say() {
     let [least, most] = least_and_most(
         thin.map(|row| row.ours("wrong shadow") - bench.rt(row).ours("wrong shadow")),
     );
-    pages.hold(page, "crsma", &wrap(&format!(
-        "**`crsma`** takes {a:.1} to {b:.1} points off what `crsm` leaves uncertain on Sponza, D's {c:.1} to {d:.1} \
-         (table 22). Its map costs what `crsm`'s does (1.05 times, least of 18 frames, \
-         [methods.md](methods.md#crsm-outer-and-inner-conservative-depth)), D's 7 to 8 times (table 20). Thin \
-         neighbours make it wrong with certainty on {least:.0} to {most:.0} pixels of each view of `bench`, map 1024²."
-    )));
+    let text = format!(
+        "**`crsma`** takes {a:.1} to {b:.1} points off what `crsm` leaves uncertain on Sponza, \
+         D's {c:.1} to {d:.1} (table 22). Its map costs what `crsm`'s does (1.05 times, least of \
+         18 frames, [methods.md](methods.md#crsm-outer-and-inner-conservative-depth)), D's 7 to 8 \
+         times (table 20). Thin neighbours make it wrong with certainty on {least:.0} to \
+         {most:.0} pixels of each view of `bench`, map 1024²."
+    );
+    pages.say(page, "crsma", &text);
     let [least, most] = least_and_most(sponza.of("crsm_single").map(|row| row.ours("wrong %")));
-    pages.hold(page, "crsm_single", &wrap(&format!(
-        "**`crsm_single`** is wrong on {least:.0} to {most:.0} % of Sponza: the nearest triangle of a texel is missed by \
-         most of the rays that some other triangle would have stopped. D (5.4.1) left it out with reason."
-    )));
+    let text = format!(
+        "**`crsm_single`** is wrong on {least:.0} to {most:.0} % of Sponza: the nearest triangle \
+         of a texel is missed by most of the rays that some other triangle would have stopped. D \
+         (5.4.1) left it out with reason."
+    );
+    pages.say(page, "crsm_single", &text);
     pages.end();
 }
 

@@ -1,6 +1,6 @@
 //! Holds sentences and tables with figures in README.md and docs/ against what they come from: the
-//! tables of docs/results and docs/data/dissertation.csv. They stand between `<!-- figures: NAME -->`
-//! and `<!-- end of figures -->`; `INSTA_UPDATE=always` writes them anew.
+//! tables of docs/results and docs/data/dissertation.csv. They stand between `<!-- figures: NAME
+//! -->` and `<!-- end of figures -->`; `INSTA_UPDATE=always` writes them anew.
 
 mod conclusions;
 mod faster;
@@ -166,14 +166,17 @@ impl Document {
         self.rows.iter().filter(move |row| row.method == method)
     }
 
-    /// Share of the pixels facing the light that are left to rays, in percent. The dissertation's is
-    /// as it prints it, or, where that is another run's than its rays, by its rays.
+    /// Share of the pixels facing the light that are left to rays, in percent. The dissertation's
+    /// is as it prints it, or, where that is another run's than its rays, by its rays.
     fn uncertain(&self, row: &Row) -> Figure {
         let [facing, ..] = self.pixels[&(row.view.clone(), row.viewport.clone())];
         let rays = row.figure("rays").unwrap();
-        let by_rays = rays.theirs.map(|rays| 100.0 * rays / facing.theirs.unwrap());
+        let by_rays = rays
+            .theirs
+            .map(|rays| 100.0 * rays / facing.theirs.unwrap());
         let printed = row.figure("uncertain %").and_then(|share| share.theirs);
-        let is_of_this_run = |printed: &f64| by_rays.is_none_or(|share| (share - printed).abs() < 0.05);
+        let is_of_this_run =
+            |printed: &f64| by_rays.is_none_or(|share| (share - printed).abs() < 0.05);
         Figure {
             ours: 100.0 * rays.ours / facing.ours,
             theirs: printed.filter(is_of_this_run).or(by_rays),
@@ -274,11 +277,21 @@ fn thousands(value: f64) -> String {
     text
 }
 
-/// What a page says, and what it should: all that differ are told at once.
+/// Differences of pages from their tables: all are told at once.
 #[derive(Default)]
 struct Pages(Vec<String>);
 
 impl Pages {
+    /// Holds a paragraph.
+    fn say(&mut self, file: &str, name: &str, text: &str) {
+        self.hold(file, name, &wrap(text));
+    }
+
+    /// Holds an item of a list.
+    fn say_item(&mut self, file: &str, name: &str, text: &str) {
+        self.hold(file, name, &wrap(text).replace('\n', "\n  "));
+    }
+
     fn hold(&mut self, file: &str, name: &str, expected: &str) {
         let text = read(file);
         let begin = format!("<!-- figures: {name} -->\n");

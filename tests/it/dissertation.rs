@@ -136,7 +136,12 @@ fn with_seams(folder: &Path) -> Arc<Scene> {
                 .or_insert_with(|| {
                     let mut xyz = positions[position - 1].split_whitespace();
                     let x: f64 = xyz.next().unwrap().parse().unwrap();
-                    let away = turn.div_ceil(2) as f64 * if turn % 2 == 0 { -APART } else { APART };
+                    let away = turn.div_ceil(2) as f64
+                        * if turn.is_multiple_of(2) {
+                            -APART
+                        } else {
+                            APART
+                        };
                     let [y, z] = [(); 2].map(|()| xyz.next().unwrap());
                     vertices += &format!("v {} {y} {z}\n", x + away);
                     count += 1;

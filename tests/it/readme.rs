@@ -206,6 +206,7 @@ fn missing(page: &str, files: &[String]) -> Vec<String> {
             .any(|file| file == path || file.ends_with(&end))
     };
     let quoted = text.split('`').skip(1).step_by(2);
+    let quoted = quoted.map(|word| word.trim_start_matches("./"));
     let paths = quoted.filter(|word| {
         let kinds = [".rs", ".py", ".sh", ".wgsl", ".csv"];
         let is_plain = |c: char| c.is_ascii_alphanumeric() || "._/-".contains(c);
@@ -224,7 +225,8 @@ fn missing(page: &str, files: &[String]) -> Vec<String> {
         ("bench", "benches"),
         ("example", "examples"),
     ] {
-        let named = text.split(&format!("--{option} ")).skip(1);
+        let option_text = format!("--{option} ");
+        let named = text.split(&option_text).skip(1);
         let names = named.map(|rest| {
             let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '-');
             &rest[..end.unwrap_or(rest.len())]

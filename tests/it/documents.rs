@@ -111,6 +111,28 @@ fn presets_keep_the_contract() {
     }
 }
 
+/// docs/authoring.md says so under *Order*.
+#[test]
+fn passes_run_in_the_order_of_the_file() {
+    for preset in presets() {
+        let plan = plan(&preset.path, None);
+        assert!(plan.schedule().passes.is_sorted(), "{}", preset.name);
+        let edges = plan.dependences(|_| true);
+        let is_forward = edges.keys().all(|(earlier, later, _)| earlier < later);
+        assert!(!edges.is_empty() && is_forward, "{}", preset.name);
+    }
+    let guide = include_str!("../../docs/authoring.md");
+    let guide: Vec<&str> = guide.split_whitespace().collect();
+    let guide = guide.join(" ");
+    for says in [
+        "Passes run in the order of the file.",
+        "Every edge runs forward in the file; no pass is moved.",
+    ] {
+        assert!(guide.contains(says), "{says}");
+    }
+    assert!(!guide.contains("order from what passes read and write"));
+}
+
 #[test]
 fn the_steps_of_a_frame_are_passes() {
     let rt = [

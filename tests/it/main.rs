@@ -32,6 +32,7 @@ mod depth;
 mod dissertation;
 mod documents;
 mod extents;
+mod figures;
 mod filtered;
 mod fits;
 mod foreign;

@@ -1,4 +1,5 @@
-//! Checks that the README's commands and code work as they stand there.
+//! Checks that the README's commands and code work as they stand there, and that what pages name is
+//! there.
 
 use crate::support::graphs::open;
 use skiagraph_gpu::{Executor, Frame};
@@ -193,4 +194,105 @@ fn the_scene_file_of_the_docs_is_right() {
     let text = text.split("```").next().unwrap();
     let scene = SceneFile::parse(text, "docs/scenes.md").unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((scene.lights.len(), scene.views.len()), (3, 1));
+}
+
+/// Files, test binaries, benchmarks and examples that a page names, and that are not there.
+fn missing(page: &str, files: &[String]) -> Vec<String> {
+    let text = fs::read_to_string(root().join(page)).unwrap();
+    let is_there = |path: &str| {
+        let end = format!("/{path}");
+        files
+            .iter()
+            .any(|file| file == path || file.ends_with(&end))
+    };
+    let quoted = text.split('`').skip(1).step_by(2);
+    let quoted = quoted.map(|word| word.trim_start_matches("./"));
+    let paths = quoted.filter(|word| {
+        let kinds = [".rs", ".py", ".sh", ".wgsl", ".csv"];
+        let is_plain = |c: char| c.is_ascii_alphanumeric() || "._/-".contains(c);
+        word.contains('/') && word.chars().all(is_plain) && kinds.iter().any(|k| word.ends_with(k))
+    });
+    let mut missing: Vec<String> = paths
+        .filter(|path| !is_there(path))
+        .map(str::to_owned)
+        .collect();
+    let manifests = files.iter().filter(|file| file.ends_with("Cargo.toml"));
+    let manifests: Vec<String> = manifests
+        .map(|file| fs::read_to_string(root().join(file)).unwrap())
+        .collect();
+    for (option, folder) in [
+        ("test", "tests"),
+        ("bench", "benches"),
+        ("example", "examples"),
+    ] {
+        let option_text = format!("--{option} ");
+        let named = text.split(&option_text).skip(1);
+        let names = named.map(|rest| {
+            let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '-');
+            &rest[..end.unwrap_or(rest.len())]
+        });
+        missing.extend(names.filter_map(|name| {
+            let is_declared = manifests
+                .iter()
+                .any(|m| m.contains(&format!("name = \"{name}\"")));
+            let is_file = is_there(&format!("{folder}/{name}.rs"))
+                || is_there(&format!("{folder}/{name}/main.rs"));
+            (!name.is_empty() && !is_declared && !is_file).then(|| format!("--{option} {name}"))
+        }));
+    }
+    missing
+}
+
+#[test]
+fn what_the_pages_point_at_is_there() {
+    let mut files = Vec::new();
+    let mut folders = vec![root().to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap();
+            if path.is_dir() && !["target", ".git", "out", "node_modules"].contains(&name) {
+                folders.push(path);
+            } else if path.is_file() {
+                let path = path.strip_prefix(root()).unwrap();
+                files.push(path.to_str().unwrap().replace('\\', "/"));
+            }
+        }
+    }
+    let is_page = |file: &&String| {
+        let is_written = !["docs/diagnostics.md", "docs/reference.md"].contains(&file.as_str());
+        let is_ours = ["README.md", "CONTRIBUTING.md"].contains(&file.as_str());
+        is_written && (is_ours || file.starts_with("docs/") && file.ends_with(".md"))
+    };
+    let pages: Vec<&String> = files.iter().filter(is_page).collect();
+    assert!(pages.len() > 30, "{pages:?}");
+    let missing: Vec<(&String, Vec<String>)> = pages
+        .into_iter()
+        .map(|page| (page, missing(page, &files)))
+        .filter(|(_, missing)| !missing.is_empty())
+        .collect();
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
+/// Lights of `park_soft`, as docs/tutorial.md tells them.
+#[test]
+fn the_tutorials_suns_are_as_wide_as_it_says() {
+    let request = SceneRequest {
+        argument: "park_soft".to_owned(),
+        obj: None,
+    };
+    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let wide = scene.views.iter().filter(|view| view.light.is_some());
+    let wide: Vec<&str> = wide.map(|view| view.name.as_str()).collect();
+    assert_eq!(wide, ["bench_wide", "flowers_wide", "trees_wide"]);
+    let file = include_str!("../../scenes/park_soft.ron");
+    let wide_suns = file.matches("angle_degrees: 5)").count();
+    assert_eq!(
+        (file.matches("angle_degrees: 0.53").count(), wide_suns),
+        (1, 3)
+    );
+    let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let tutorial: Vec<&str> = tutorial.split_whitespace().collect();
+    let says = "a sun of half a degree and, in the views called wide, one of five";
+    assert!(tutorial.join(" ").contains(says));
 }

@@ -62,8 +62,8 @@ impl Graph {
     }
 
     /// Plans the graph for a viewport, params and device: resolves names and sizes, connects the
-    /// shaders' bindings with resources, orders the passes and drops those that are not
-    /// [live](crate#terms). Touches no GPU.
+    /// shaders' bindings with resources, and drops the passes that are not [live](crate#terms).
+    /// Touches no GPU.
     ///
     /// # Errors
     /// All mistakes found while planning: those in a document or shader with their place in it,

@@ -24,12 +24,12 @@
 //! # Ok::<(), skiagraph_graph::Diagnostics>(())
 //! ```
 //!
-//! A document names *materials* (textures, buffers, samplers) and *passes*. Bindings, and the reads
-//! and writes of each pass, come from the shaders by reflection; the order of passes comes from the
-//! materials that they read and write. Each phase is a folder, in this order: `document` (with
-//! `compose`, which reads the documents that a document extends and includes), `shader`,
-//! `instantiate`, `link`, `flow`, `plan`. `language` and `expressions` hold the two small grammars
-//! inside of strings; `errors` holds the mistakes that each phase can report, and their messages.
+//! A document names *materials* (textures, buffers, samplers) and *passes*, which run in the order
+//! of the document. Bindings, and the reads and writes of each pass, come from the shaders by
+//! reflection. Each phase is a folder, in this order: `document` (with `compose`, which reads the
+//! documents that a document extends and includes), `shader`, `instantiate`, `link`, `flow`,
+//! `plan`. `language` and `expressions` hold the two small grammars inside of strings; `errors`
+//! holds the mistakes that each phase can report, and their messages.
 //!
 //! The crate knows no scenes and no shadows. A provider describes the resources that a graph does
 //! not make itself ([`Describe`]); the crate `skiagraph-gpu` makes them on a device.

@@ -24,8 +24,8 @@ pub enum OracleMode {
     #[default]
     Exact,
     /// The ray begins at the receiver moved by this length, in scene units, towards the light;
-    /// every primitive can block it. 0.03 on Sponza is the convention of the dissertation
-    /// (docs/methods.md).
+    /// every primitive can block it. 0.03 on Sponza gives the counts of the dissertation
+    /// (docs/dissertation.md).
     Offset(f64),
 }
 

@@ -1,9 +1,13 @@
 //! docs/tutorial.md, typed as it stands there: every file written, every command run. Needs an
-//! adapter.
+//! adapter. And the options of commands on all pages.
 
 use crate::support::skiagraph;
 use serde_json::Value;
-use std::{fs, path::Path};
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
 
 /// The fenced blocks in their order, each with its language and the last file named before it.
 fn blocks(text: &str) -> Vec<(String, Option<String>, String)> {
@@ -56,9 +60,20 @@ fn the_tutorial_can_be_typed() {
         "{files} files, {commands} commands"
     );
 
+    // Step 2: shares and hard answers have both wrong pixels and errors.
+    let text_of = |folder: &Path| fs::read_to_string(folder.join("results.json")).unwrap();
+    let step: Value = serde_json::from_str(&text_of(&folder.join("compare"))).unwrap();
+    for name in ["nsm", "soft.ron"] {
+        let runs = step["runs"].as_array().unwrap();
+        let run = runs.iter().find(|run| run["preset"] == name).unwrap();
+        assert!(run["wrong"]["total"].as_u64() > Some(0), "{name}: {run}");
+        assert!(run["graded"]["rmse"].as_f64() > Some(0.0), "{name}: {run}");
+    }
+    assert!(text.contains("Both have wrong pixels, too"));
+
     // A blur brings it nearer to the wide light than none, and it stands beside the built-in ones.
     let rmse = |folder: &Path, name: &str| {
-        let text = fs::read_to_string(folder.join("results.json")).unwrap();
+        let text = text_of(folder);
         let results: Value = serde_json::from_str(&text).unwrap();
         let runs = results["runs"].as_array().unwrap();
         let run = runs.iter().find(|run| run["preset"] == name);
@@ -72,4 +87,57 @@ fn the_tutorial_can_be_typed() {
     let [mine, vsm] = ["blurred.ron", "vsm"].map(|name| rmse(&field, name));
     assert!(mine < 1.5 * vsm, "mine {mine}, the built-in one {vsm}");
     assert!(folder.join("soft.html").is_file());
+}
+
+/// Pages with commands: the README and those of docs/.
+fn pages() -> Vec<PathBuf> {
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+    let mut pages = vec![root.join("README.md")];
+    for folder in ["docs", "docs/results", "docs/data", "docs/lab"] {
+        let files = fs::read_dir(root.join(folder)).unwrap();
+        let files = files.map(|file| file.unwrap().path());
+        pages.extend(files.filter(|file| file.extension().is_some_and(|end| end == "md")));
+    }
+    pages
+}
+
+#[test]
+fn the_options_that_pages_name_are_there() {
+    let mut helps: BTreeMap<String, String> = BTreeMap::new();
+    let mut options = 0;
+    for page in pages() {
+        let text = fs::read_to_string(&page).unwrap().replace("\\\n", " ");
+        for rest in text.split("skiagraph ").skip(1) {
+            let line = rest.split(['`', '\n', '#', '|']).next().unwrap();
+            let mut words = line.split_whitespace();
+            let Some(command) = words
+                .next()
+                .filter(|word| word.chars().all(char::is_alphabetic))
+            else {
+                continue;
+            };
+            let help = helps.entry(command.to_owned()).or_insert_with(|| {
+                let output = skiagraph(Path::new("."), &format!("{command} --help"));
+                String::from_utf8(output.stdout).unwrap()
+            });
+            // A word of prose is no command.
+            if help.is_empty() {
+                continue;
+            }
+            let known: Vec<&str> = help
+                .split([' ', '\n', ',', '[', ']', '=', '`', '.', ':', ';'])
+                .collect();
+            for option in words.filter(|word| word.starts_with("--") && word.len() > 2) {
+                let option = option.split('=').next().unwrap();
+                let option = option.trim_end_matches([',', '.', ')', ';', ':', '…']);
+                assert!(
+                    known.contains(&option),
+                    "{}: `{command}` has no {option}",
+                    page.display()
+                );
+                options += 1;
+            }
+        }
+    }
+    assert!(options > 100, "{options} options");
 }

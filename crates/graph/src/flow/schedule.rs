@@ -1,5 +1,5 @@
-//! Order of the live passes that respects every dependence. Where the dependences leave a choice,
-//! passes keep the order of the document.
+//! Order of the live passes that respects every dependence. Dependences run from a pass to one
+//! below it, so this is the order of the document.
 
 use super::{aliases::Aliases, conditions::Conditions, lifetimes::Lifetimes, order::Order};
 use crate::{link::pass::PassId, resource::ResourceId};

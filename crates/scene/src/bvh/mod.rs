@@ -3,8 +3,8 @@
 mod build;
 mod levels;
 mod light_space;
-mod median;
 mod node;
+mod ploc;
 mod top;
 mod tree;
 mod two_level;

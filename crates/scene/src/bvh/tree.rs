@@ -2,8 +2,8 @@
 
 use super::{
     build::{measurable, ploc},
-    median,
-    node::BvhNode,
+    node::{BvhNode, MAX_LEAF},
+    top::{Split, over_boxes},
 };
 use crate::mesh::{Mesh, bounds};
 use glam::Vec3;
@@ -33,7 +33,8 @@ pub struct Bvh {
 impl Bvh {
     /// Creates a tree of nodes and primitives in order.
     fn new(nodes: Vec<BvhNode>, primitives: Vec<u32>) -> Self {
-        let depth = depth(&nodes);
+        let link = |node: &BvhNode| (node.first, node.count);
+        let depth = depth(|index| link(&nodes[index as usize]));
         Self {
             nodes,
             primitives,
@@ -64,7 +65,7 @@ impl Bvh {
         }
         let tree = Self::by_ploc(triangles).filter(|tree| tree.depth <= depth);
         tree.unwrap_or_else(|| {
-            let (nodes, primitives) = median::build(triangles);
+            let (nodes, primitives) = in_halves(triangles);
             Self::new(nodes, primitives)
         })
     }
@@ -72,7 +73,8 @@ impl Bvh {
     /// Builds it by PLOC; `None` where that has nothing to compare, or chains its triangles.
     pub(super) fn by_ploc(triangles: &[Triangle]) -> Option<Self> {
         let corners = triangles.iter().flat_map(|of| [of.v0, of.v1, of.v2]);
-        let tree = measurable(bounds(corners.map(Vec3::from))).then(|| ploc(triangles))?;
+        let is_measurable = measurable(bounds(corners.map(Vec3::from)));
+        let tree = is_measurable.then(|| ploc(triangles)).flatten()?;
         let nodes = tree.nodes.iter().map(|node| BvhNode {
             min: node.aabb.min.into(),
             first: node.first_index,
@@ -186,15 +188,27 @@ impl Bvh {
     }
 }
 
-fn depth(nodes: &[BvhNode]) -> u32 {
+/// The nodes, and primitives in order, of the tree of last resort, whose depth is the logarithm of
+/// the number of triangles. Meshes need it that span the range of f32, or whose best tree is a
+/// chain: triangles that grow geometrically, or that share a corner.
+fn in_halves(triangles: &[Triangle]) -> (Vec<BvhNode>, Vec<u32>) {
+    let boxes = triangles.iter().map(|triangle| BvhNode {
+        min: triangle.v0.min(triangle.v1).min(triangle.v2).into(),
+        max: triangle.v0.max(triangle.v1).max(triangle.v2).into(),
+        ..BvhNode::default()
+    });
+    over_boxes(&boxes.collect::<Vec<_>>(), Split::ByCount, MAX_LEAF)
+}
+
+/// Number of nodes on the longest path from the root to a leaf. `link` returns the first child and
+/// the number of primitives of a node.
+pub(super) fn depth(link: impl Fn(u32) -> (u32, u32)) -> u32 {
     let mut deepest = 0;
     let mut open = vec![(0u32, 1u32)];
     while let Some((index, level)) = open.pop() {
         deepest = deepest.max(level);
-        let node = nodes[index as usize];
-        if node.count == 0 {
-            open.push((node.first, level + 1));
-            open.push((node.first + 1, level + 1));
+        if let (first, 0) = link(index) {
+            open.extend([(first, level + 1), (first + 1, level + 1)]);
         }
     }
     deepest
@@ -259,7 +273,7 @@ mod tests {
             })
             .collect();
         assert!(Bvh::by_ploc(&triangles).is_none());
-        let (nodes, primitives) = median::build(&triangles);
+        let (nodes, primitives) = in_halves(&triangles);
         assert!(Bvh::new(nodes, primitives).depth < 8);
     }
 }

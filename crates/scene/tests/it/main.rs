@@ -6,6 +6,7 @@ mod common;
 #[path = "common/solids.rs"]
 mod solids;
 
+mod alike;
 mod bench;
 mod bvh;
 mod foreign_files;

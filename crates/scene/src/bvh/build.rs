@@ -1,9 +1,8 @@
 //! Building: clusters of boxes, then parallel reinsertion by obvhs (Meister and Bittner 2018).
 
 use super::{
-    node::MAX_LEAF,
+    node::{MAX_DEPTH, MAX_LEAF, depth},
     ploc::cluster,
-    tree::{MAX_DEPTH, depth},
 };
 use glam::Vec3;
 use obvhs::{
@@ -57,18 +56,21 @@ fn on_these_threads(triangles: &[Triangle]) -> Option<Bvh2> {
     let boxes: Vec<Aabb> = triangles.iter().map(Triangle::aabb).collect();
     let mut tree = cluster(&boxes);
     let mut optimizer = ReinsertionOptimizer::default();
+    let link = |node: &Bvh2Node| (node.first_index, node.prim_count);
+    // The stack of a search holds twice as many: a step makes the tree a few times as deep at most.
+    tree.max_depth = 4 * MAX_DEPTH as usize;
     for (is_first, share) in [(true, 0.2), (false, 0.4)] {
         if !is_first {
             collapse(&mut tree, MAX_LEAF, 1.5);
         }
         // obvhs's own steps. Each costs the number of nodes times the depth, which grows from step
         // to step on a fan of many triangles, say.
-        for step in (1u8..32).step_by(2) {
-            let link = |node: &Bvh2Node| (node.first_index, node.prim_count);
+        for step in (1u8..32).step_by(4) {
             if depth(|index| link(&tree.nodes[index as usize])) > MAX_DEPTH {
                 return None;
             }
-            optimizer.run(&mut tree, share, Some(vec![1.0 / f32::from(step)]));
+            let steps = [step, step + 2].map(|step| 1.0 / f32::from(step));
+            optimizer.run(&mut tree, share, Some(steps.to_vec()));
         }
     }
     Some(tree)

@@ -10,6 +10,6 @@ mod tree;
 mod two_level;
 
 pub use light_space::{LightSpace, LightSpaceNode};
-pub use node::BvhNode;
-pub use tree::{Bvh, MAX_DEPTH};
+pub use node::{BvhNode, MAX_DEPTH};
+pub use tree::Bvh;
 pub use two_level::{Moved, Piece, Refit, TwoLevelBvh};

@@ -8,7 +8,7 @@
 use glam::DVec3;
 use obvhs::{
     aabb::Aabb,
-    bvh2::{Bvh2, DEFAULT_MAX_STACK_DEPTH, node::Bvh2Node},
+    bvh2::{Bvh2, node::Bvh2Node},
     ploc::morton::morton_encode_u128_unorm,
 };
 #[cfg(feature = "rayon")]
@@ -55,7 +55,8 @@ pub(super) fn cluster(boxes: &[Aabb]) -> Bvh2 {
         pass += 1;
     }
     tree.nodes[0] = open[0];
-    tree.max_depth = DEFAULT_MAX_STACK_DEPTH.max(pass + 1);
+    // Each pass makes the tree one level deeper at most.
+    tree.max_depth = pass + 1;
     tree.children_are_ordered_after_parents = true;
     tree
 }
@@ -82,8 +83,10 @@ fn in_morton_order(boxes: &[Aabb]) -> Vec<Bvh2Node> {
 fn choices(open: &[Bvh2Node], reach: usize) -> Vec<u32> {
     let choose = |one: usize| {
         let (own, mut best) = (open[one].aabb(), (f32::INFINITY, one));
-        for other in one.saturating_sub(reach)..(one + reach + 1).min(open.len()) {
-            let area = own.union(open[other].aabb()).half_area();
+        let low = one.saturating_sub(reach);
+        let near = &open[low..(one + reach + 1).min(open.len())];
+        for (other, node) in (low..).zip(near) {
+            let area = own.union(node.aabb()).half_area();
             if other != one && area <= best.0 {
                 best = (area, other);
             }

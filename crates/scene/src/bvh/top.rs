@@ -2,7 +2,7 @@
 //! The top level is built in every frame in which one of its boxes moves, by the thread that asks
 //! for it: waking others takes longer.
 
-use super::{node::BvhNode, tree::area};
+use super::node::{BvhNode, area};
 use crate::mesh::bounds;
 use glam::{DVec3, Vec3};
 

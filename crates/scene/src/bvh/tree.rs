@@ -2,16 +2,12 @@
 
 use super::{
     build::{measurable, ploc},
-    node::{BvhNode, MAX_LEAF},
+    node::{BvhNode, MAX_DEPTH, MAX_LEAF, area, depth},
     top::{Split, over_boxes},
 };
 use crate::mesh::{Mesh, bounds};
 use glam::Vec3;
 use obvhs::triangle::Triangle;
-
-/// Greatest depth of a [`Bvh`] over any mesh: nodes on a path from the root to a leaf. A traversal
-/// stack of this many entries never overflows. Real scenes stay below 45 (Sponza: 38).
-pub const MAX_DEPTH: u32 = 64;
 
 /// Cost of a box beside a triangle: as where the tree is built.
 const BOX: f64 = 1.5;
@@ -200,20 +196,6 @@ fn in_halves(triangles: &[Triangle]) -> (Vec<BvhNode>, Vec<u32>) {
     over_boxes(&boxes.collect::<Vec<_>>(), Split::ByCount, MAX_LEAF)
 }
 
-/// Number of nodes on the longest path from the root to a leaf. `link` returns the first child and
-/// the number of primitives of a node.
-pub(super) fn depth(link: impl Fn(u32) -> (u32, u32)) -> u32 {
-    let mut deepest = 0;
-    let mut open = vec![(0u32, 1u32)];
-    while let Some((index, level)) = open.pop() {
-        deepest = deepest.max(level);
-        if let (first, 0) = link(index) {
-            open.extend([(first, level + 1), (first + 1, level + 1)]);
-        }
-    }
-    deepest
-}
-
 /// The least number of triangles of which subtrees become leaves, so that `most` nodes are left at
 /// most.
 fn largest_leaf(nodes: &[BvhNode], counts: &[u32], most: usize) -> u32 {
@@ -231,11 +213,6 @@ pub(super) fn cost_of(node: &BvhNode) -> f64 {
         0 => BOX * area(node),
         count => f64::from(count) * area(node),
     }
-}
-
-pub(super) fn area(node: &BvhNode) -> f64 {
-    let size = Vec3::from(node.max).as_dvec3() - Vec3::from(node.min).as_dvec3();
-    size.x * size.y + size.y * size.z + size.z * size.x
 }
 
 /// Returns the box of a node: of its triangles, or around its children's boxes.

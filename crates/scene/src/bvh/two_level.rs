@@ -3,9 +3,9 @@
 
 use super::{
     levels::levels,
-    node::BvhNode,
+    node::{BvhNode, MAX_DEPTH, area},
     top::{Split, over_boxes},
-    tree::{Bvh, MAX_DEPTH, area, cost_of, fitted_box},
+    tree::{Bvh, cost_of, fitted_box},
 };
 use crate::mesh::Mesh;
 use glam::Vec3;

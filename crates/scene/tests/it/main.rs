@@ -20,6 +20,7 @@ mod obj;
 mod outlines;
 mod park;
 mod polygons;
+mod quiet_faults;
 mod scene_files;
 mod scene_writer;
 mod sponza;

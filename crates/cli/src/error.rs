@@ -1,5 +1,6 @@
 //! Errors that end a command early, with their exit codes.
 
+use crate::terminal::stop;
 use skiagraph_compare::error::{CompareError, is_fatal};
 use std::{error::Error, io};
 
@@ -49,7 +50,11 @@ impl From<CompareError> for CliError {
         match error {
             CompareError::Request(text) => Self::Usage(text),
             CompareError::Input(text) => Self::Input(text),
-            CompareError::Interrupted { kept } => Self::Interrupted { kept },
+            CompareError::Interrupted { kept } => {
+                // Results are written next, which is not to be cut off.
+                stop::raised();
+                Self::Interrupted { kept }
+            }
             error => Self::Compare(error),
         }
     }

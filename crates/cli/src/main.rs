@@ -11,7 +11,8 @@ mod scene_selection;
 mod terminal;
 
 use args::cli::{Cli, Command};
-use clap::Parser;
+use clap::{Parser, error::ErrorKind};
+use error::CliError;
 use std::process::ExitCode;
 
 /// Without a session, in a container say, Mesa's loader asks for this folder and complains above
@@ -33,7 +34,17 @@ fn with_runtime_dir() {
 }
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Err(error) if error.kind() == ErrorKind::InvalidUtf8 => {
+            let argument = std::env::args_os().find(|argument| argument.to_str().is_none());
+            return terminal::console::report(&CliError::Usage(format!(
+                "the argument {:?} is not UTF-8, as scenes, methods and names are: rename the \
+                 file, or link it under another name",
+                argument.unwrap_or_default()
+            )));
+        }
+        parsed => parsed.unwrap_or_else(|error| error.exit()),
+    };
     #[cfg(unix)]
     with_runtime_dir();
     let gpu = &cli.gpu;

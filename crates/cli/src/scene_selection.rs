@@ -2,12 +2,13 @@
 
 use crate::args::shared::SceneArgs;
 use crate::error::CliError;
-use crate::terminal::console::note;
+use crate::terminal::{Terminal, console::note, progress};
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::scene::write_scene;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
 use skiagraph_compare::own_scene::OwnScene;
 use skiagraph_compare::own_scene_notes::{from_below, notes};
+use skiagraph_compare::sink::Sink;
 use skiagraph_compare::wording::did_you_mean;
 use skiagraph_scene::{
     CameraPath, ImportReport, MeshFile, Scene, SceneError, SceneFile, SceneLibrary, SceneRequest,
@@ -44,6 +45,13 @@ impl SceneSelection {
                 args.scene()
             )));
         }
+        progress::begin_quietly(&format!("loading {}", args.scene()), 1, "scenes");
+        let selection = Self::load_quietly(args, is_mesh);
+        Terminal.end_step(false);
+        selection
+    }
+
+    fn load_quietly(args: &SceneArgs, is_mesh: bool) -> Result<Self, CliError> {
         let library = SceneLibrary::from_environment();
         if let Some(file) = library.stand_in(args.scene()) {
             note(&format!(

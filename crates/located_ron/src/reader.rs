@@ -600,7 +600,11 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         R::ExpectedString => "a text in quotes",
         R::ExpectedArray => "a list `[…]`",
         R::ExpectedMap => "a map `{…}`",
-        R::ExpectedStructLike | R::ExpectedNamedStructLike(_) => "what has fields, `(name: …)`,",
+        // A tuple's first value stands where the name of a field is read.
+        R::ExpectedStructLike
+        | R::ExpectedNamedStructLike(_)
+        | R::ExpectedIdentifier
+        | R::SuggestRawIdentifier(_) => "what has fields, `(name: …)`,",
         R::ExpectedDifferentLength { expected, found } => {
             let count = expected.trim_start_matches(|c: char| !c.is_ascii_digit());
             let what = format!("{count} values are needed here, not {found}");

@@ -1,7 +1,7 @@
 //! Puts together a mesh of the triangles of a file: welds, drops and repairs.
 
 use crate::{
-    error::FaceRef,
+    error::{FaceRef, beginning, plural},
     indexed::geometric_normal,
     material::Material,
     mesh::{Group, Mesh, names_one_twice},
@@ -9,6 +9,7 @@ use crate::{
     weld::{UvWelder, Welder},
 };
 use glam::{DVec3, Vec2};
+use std::collections::BTreeMap;
 
 /// A corner of a face: welded position, and what the file gives it.
 #[derive(Clone, Copy)]
@@ -24,6 +25,8 @@ pub(crate) struct MeshBuilder {
     pub positions: Welder,
     normals: Welder,
     uvs: UvWelder,
+    /// Triangles of which a corner has no texture coordinates, or none that are finite.
+    without_uvs: Vec<u32>,
     mesh: Mesh,
     pub report: ImportReport,
 }
@@ -68,6 +71,10 @@ impl MeshBuilder {
             }),
         }
         if let Some(material) = material {
+            let is_there = |corner: &Corner| corner.uv.is_some_and(Vec2::is_finite);
+            if !corners.iter().all(is_there) {
+                self.without_uvs.push(primitive);
+            }
             let uvs = corners.map(|corner| self.uvs.index(corner.uv.unwrap_or(Vec2::ZERO)));
             self.mesh.surfaces.uv_indices.push(uvs);
             self.mesh.surfaces.of.push(material);
@@ -79,9 +86,45 @@ impl MeshBuilder {
         self.positions.values[index as usize].as_dvec3()
     }
 
+    /// Gives masked triangles without texture coordinates an opaque material, and says so.
+    fn without_masks(&mut self, mut materials: Vec<Material>) -> Vec<Material> {
+        // By the number of the masked material: the opaque one, its triangles and the first.
+        let mut opaque: BTreeMap<u32, (u32, usize, u32)> = BTreeMap::new();
+        for primitive in std::mem::take(&mut self.without_uvs) {
+            let masked = self.mesh.surfaces.of[primitive as usize];
+            let mask = materials
+                .get(masked as usize)
+                .and_then(|of| of.mask.as_ref());
+            // One of a single texel needs no coordinates.
+            if mask.is_none_or(|mask| mask.size == [1, 1]) {
+                continue;
+            }
+            let (number, count, _) = opaque.entry(masked).or_insert_with(|| {
+                let own = materials[masked as usize].clone();
+                materials.push(Material { mask: None, ..own });
+                (materials.len() as u32 - 1, 0, primitive)
+            });
+            *count += 1;
+            self.mesh.surfaces.of[primitive as usize] = *number;
+        }
+        for (number, count, first) in opaque.into_values() {
+            let mut groups = self.mesh.groups.iter();
+            let first = groups.find(|group| group.triangles.contains(&first));
+            self.report.remark(format!(
+                "material {:?}: {} without finite texture coordinates, by which its mask is \
+                 looked up, the first in {:?}: opaque there",
+                beginning(&materials[number as usize].name),
+                plural(count, "triangle", "triangles"),
+                beginning(first.map_or("", |group| &group.name)),
+            ));
+        }
+        materials
+    }
+
     /// Returns the mesh and the report of its import. `materials` are given only if every triangle
     /// has one.
     pub fn finish(mut self, materials: Vec<Material>) -> (Mesh, ImportReport) {
+        let materials = self.without_masks(materials);
         self.mesh.positions = self.positions.values;
         self.mesh.normals = self.normals.values;
         self.mesh.surfaces.uvs = self.uvs.values;

@@ -57,8 +57,12 @@ impl Limit {
     /// # Errors
     /// The errors of [`Self::read`]; bytes that are neither encoding.
     pub fn read_text(&self, path: &Path) -> io::Result<String> {
-        String::from_utf8(without_mark(&self.read(path)?).into_owned())
-            .map_err(|_| io::Error::new(io::ErrorKind::InvalidData, "it is not UTF-8 text"))
+        String::from_utf8(without_mark(&self.read(path)?).into_owned()).map_err(|_| {
+            io::Error::new(
+                io::ErrorKind::InvalidData,
+                "it is not UTF-8 text: save it in that encoding",
+            )
+        })
     }
 
     fn exceeded(&self, length: &str) -> io::Error {

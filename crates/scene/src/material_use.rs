@@ -14,4 +14,7 @@ pub enum MaterialUse {
     /// Colours, their textures and masks are read. A mask that cannot be read is an error.
     #[default]
     All,
+    /// Everything that `All` reads. Surfaces of a glTF file whose `alphaMode` is `BLEND` get masks,
+    /// too: they are cut out where alpha is below 0.5.
+    BlendMask,
 }

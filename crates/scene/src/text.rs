@@ -1,6 +1,10 @@
 //! Text of files that other programs wrote: byte order marks and encodings.
 
-use std::borrow::Cow;
+use std::{
+    borrow::Cow,
+    ffi::OsString,
+    path::{Path, PathBuf},
+};
 
 /// The mark at the beginning of a file in UTF-8 that some editors write.
 const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -67,6 +71,35 @@ pub(crate) fn line_text(line: &[u8]) -> Cow<'_, str> {
     }
 }
 
+/// The bytes of a text in Windows-1252, if it has no other characters: the reverse of
+/// [`line_text`].
+fn windows_1252(text: &str) -> Option<Vec<u8>> {
+    let byte = |character: char| {
+        let place = WINDOWS_1252.iter().position(|other| *other == character);
+        place.map_or(u8::try_from(character).ok(), |place| {
+            Some(0x80 + place as u8)
+        })
+    };
+    text.chars().map(byte).collect()
+}
+
+/// A name of a file from its bytes, which are in any encoding where file names are.
+fn file_name(bytes: Vec<u8>) -> PathBuf {
+    #[cfg(unix)]
+    let name = <OsString as std::os::unix::ffi::OsStringExt>::from_vec(bytes);
+    #[cfg(not(unix))]
+    let name = OsString::from(line_text(&bytes).into_owned());
+    name.into()
+}
+
+/// The file of that name in a folder. Its name may be in the encoding that the text was read from.
+pub(crate) fn file_in(folder: &Path, name: &str) -> PathBuf {
+    let path = folder.join(name);
+    let bytes = windows_1252(name).filter(|_| !name.is_ascii() && !path.exists());
+    let other = bytes.map(|bytes| folder.join(file_name(bytes)));
+    other.filter(|other| other.exists()).unwrap_or(path)
+}
+
 /// The part of a statement before a comment.
 pub(crate) fn without_comment(rest: &str) -> &str {
     rest.split('#').next().unwrap_or("")
@@ -110,5 +143,8 @@ mod tests {
         let all: Vec<u8> = (0..=255).collect();
         let characters: std::collections::HashSet<char> = line_text(&all).chars().collect();
         assert_eq!(characters.len(), 256);
+        assert_eq!(windows_1252(&line_text(&all)), Some(all));
+        assert_eq!(windows_1252("größe €").unwrap(), b"gr\xf6\xdfe \x80");
+        assert_eq!(windows_1252("Ω"), None);
     }
 }

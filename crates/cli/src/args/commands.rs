@@ -338,7 +338,7 @@ pub struct RunArgs {
 }
 
 /// Arguments of `skiagraph profile`.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct ProfileArgs {
     /// Presets by name, or graphs (.ron). `crsm@n=1,depth=plane` is a method with params of its
     /// own.
@@ -388,7 +388,7 @@ pub struct ProfileArgs {
 }
 
 /// Arguments of `skiagraph stress`.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct StressArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
     /// `crsm@n=1,depth=plane` is a method with params of its own. Without any: all presets, those

@@ -131,6 +131,9 @@ pub enum Materials {
     Color,
     /// None; files of materials and textures may be missing.
     Ignore,
+    /// As `all`, and what a glTF file blends is masked: cut out where alpha is below 0.5.
+    #[value(name = "blend=mask")]
+    BlendMask,
 }
 
 impl From<Materials> for MaterialUse {
@@ -139,6 +142,7 @@ impl From<Materials> for MaterialUse {
             Materials::All => Self::All,
             Materials::Color => Self::Color,
             Materials::Ignore => Self::Ignore,
+            Materials::BlendMask => Self::BlendMask,
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::args::commands::{CheckArgs, CheckFormat};
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::terminal::console::{print, report};
-use crate::terminal::{Terminal, interrupt};
+use crate::terminal::{Terminal, interrupt, stop};
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::files::watch::{self, Watch};
 use skiagraph_compare::graphs::faults::{GraphFaults, warn};
@@ -49,7 +49,7 @@ pub fn check(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             report(&error);
         }
         while changes.recv_timeout(LISTENING).is_err() {
-            if interrupt::raised() {
+            if stop::raised() {
                 return Ok(());
             }
         }

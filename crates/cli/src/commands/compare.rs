@@ -121,6 +121,7 @@ impl Loaded {
         gpu: &GpuArgs,
         words: impl Iterator<Item = OsString>,
     ) -> Result<Self, CliError> {
+        interrupt::install()?;
         let scenes = args.scene.each()?;
         let published = published::read(&args.published)?;
         let sources = preset::sources(&Terminal);
@@ -136,7 +137,6 @@ impl Loaded {
         let loaded = methods.iter().map(|method| &method.preset.graph);
         let gpu = device::open(&gpu.request(), loaded)?;
         let session = Session::new(&gpu, &Terminal);
-        interrupt::install()?;
         let targets = Target::all(args)?;
         let command = command_line(words);
         let comparison = |scene| -> Result<Comparison, CliError> {
@@ -293,6 +293,12 @@ fn measure(
             args.scene.scenes.len()
         ));
     }
+    let file = folder.join("results.json");
+    interrupt::on_end_in_the_middle(move || {
+        let file = file.display();
+        let kept = format!("finished runs are kept in {file}; {RESUME}");
+        Err(CliError::Interrupted { kept })
+    });
     let mut series = Series::new(comparison, session, Some((folder, kept(args))))?;
     write_graphs(comparison, folder, session)?;
     let outcome = run(args, comparison, &mut series);
@@ -449,6 +455,9 @@ fn overview(args: &CompareArgs, targets: &[Target], all: &[Results]) -> Result<(
     Ok(())
 }
 
+/// The way out after Ctrl-C.
+const RESUME: &str = "the same command with --resume goes on from there";
+
 /// Says what came of a scene, and returns its results.
 fn finish(
     args: &CompareArgs,
@@ -468,13 +477,12 @@ fn finish(
     let Series {
         results, broken, ..
     } = series;
-    let resume = "the same command with --resume goes on from there";
     let file = folder.join("results.json");
     let mut kept = match results.runs.len() {
-        0 if measured.finished > 0 => format!("no run was finished; {resume}"),
+        0 if measured.finished > 0 => format!("no run was finished; {RESUME}"),
         0 => "no run was finished".into(),
         done => format!(
-            "{done} of {planned} runs are kept in {}; {resume}",
+            "{done} of {planned} runs are kept in {}; {RESUME}",
             file.display()
         ),
     };

@@ -6,7 +6,7 @@ use crate::commands::compare::note_without_map;
 use crate::error::CliError;
 use crate::scene_selection::SceneSelection;
 use crate::terminal::console::{note, print};
-use crate::terminal::{Terminal, interrupt};
+use crate::terminal::{Terminal, interrupt, stop};
 use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::json;
@@ -58,7 +58,9 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
                 let mut profile;
                 let count = [args.warmup, args.frames];
                 (profile, timed) = match profiling::profile(session, count, &method, &scene, view) {
-                    Err(CompareError::Interrupted { .. }) if !profiles.is_empty() => {
+                    Err(CompareError::Interrupted { .. })
+                        if !profiles.is_empty() && stop::raised() =>
+                    {
                         return interrupted(args, &profiles, planned);
                     }
                     measured => measured?,
@@ -67,7 +69,10 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
                 profile.baseline = old.map(|(path, old)| profile.against(path, old));
                 let is_whole = timed.len() >= args.frames as usize;
                 profiles.push(profile);
-                if !is_whole && planned > 1 {
+                if is_whole {
+                    let (args, profiles) = (args.clone(), profiles.clone());
+                    interrupt::on_end_in_the_middle(move || interrupted(&args, &profiles, planned));
+                } else if stop::raised() && planned > 1 {
                     return interrupted(args, &profiles, planned);
                 }
             }

@@ -27,7 +27,7 @@ use skiagraph_compare::wording::{command_line, plural};
 use skiagraph_gpu::timing::Trust;
 use skiagraph_passes::SceneProvider;
 use skiagraph_report::stress_matrix;
-use std::{path::Path, sync::Arc};
+use std::sync::Arc;
 
 /// Checks all arguments, then runs the methods on the cases and prints and saves the results.
 ///
@@ -90,7 +90,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         cases: Vec::new(),
     };
     interrupt::install()?;
-    let outcome = run(&context, &cases, &mut report, args.out.as_deref());
+    let outcome = run(&context, &cases, &mut report, args);
     finish(&report, outcome, cases.len(), args)
 }
 
@@ -99,16 +99,21 @@ fn run(
     context: &HardCaseContext,
     cases: &[HardCase],
     report: &mut Report,
-    out: Option<&Path>,
+    args: &StressArgs,
 ) -> Result<(), CliError> {
     progress::begin_quietly("hard cases", cases.len() as u64, "cases");
     let outcome = (0..).zip(cases).try_for_each(|(done, case)| {
         progress::set_part(case.name);
         Terminal.set_done(done);
         report.cases.push(context.run(case)?);
-        if let Some(folder) = out {
+        if let Some(folder) = &args.out {
             write_whole(&folder.join("stress.json"), to_text(report).as_bytes())?;
         }
+        let (report, args, wanted) = (report.clone(), args.clone(), cases.len());
+        interrupt::on_end_in_the_middle(move || {
+            let kept = String::new();
+            finish(&report, Err(CliError::Interrupted { kept }), wanted, &args)
+        });
         Ok(())
     });
     Terminal.end_step(outcome.is_ok());

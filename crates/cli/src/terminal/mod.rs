@@ -3,5 +3,6 @@
 pub mod console;
 pub mod interrupt;
 pub mod progress;
+pub mod stop;
 
 pub use progress::Terminal;

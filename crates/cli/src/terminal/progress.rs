@@ -3,7 +3,7 @@
 //! end of each step instead.
 
 use crate::terminal::console::{self, note};
-use crate::terminal::interrupt;
+use crate::terminal::stop;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use skiagraph_compare::sink::Sink;
 use skiagraph_graph::{Diagnostic, diagnostics};
@@ -189,7 +189,7 @@ impl Sink for Terminal {
     }
 
     fn stop(&self) -> &AtomicBool {
-        interrupt::flag()
+        stop::flag()
     }
 }
 

@@ -281,6 +281,48 @@ fn ctrl_c_in_the_reference_ends_with_nothing_half_done() {
     assert!(!folder.path().join("o/results.json").exists());
 }
 
+/// Neither a mesh that is made nor a hierarchy that is built looks for a stop.
+#[test]
+fn ctrl_c_ends_the_program_in_the_middle_of_work_that_takes_no_notice() {
+    let folder = folder();
+    let city = "--scene city:1000000 --size 16x16 --out o";
+    let loading = format!("compare rt --map-size 64 --frames 1 {city}");
+    let hierarchy = format!("compare light.ron --frames 1 {city}");
+    let kept = "finished runs are kept in o/results.json; the same command with --resume goes on";
+    let lost = "what was under way is lost";
+    for (line, at, told) in [
+        (loading, "--map-size has no effect", lost),
+        (hierarchy, "starting hierarchy of city", kept),
+        (format!("truth {city}"), "starting hierarchy of city", lost),
+    ] {
+        let (code, stderr) = interrupted(folder.path(), &line, at, Duration::ZERO);
+        assert_eq!(code, 130, "{line}: {stderr}");
+        assert!(
+            stderr.contains(&format!("stopped by Ctrl-C; {told}")),
+            "{line}: {stderr}"
+        );
+        assert!(!folder.path().join("o/results.json").exists(), "{line}");
+    }
+}
+
+/// Scenes and methods are named by text; the argument is shown with the way out.
+#[test]
+fn an_argument_that_is_not_utf_8_is_named_with_the_way_out() {
+    use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
+    let mut command = command(Path::new("."), "compare rt --scene");
+    let output = command
+        .arg(OsStr::from_bytes(b"bl\xe4tter.obj"))
+        .output()
+        .unwrap();
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    let told = r#"error: the argument "bl\xE4tter.obj" is not UTF-8"#;
+    assert!(
+        stderr.starts_with(told) && stderr.contains("rename the file"),
+        "{stderr}"
+    );
+}
+
 #[test]
 fn an_out_that_takes_no_files_is_found_before_anything_is_measured() {
     let folder = folder();

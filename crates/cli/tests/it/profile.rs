@@ -297,6 +297,10 @@ fn an_interrupt_keeps_the_frames_that_were_timed() {
                 "{rest}"
             );
         }
-        Err(_) => assert!(rest.contains("no frame was timed"), "{rest}"),
+        // Or faster than the driver, which compiles a shader.
+        Err(_) => assert!(
+            rest.contains("no frame was timed") || rest.contains("what was under way is lost"),
+            "{rest}"
+        ),
     }
 }

@@ -1,12 +1,13 @@
-//! Building by obvhs: PLOC (Meister and Bittner 2018) with parallel reinsertion (Meister and
-//! Bittner 2018).
+//! Building: clusters of boxes, then parallel reinsertion by obvhs (Meister and Bittner 2018).
 
-use super::node::MAX_LEAF;
+use super::{
+    node::{MAX_DEPTH, MAX_LEAF, depth},
+    ploc::cluster,
+};
 use glam::Vec3;
 use obvhs::{
-    BvhBuildParams,
-    bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer},
-    ploc::PlocBuilder,
+    aabb::Aabb,
+    bvh2::{Bvh2, leaf_collapser::collapse, node::Bvh2Node, reinsertion::ReinsertionOptimizer},
     triangle::Triangle,
 };
 #[cfg(feature = "rayon")]
@@ -21,13 +22,14 @@ pub(super) fn measurable(bounds: Option<(Vec3, Vec3)>) -> bool {
     })
 }
 
-/// obvhs's `slow_build` with two changes. Triangles stay whole (no spatial splits): a split one
-/// would be tested, and counted, more than once. And leaves are smaller: on Sponza's shadow rays a
-/// traversal cost of 1.5 instead of 3 halves the triangle tests (8.0 → 4.2 per ray) for 5 % more
-/// box tests (64.5 → 67.6), and a watertight triangle test costs several boxes. The faster presets
-/// build in a third of the time for as many boxes; half a second for Sponza on two cores is little
-/// beside its import.
-pub(super) fn ploc(triangles: &[Triangle]) -> Bvh2 {
+/// Does what obvhs's `slow_build` does, with three changes. Triangles stay whole (no spatial
+/// splits): a split one would be tested, and counted, more than once. Leaves are smaller: on
+/// Sponza's shadow rays a traversal cost of 1.5 instead of 3 halves the triangle tests (8.0 → 4.2
+/// per ray) for 5 % more box tests (64.5 → 67.6), and a watertight triangle test costs several
+/// boxes. And it gives up, `None`, where the tree becomes deeper than [`MAX_DEPTH`]. The faster
+/// presets build in a third of the time for as many boxes; half a second for Sponza on two cores is
+/// little beside its import.
+pub(super) fn ploc(triangles: &[Triangle]) -> Option<Bvh2> {
     #[cfg(feature = "rayon")]
     if triangles.len() < FEW
         && let Some(alone) = &*ALONE
@@ -50,26 +52,26 @@ static ALONE: LazyLock<Option<rayon::ThreadPool>> = LazyLock::new(|| {
     pool.build().ok()
 });
 
-fn on_these_threads(triangles: &[Triangle]) -> Bvh2 {
-    let params = BvhBuildParams {
-        collapse_traversal_cost: 1.5,
-        ..BvhBuildParams::slow_build()
-    };
-    // The steps of obvhs's own `build_bvh2`, which would validate the tree by panicking in debug
-    // builds.
-    let indices = (0..triangles.len() as u32).collect();
-    let mut tree = PlocBuilder::with_capacity(triangles.len()).build(
-        params.ploc_search_distance,
-        triangles,
-        indices,
-        params.sort_precision,
-        params.search_depth_threshold,
-    );
+fn on_these_threads(triangles: &[Triangle]) -> Option<Bvh2> {
+    let boxes: Vec<Aabb> = triangles.iter().map(Triangle::aabb).collect();
+    let mut tree = cluster(&boxes);
     let mut optimizer = ReinsertionOptimizer::default();
-    optimizer.run(&mut tree, params.reinsertion_batch_ratio, None);
-    collapse(&mut tree, MAX_LEAF, params.collapse_traversal_cost);
-    let again =
-        params.reinsertion_batch_ratio * params.post_collapse_reinsertion_batch_ratio_multiplier;
-    optimizer.run(&mut tree, again, None);
-    tree
+    let link = |node: &Bvh2Node| (node.first_index, node.prim_count);
+    // The stack of a search holds twice as many: a step makes the tree a few times as deep at most.
+    tree.max_depth = 4 * MAX_DEPTH as usize;
+    for (is_first, share) in [(true, 0.2), (false, 0.4)] {
+        if !is_first {
+            collapse(&mut tree, MAX_LEAF, 1.5);
+        }
+        // obvhs's own steps. Each costs the number of nodes times the depth, which grows from step
+        // to step on a fan of many triangles, say.
+        for step in (1u8..32).step_by(4) {
+            if depth(|index| link(&tree.nodes[index as usize])) > MAX_DEPTH {
+                return None;
+            }
+            let steps = [step, step + 2].map(|step| 1.0 / f32::from(step));
+            optimizer.run(&mut tree, share, Some(steps.to_vec()));
+        }
+    }
+    Some(tree)
 }

@@ -3,13 +3,13 @@
 mod build;
 mod levels;
 mod light_space;
-mod median;
 mod node;
+mod ploc;
 mod top;
 mod tree;
 mod two_level;
 
 pub use light_space::{LightSpace, LightSpaceNode};
-pub use node::BvhNode;
-pub use tree::{Bvh, MAX_DEPTH};
+pub use node::{BvhNode, MAX_DEPTH};
+pub use tree::Bvh;
 pub use two_level::{Moved, Piece, Refit, TwoLevelBvh};

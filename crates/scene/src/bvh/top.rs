@@ -1,7 +1,8 @@
-//! The top level of a hierarchy: a tree over boxes, each of which is a leaf. It is built in every
-//! frame in which one of them moves, by the thread that asks for it: waking others takes longer.
+//! Trees over boxes from the top down: the top level of a hierarchy, and the tree of last resort.
+//! The top level is built in every frame in which one of its boxes moves, by the thread that asks
+//! for it: waking others takes longer.
 
-use super::{node::BvhNode, tree::area};
+use super::node::{BvhNode, area};
 use crate::mesh::bounds;
 use glam::{DVec3, Vec3};
 
@@ -18,8 +19,9 @@ pub(super) enum Split {
     ByCount,
 }
 
-/// Builds a tree over at least one box. The `first` of a leaf is the number of its box.
-pub(super) fn over_boxes(boxes: &[BvhNode], split: Split) -> Vec<BvhNode> {
+/// Builds a tree over at least one box, with at most `most` of them in a leaf. Returns its nodes,
+/// and the numbers of the boxes in the order of the leaves.
+pub(super) fn over_boxes(boxes: &[BvhNode], split: Split, most: u32) -> (Vec<BvhNode>, Vec<u32>) {
     let centres = boxes.iter().map(|of| {
         let [low, high] = [of.min, of.max].map(|corner| Vec3::from(corner).as_dvec3());
         low + high
@@ -35,11 +37,11 @@ pub(super) fn over_boxes(boxes: &[BvhNode], split: Split) -> Vec<BvhNode> {
         let (min, max) = bounds(corners).unwrap_or_default();
         let mut node = BvhNode {
             min: min.into(),
-            first: ids[0],
+            first: range.start as u32,
             max: max.into(),
-            count: 1,
+            count: range.len() as u32,
         };
-        if ids.len() > 1 {
+        if node.count > most {
             let by_area = (split == Split::ByArea && ids.len() > 2)
                 .then(|| by_area(ids, boxes, &centres))
                 .flatten();
@@ -52,7 +54,7 @@ pub(super) fn over_boxes(boxes: &[BvhNode], split: Split) -> Vec<BvhNode> {
         }
         nodes[slot] = node;
     }
-    nodes
+    (nodes, ids)
 }
 
 /// The lowest and highest centre.

@@ -2,16 +2,12 @@
 
 use super::{
     build::{measurable, ploc},
-    median,
-    node::BvhNode,
+    node::{BvhNode, MAX_DEPTH, MAX_LEAF, area, depth},
+    top::{Split, over_boxes},
 };
 use crate::mesh::{Mesh, bounds};
 use glam::Vec3;
 use obvhs::triangle::Triangle;
-
-/// Greatest depth of a [`Bvh`] over any mesh: nodes on a path from the root to a leaf. A traversal
-/// stack of this many entries never overflows. Real scenes stay below 45 (Sponza: 38).
-pub const MAX_DEPTH: u32 = 64;
 
 /// Cost of a box beside a triangle: as where the tree is built.
 const BOX: f64 = 1.5;
@@ -33,7 +29,8 @@ pub struct Bvh {
 impl Bvh {
     /// Creates a tree of nodes and primitives in order.
     fn new(nodes: Vec<BvhNode>, primitives: Vec<u32>) -> Self {
-        let depth = depth(&nodes);
+        let link = |node: &BvhNode| (node.first, node.count);
+        let depth = depth(|index| link(&nodes[index as usize]));
         Self {
             nodes,
             primitives,
@@ -64,7 +61,7 @@ impl Bvh {
         }
         let tree = Self::by_ploc(triangles).filter(|tree| tree.depth <= depth);
         tree.unwrap_or_else(|| {
-            let (nodes, primitives) = median::build(triangles);
+            let (nodes, primitives) = in_halves(triangles);
             Self::new(nodes, primitives)
         })
     }
@@ -72,7 +69,8 @@ impl Bvh {
     /// Builds it by PLOC; `None` where that has nothing to compare, or chains its triangles.
     pub(super) fn by_ploc(triangles: &[Triangle]) -> Option<Self> {
         let corners = triangles.iter().flat_map(|of| [of.v0, of.v1, of.v2]);
-        let tree = measurable(bounds(corners.map(Vec3::from))).then(|| ploc(triangles))?;
+        let is_measurable = measurable(bounds(corners.map(Vec3::from)));
+        let tree = is_measurable.then(|| ploc(triangles)).flatten()?;
         let nodes = tree.nodes.iter().map(|node| BvhNode {
             min: node.aabb.min.into(),
             first: node.first_index,
@@ -186,18 +184,16 @@ impl Bvh {
     }
 }
 
-fn depth(nodes: &[BvhNode]) -> u32 {
-    let mut deepest = 0;
-    let mut open = vec![(0u32, 1u32)];
-    while let Some((index, level)) = open.pop() {
-        deepest = deepest.max(level);
-        let node = nodes[index as usize];
-        if node.count == 0 {
-            open.push((node.first, level + 1));
-            open.push((node.first + 1, level + 1));
-        }
-    }
-    deepest
+/// The nodes, and primitives in order, of the tree of last resort, whose depth is the logarithm of
+/// the number of triangles. Meshes need it that span the range of f32, or whose best tree is a
+/// chain: triangles that grow geometrically, or that share a corner.
+fn in_halves(triangles: &[Triangle]) -> (Vec<BvhNode>, Vec<u32>) {
+    let boxes = triangles.iter().map(|triangle| BvhNode {
+        min: triangle.v0.min(triangle.v1).min(triangle.v2).into(),
+        max: triangle.v0.max(triangle.v1).max(triangle.v2).into(),
+        ..BvhNode::default()
+    });
+    over_boxes(&boxes.collect::<Vec<_>>(), Split::ByCount, MAX_LEAF)
 }
 
 /// The least number of triangles of which subtrees become leaves, so that `most` nodes are left at
@@ -217,11 +213,6 @@ pub(super) fn cost_of(node: &BvhNode) -> f64 {
         0 => BOX * area(node),
         count => f64::from(count) * area(node),
     }
-}
-
-pub(super) fn area(node: &BvhNode) -> f64 {
-    let size = Vec3::from(node.max).as_dvec3() - Vec3::from(node.min).as_dvec3();
-    size.x * size.y + size.y * size.z + size.z * size.x
 }
 
 /// Returns the box of a node: of its triangles, or around its children's boxes.
@@ -259,7 +250,7 @@ mod tests {
             })
             .collect();
         assert!(Bvh::by_ploc(&triangles).is_none());
-        let (nodes, primitives) = median::build(&triangles);
+        let (nodes, primitives) = in_halves(&triangles);
         assert!(Bvh::new(nodes, primitives).depth < 8);
     }
 }

@@ -3,15 +3,13 @@
 
 use super::{
     levels::levels,
-    node::BvhNode,
+    node::{BvhNode, MAX_DEPTH, area},
     top::{Split, over_boxes},
-    tree::{Bvh, MAX_DEPTH, area, cost_of, fitted_box},
+    tree::{Bvh, cost_of, fitted_box},
 };
 use crate::mesh::Mesh;
 use glam::Vec3;
 use obvhs::triangle::Triangle;
-#[cfg(feature = "rayon")]
-use rayon::prelude::*;
 use std::{collections::BTreeMap, ops::Range, sync::Arc};
 
 /// A piece is built anew when a deformation has made its rays this many times as dear as they were.
@@ -109,13 +107,10 @@ impl TwoLevelBvh {
         let count = filled.count();
         let is_first =
             |&piece: &usize| pieces[piece].copy_of == piece && !pieces[piece].triangles.is_empty();
-        let firsts: Vec<usize> = (0..pieces.len()).filter(is_first).collect();
         let depth = depth_left(count);
-        #[cfg(feature = "rayon")]
-        let firsts = firsts.into_par_iter();
-        #[cfg(not(feature = "rayon"))]
-        let firsts = firsts.into_iter();
-        let trees = firsts.map(|piece| {
+        // One after the other: a thread of a pool that waits for one tree takes up the next on the
+        // same stack, which thousands of pieces overflow.
+        let trees = (0..pieces.len()).filter(is_first).map(|piece| {
             let triangles = triangles(at_rest, pieces[piece].triangles);
             (piece, Bvh::within(&triangles, depth))
         });
@@ -568,18 +563,17 @@ impl TwoLevelBvh {
                 let roots = leaves.iter().map(|leaf| leaf.root);
                 let roots: Vec<BvhNode> = roots.collect();
                 let depths: Vec<u32> = leaves.iter().map(|leaf| leaf.depth).collect();
-                let tree = over_boxes(&roots, Split::ByArea);
-                let tree = if deepest(&tree, &depths) <= MAX_DEPTH {
-                    tree
-                } else {
-                    over_boxes(&roots, Split::ByCount)
-                };
+                let mut top = over_boxes(&roots, Split::ByArea, 1);
+                if deepest(&top, &depths) > MAX_DEPTH {
+                    top = over_boxes(&roots, Split::ByCount, 1);
+                }
+                let (tree, order) = top;
                 let place = |node: &BvhNode| match node.count {
                     0 => BvhNode {
                         first: self.top.start as u32 + node.first - 1,
                         ..*node
                     },
-                    _ => roots[node.first as usize],
+                    _ => roots[order[node.first as usize] as usize],
                 };
                 tree.iter().map(place).collect()
             }
@@ -637,14 +631,14 @@ fn triangles(mesh: &Mesh, ids: &[u32]) -> Vec<Triangle> {
 }
 
 /// The depth of a top level together with the trees that are its leaves.
-fn deepest(top: &[BvhNode], depths: &[u32]) -> u32 {
+fn deepest((top, order): &(Vec<BvhNode>, Vec<u32>), depths: &[u32]) -> u32 {
     let mut deepest = 0;
     let mut open = vec![(0u32, 0u32)];
     while let Some((index, above)) = open.pop() {
         let node = top[index as usize];
         match node.count {
             0 => open.extend([(node.first, above + 1), (node.first + 1, above + 1)]),
-            _ => deepest = deepest.max(above + depths[node.first as usize]),
+            _ => deepest = deepest.max(above + depths[order[node.first as usize] as usize]),
         }
     }
     deepest

@@ -5,6 +5,7 @@ use super::{
     beside::{index, items},
     buffers::{Buffers, GLTF_FILE, data_uri, path_of},
     extensions::{self, Kind},
+    nodes::unit,
 };
 use crate::error::{beginning, plural};
 use glam::{DQuat, DVec3};
@@ -157,15 +158,10 @@ impl Animations {
             "translation" => Values::Translation(vectors()),
             "scale" => Values::Scale(vectors()),
             _ => {
-                let turns = values.chunks_exact(4).map(DQuat::from_slice);
-                let unit = |turn: DQuat| {
-                    if turn.length_squared() > 0.0 {
-                        Ok(turn.normalize())
-                    } else {
-                        Err("a rotation is 0, 0, 0, 0".to_owned())
-                    }
-                };
-                Values::Rotation(turns.map(unit).collect::<Result<_, _>>()?)
+                let turns = values.chunks_exact(4);
+                let turns = turns.map(|turn| unit(DQuat::from_slice(turn)));
+                let turns: Option<_> = turns.collect();
+                Values::Rotation(turns.ok_or("a rotation is 0, 0, 0, 0")?)
             }
         };
         Ok(Track {
@@ -268,7 +264,7 @@ impl Animations {
         if let Some(decoded) = data_uri(uri) {
             return Ok(decoded?.into());
         }
-        let path = bytes.folder.join(&*path_of(uri));
+        let path = path_of(bytes.folder, uri);
         let read = GLTF_FILE.read(&path);
         let read = read.map_err(|why| format!("cannot read {}: {why}", path.display()))?;
         Ok(read.into())

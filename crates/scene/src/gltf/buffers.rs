@@ -1,9 +1,17 @@
 //! The bytes of buffers and images: in the file itself, in data URIs, or in files beside it.
 
 use super::beside::Beside;
-use crate::{error::beginning, limit::Limit};
+use crate::{
+    error::beginning,
+    limit::Limit,
+    text::{file_in, line_text},
+};
 use base64::{Engine, engine::general_purpose::STANDARD};
-use std::{borrow::Cow, collections::HashMap, path::Path, sync::Arc};
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 /// Some hundred million triangles.
 pub(super) const GLTF_FILE: Limit = Limit {
@@ -29,11 +37,9 @@ pub(super) fn data_uri(uri: &str) -> Option<Result<Vec<u8>, String>> {
     Some(decoded.map_err(|why| format!("the data URI is not base64: {why}")))
 }
 
-/// A path in a URI, whose odd characters are written as `%20`.
-pub(super) fn path_of(uri: &str) -> Cow<'_, str> {
-    if !uri.contains('%') {
-        return uri.into();
-    }
+/// The file that a URI names, whose odd characters are written as `%20`. Its bytes may be in any
+/// encoding.
+pub(super) fn path_of(folder: &Path, uri: &str) -> PathBuf {
     let bytes = uri.as_bytes();
     let mut decoded = Vec::with_capacity(bytes.len());
     let mut at = 0;
@@ -43,7 +49,7 @@ pub(super) fn path_of(uri: &str) -> Cow<'_, str> {
         decoded.push(byte.unwrap_or(bytes[at]));
         at += if byte.is_some() { 3 } else { 1 };
     }
-    String::from_utf8(decoded).map_or(uri.into(), Cow::Owned)
+    file_in(folder, &line_text(&decoded))
 }
 
 /// The bytes of a document's buffers.
@@ -89,7 +95,7 @@ pub(super) fn read(
                 gltf::buffer::Source::Uri(uri) => match data_uri(uri) {
                     Some(decoded) => decoded.map_err(fail)?,
                     None => {
-                        let path = folder.join(&*path_of(uri));
+                        let path = path_of(folder, uri);
                         GLTF_FILE
                             .read(&path)
                             .map_err(|why| fail(format!("cannot read {}: {why}", path.display())))?

@@ -3,7 +3,7 @@
 use super::{
     animations::{Bytes, Track, Values},
     names::Names,
-    nodes::{Nodes, part},
+    nodes::{Nodes, local, part, parts},
     placements::Placements,
 };
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
     motion::{Motion, PartMotion, PoseKey},
     path::{CameraKey, CameraPath, LightKey},
 };
-use glam::{DMat3, DMat4, DQuat, DVec3, Mat4};
+use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::{Document, Node};
 use serde_json::Value;
 use std::collections::HashMap;
@@ -205,16 +205,8 @@ impl<'a> Poses<'a> {
             for child in node.children() {
                 parents.insert(child.index(), node.index());
             }
-            let matrix = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
-            poses.locals.insert(node.index(), matrix);
-            let (shift, turn, scale) = node.transform().decomposed();
-            let turn = DQuat::from_array(turn.map(f64::from));
-            let parts = (
-                DVec3::from(shift.map(f64::from)),
-                turn,
-                DVec3::from(scale.map(f64::from)),
-            );
-            poses.parts.insert(node.index(), parts);
+            poses.locals.insert(node.index(), local(&node));
+            poses.parts.insert(node.index(), parts(&node));
         }
         // Nodes that stand somewhere have one parent each, and no circles.
         for &node in source.nodes.worlds.keys() {

@@ -8,7 +8,7 @@ use super::{
     placements::Placements,
     prepare::prepare,
 };
-use crate::{border::caught, material_use::MaterialUse};
+use crate::{border::caught, material_use::MaterialUse, text::line_text};
 use gltf::{
     Document, Error,
     json::{Root, deserialize, mesh::Semantic, validation::Checked},
@@ -38,13 +38,15 @@ pub(super) fn parse(bytes: &[u8], materials: MaterialUse) -> Result<Parsed, Faul
         let why = format!("it has {values} values, {MOST_VALUES} at most: split the file");
         return Err(("its JSON".to_owned(), why));
     }
-    let mut value: Value = deserialize::from_slice(&text).map_err(|why| in_json(&why))?;
+    // JSON is UTF-8; some exporters write names in other encodings.
+    let text = line_text(&text);
+    let mut value: Value = deserialize::from_str(&text).map_err(|why| in_json(&why))?;
     check_version(&mut value)?;
     let placements = Placements::read(&value);
     let beside = prepare(&mut value, materials)?;
     let root: Root = deserialize::from_value(value).map_err(|why| {
         // The text of the file tells the line, where it has the same mistake.
-        let told: Result<Root, _> = deserialize::from_slice(&text);
+        let told: Result<Root, _> = deserialize::from_str(&text);
         in_json(&told.err().unwrap_or(why))
     })?;
     check(&root)?;

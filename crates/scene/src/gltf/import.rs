@@ -9,7 +9,7 @@ use super::{
     document::{self, Parsed},
     fault::Fault,
     materials::Reader,
-    nodes::{Nodes, group},
+    nodes::{NO_TURN, Nodes, group},
     pose::{self, Vertices, of_normals, vectors},
     scene::GltfScene,
     vertex_alpha::Materials,
@@ -156,7 +156,10 @@ fn read_materials(
     report.colours_missing = reader.colours_missing;
     if reader.blended > 0 {
         let count = plural(reader.blended, "material", "materials");
-        report.remark(format!("{count} of alphaMode BLEND taken for opaque"));
+        report.remark(format!(
+            "{count} of alphaMode BLEND taken for opaque: --materials blend=mask cuts out what is \
+             less than half opaque (a scene file says `materials: BlendMask`)"
+        ));
     }
     Ok(Materials::new(materials))
 }
@@ -226,7 +229,7 @@ impl<'a> Import<'a> {
     }
 
     fn placing(
-        &self,
+        &mut self,
         node: &gltf::Node<'a>,
         mesh: &gltf::Mesh<'a>,
         nodes: &Nodes<'_>,
@@ -235,7 +238,14 @@ impl<'a> Import<'a> {
             .skin()
             .map(|skin| pose::joints(&skin, nodes, self.buffers));
         let instances = match self.beside.instances.get(&node.index()) {
-            Some(of) => pose::instances(*of, self.document, self.buffers)?,
+            Some(of) => {
+                let (instances, is_none) = pose::instances(*of, self.document, self.buffers)?;
+                if is_none {
+                    let text = format!("node {}: an instance's {NO_TURN}", node.index());
+                    self.builder.report.remark(text);
+                }
+                instances
+            }
             None => vec![DMat4::IDENTITY],
         };
         Ok(Placing {

@@ -83,10 +83,11 @@ impl Reader<'_> {
         let pbr = from.pbr_metallic_roughness();
         let [red, green, blue, alpha] = pbr.base_color_factor();
         let info = pbr.base_color_texture();
-        let with_masks = self.of == MaterialUse::All;
+        let with_masks = matches!(self.of, MaterialUse::All | MaterialUse::BlendMask);
         let is_blended = with_masks && from.alpha_mode() == AlphaMode::Blend;
-        self.blended += usize::from(is_blended);
-        let is_masked = with_masks && from.alpha_mode() == AlphaMode::Mask;
+        let is_blend_mask = is_blended && self.of == MaterialUse::BlendMask;
+        self.blended += usize::from(is_blended && !is_blend_mask);
+        let is_masked = is_blend_mask || (with_masks && from.alpha_mode() == AlphaMode::Mask);
         let texture = match &info {
             Some(info) => match self.texture(&info.texture()) {
                 Ok(texture) => Some(texture),
@@ -122,7 +123,7 @@ impl Reader<'_> {
             cut: None,
         };
         if is_masked {
-            let cutoff = from.alpha_cutoff().unwrap_or(0.5);
+            let cutoff = from.alpha_cutoff().filter(|_| !is_blended).unwrap_or(0.5);
             let cut = Cut { alpha, cutoff };
             let mask = read.masked(cut, 1.0);
             read.material.mask = mask.map_err(|why| format!("{why}; {WAY_OUT}"))?;
@@ -160,7 +161,7 @@ impl Reader<'_> {
                 }
                 None => {
                     let folder = self.file.parent().unwrap_or(Path::new(""));
-                    let path = folder.join(&*path_of(uri));
+                    let path = path_of(folder, uri);
                     if !path.is_file() {
                         return Err(format!("{place}: {} is not there", path.display()));
                     }

@@ -1,8 +1,8 @@
 //! Walks the nodes of a document: where each stands, and which are seen.
 
 use super::{beside::Beside, fault::Fault};
-use glam::{DMat4, Mat4};
-use gltf::{Document, Node};
+use glam::{DMat4, DQuat, DVec3, Mat4};
+use gltf::{Document, Node, scene::Transform};
 use std::collections::{HashMap, HashSet};
 
 /// The nodes of a document's scene.
@@ -23,7 +23,7 @@ impl<'a> Nodes<'a> {
     /// nodes that an animation names.
     ///
     /// # Errors
-    /// A node with two parents, or a transform that is not finite.
+    /// A scene without nodes, a node with two parents, or a transform that is not finite.
     pub fn new(
         document: &'a Document,
         beside: &Beside,
@@ -37,6 +37,11 @@ impl<'a> Nodes<'a> {
             moved,
             ..Self::default()
         };
+        if scene.nodes().len() == 0 {
+            let why = "it has no nodes, so that nothing is in it: add some, or let the file's \
+                       `scene` name another";
+            return Err((format!("scene {}", scene.index()), why.to_owned()));
+        }
         nodes.walk(scene.nodes().collect(), beside, true)?;
         // A joint may stand outside of the scene.
         let joints = document
@@ -63,8 +68,7 @@ impl<'a> Nodes<'a> {
         open.extend(roots.into_iter().rev().map(begin));
         while let Some((node, above, seen)) = open.pop() {
             let place = || format!("node {}", node.index());
-            let local = Mat4::from_cols_array_2d(&node.transform().matrix()).as_dmat4();
-            let transform = above * local;
+            let transform = above * local(&node);
             if !transform.is_finite() {
                 return Err((place(), "its transform is not finite".to_owned()));
             }
@@ -92,6 +96,34 @@ impl<'a> Nodes<'a> {
         }
         Ok(())
     }
+}
+
+/// The transform of a node, beside that of its parent.
+pub(super) fn local(node: &Node<'_>) -> DMat4 {
+    match node.transform() {
+        Transform::Matrix { matrix } => Mat4::from_cols_array_2d(&matrix).as_dmat4(),
+        Transform::Decomposed { .. } => {
+            let (shift, turn, scale) = parts(node);
+            DMat4::from_scale_rotation_translation(scale, turn, shift)
+        }
+    }
+}
+
+/// Translation, rotation and scale of a node.
+pub(super) fn parts(node: &Node<'_>) -> (DVec3, DQuat, DVec3) {
+    let (shift, turn, scale) = node.transform().decomposed();
+    let [shift, scale] = [shift, scale].map(|of| DVec3::from(of.map(f64::from)));
+    let turn = DQuat::from_array(turn.map(f64::from));
+    (shift, unit(turn).unwrap_or_default(), scale)
+}
+
+/// A rotation that turns nothing, for messages.
+pub(super) const NO_TURN: &str = "rotation is 0, 0, 0, 0, which turns nothing: mend it if that is \
+                                  not meant";
+
+/// The rotation of a quaternion of any length but 0: exporters write others than 1.
+pub(super) fn unit(turn: DQuat) -> Option<DQuat> {
+    (turn.length_squared() != 0.0).then(|| turn.normalize())
 }
 
 /// Name of the group that the triangles of a node are in, if it has any.

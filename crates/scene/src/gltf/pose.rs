@@ -1,7 +1,12 @@
 //! Poses, which move the vertices of a mesh before it is drawn: weights of morph targets, the
 //! joints of a skin in the pose of their nodes, and the transforms of instances.
 
-use super::{accessor, beside::Instances, buffers::Buffers, nodes::Nodes};
+use super::{
+    accessor,
+    beside::Instances,
+    buffers::Buffers,
+    nodes::{Nodes, unit},
+};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
 use gltf::{Accessor, Document, Primitive, Semantic, Skin};
 
@@ -164,7 +169,7 @@ pub(super) fn joints(
     placed.collect()
 }
 
-/// The transforms of a node's instances.
+/// The transforms of a node's instances, and whether one of their rotations is none.
 ///
 /// # Errors
 /// Their fault.
@@ -172,7 +177,7 @@ pub(super) fn instances(
     of: Instances,
     document: &Document,
     buffers: &Buffers,
-) -> Result<Vec<DMat4>, String> {
+) -> Result<(Vec<DMat4>, bool), String> {
     let there = |number: usize| {
         let missing = || format!("its instances name accessor {number}, which is not there");
         document.accessors().nth(number).ok_or_else(missing)
@@ -184,7 +189,10 @@ pub(super) fn instances(
     let [translation, rotation, scale] = of;
     let (translation, scale) = (read(translation)?, read(scale)?);
     let rotation = rotation.map(|number| accessor::floats::<4>(&there(number)?, buffers));
-    let rotation = rotation.transpose()?;
+    let unit = |turn: [f32; 4]| unit(DQuat::from_array(turn.map(f64::from)));
+    let turns = |of: Vec<[f32; 4]>| of.into_iter().map(unit).collect::<Vec<_>>();
+    let rotation = rotation.transpose()?.map(turns);
+    let is_none = rotation.iter().flatten().any(Option::is_none);
     let counts = [
         translation.as_ref().map(Vec::len),
         rotation.as_ref().map(Vec::len),
@@ -195,22 +203,15 @@ pub(super) fn instances(
     if counts.any(|other| other != count) {
         return Err("its instances have attributes of different counts".to_owned());
     }
-    let turn = |[x, y, z, w]: [f32; 4]| {
-        let turn = DQuat::from_xyzw(x.into(), y.into(), z.into(), w.into());
-        if turn.length_squared() > 0.0 {
-            turn.normalize()
-        } else {
-            DQuat::IDENTITY
-        }
-    };
     let at = |item: usize| {
         DMat4::from_scale_rotation_translation(
             scale.as_ref().map_or(DVec3::ONE, |of| of[item]),
             rotation
                 .as_ref()
-                .map_or(DQuat::IDENTITY, |of| turn(of[item])),
+                .and_then(|of| of[item])
+                .unwrap_or_default(),
             translation.as_ref().map_or(DVec3::ZERO, |of| of[item]),
         )
     };
-    Ok((0..count).map(at).collect())
+    Ok(((0..count).map(at).collect(), is_none))
 }

@@ -6,6 +6,7 @@ use super::{
     beside::{Beside, Instances, each, index, items, taken},
     extensions::{self, Kind},
     fault::Fault,
+    nodes::NO_TURN,
     prepare_looks, prepare_storage,
 };
 use crate::{error::beginning, material_use::MaterialUse};
@@ -35,6 +36,11 @@ pub(super) fn prepare(root: &mut Value, materials: MaterialUse) -> Result<Beside
             }
         }
     }
+    each(root, "scenes", |_, scene| {
+        scene
+            .entry("nodes")
+            .or_insert_with(|| Vec::<Value>::new().into());
+    });
     nodes(root, &mut beside);
     meshes(root, &mut beside, materials)?;
     each(root, "skins", |_, skin| {
@@ -74,6 +80,15 @@ fn required(root: &Value, beside: &mut Beside) -> Result<(), Fault> {
 fn nodes(root: &mut Value, beside: &mut Beside) {
     each(root, "nodes", |number, node| {
         node.remove("camera");
+        let is_none = |turn: &Vec<Value>| turn.iter().all(|of| of.as_f64() == Some(0.0));
+        let turn = node.get("rotation").and_then(Value::as_array);
+        if turn.is_some_and(is_none) {
+            let name = node.get("name").and_then(Value::as_str).map(beginning);
+            let name = name.map_or_else(String::new, |name| format!(" {name:?}"));
+            beside
+                .remarks
+                .insert(format!("node {number}{name}: its {NO_TURN}"));
+        }
         let extensions = taken(node, "nodes", beside);
         let visible = |of: &Value| of.get("visible").and_then(Value::as_bool);
         if extensions.get("KHR_node_visibility").and_then(visible) == Some(false) {

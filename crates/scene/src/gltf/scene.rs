@@ -37,6 +37,9 @@ pub struct GltfScene {
     pub remarks: Vec<String>,
 }
 
+/// Widest cone of a spot, in degrees.
+const WIDEST_CONE: f64 = 179.9;
+
 /// Reads cameras and lights one after the other.
 struct Reader<'a> {
     placements: &'a Placements,
@@ -90,7 +93,7 @@ impl GltfScene {
         if reader.with_range > 0 {
             let lights = plural(reader.with_range, "light", "lights");
             reader.remark(format!(
-                "the range of {lights} is not followed: they light the whole mesh"
+                "the range of {lights} bears on nothing: a shadow counts at any distance"
             ));
         }
         reader.scene
@@ -242,15 +245,19 @@ impl Reader<'_> {
             read => read,
         };
         match read {
-            Ok(light) => {
+            Ok((light, remarks)) => {
                 let name = self.names_of_lights.unlike(&light.name);
                 if name != light.name {
                     self.remark(format!(
                         "{place}: another light has that name: it is called {name}"
                     ));
                 }
-                let range = self.placements.lights[number].get("range");
-                self.with_range += usize::from(range.is_some());
+                for remark in remarks {
+                    self.remark(format!("{place}: {remark}"));
+                }
+                let has_range = self.placements.lights[number].get("range").is_some();
+                let is_lamp = light.kind.directional().is_none();
+                self.with_range += usize::from(has_range && is_lamp);
                 self.scene.nodes_of_lights.push(placed.node);
                 self.scene.lights.push(Light { name, ..light });
             }
@@ -258,12 +265,14 @@ impl Reader<'_> {
         }
     }
 
-    fn light(&self, index: usize, placed: &Placed<'_>) -> Result<Light, String> {
+    /// The light, with what was chosen.
+    fn light(&self, index: usize, placed: &Placed<'_>) -> Result<(Light, Vec<String>), String> {
         let count = self.placements.lights.len();
         let light = self.placements.lights.get(index);
         let light = light.ok_or_else(|| named_wrongly(index, count, "light", "lights"))?;
         check_power(light)?;
         let (position, direction) = (placed.position(), placed.direction());
+        let mut remarks = Vec::new();
         let kind: LightKind = match light.get("type").and_then(Value::as_str) {
             Some("directional") => DirectionalLight::new(direction).into(),
             Some("spot") => {
@@ -271,16 +280,25 @@ impl Reader<'_> {
                     .get("spot")
                     .and_then(|of| number(of, "outerConeAngle"));
                 let cone = cone.unwrap_or(std::f64::consts::FRAC_PI_4);
-                if !(cone > 0.0 && 2.0 * cone.to_degrees() < 180.0) {
+                // A right angle that was rounded to f32 is one.
+                if !(cone > 0.0 && cone < std::f64::consts::FRAC_PI_2 + 1e-6) {
                     return Err(format!(
-                        "its outerConeAngle is {cone}, expected more than 0 and less than a right \
-                         angle, 1.57"
+                        "its outerConeAngle is {cone}, expected more than 0 and at most a right \
+                         angle, 1.5708"
                     ));
+                }
+                let mut cone_degrees = 2.0 * cone.to_degrees();
+                if cone_degrees > WIDEST_CONE {
+                    remarks.push(format!(
+                        "its cone of {cone_degrees:.2} degrees counts as one of {WIDEST_CONE}: \
+                         no shadow map covers half of the space"
+                    ));
+                    cone_degrees = WIDEST_CONE;
                 }
                 SpotLight {
                     position,
                     direction,
-                    cone_degrees: 2.0 * cone.to_degrees(),
+                    cone_degrees,
                     radius: 0.0,
                 }
                 .into()
@@ -297,10 +315,8 @@ impl Reader<'_> {
         };
         let mend = |why| format!("{why} (mend light {index})");
         kind.check().map_err(mend)?;
-        Ok(Light {
-            name: placed.name("light", light),
-            kind,
-        })
+        let name = placed.name("light", light);
+        Ok((Light { name, kind }, remarks))
     }
 }
 
@@ -322,10 +338,13 @@ fn check_power(light: &Value) -> Result<(), String> {
         Some(None) => Err(format!("its {field} has no number")),
     };
     positive("intensity", "it lights nothing, give it more than 0")?;
-    positive(
-        "range",
-        "it reaches nothing, give it more than 0 or leave it out",
-    )?;
+    // The extension has it ignored of a directional light.
+    if light.get("type").and_then(Value::as_str) != Some("directional") {
+        positive(
+            "range",
+            "it reaches nothing, give it more than 0 or leave it out",
+        )?;
+    }
     let channels = light.get("color").and_then(Value::as_array);
     let is_black = |channels: &Vec<Value>| channels.iter().all(|of| of.as_f64() == Some(0.0));
     if channels.is_some_and(is_black) {

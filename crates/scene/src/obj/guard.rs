@@ -7,6 +7,7 @@
 //! lines continued by `\`. All of that is settled here, line by line, before it sees them: the file
 //! is read twice, first all of its vertices, then its faces.
 
+use super::options::ObjMaterials;
 use crate::{
     error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, SceneError, beginning},
     text::{line_text, next_line, without_comment},
@@ -75,6 +76,8 @@ pub(super) struct Guard<'a> {
     pub uvs_absent: Vec<(usize, FaceProblem)>,
     /// True if materials and texture coordinates are of interest.
     with_materials: bool,
+    /// True if masks are made for materials that may stand in no file.
+    makes_masks: bool,
     uvs: Vec<Vec2>,
     material: u32,
     group_left_out: bool,
@@ -145,14 +148,15 @@ struct Named {
 const UNNAMED: &str = "unnamed";
 
 impl<'a> Guard<'a> {
-    pub fn new(bytes: &'a [u8], leave_out: &'a [String], with_materials: bool) -> Self {
+    pub fn new(bytes: &'a [u8], leave_out: &'a [String], materials: &ObjMaterials) -> Self {
         let leave_out: HashSet<&str> = leave_out.iter().map(String::as_str).collect();
         Self {
             whole: bytes,
             rest: bytes,
             groups: vec![UNNAMED.to_owned()],
             materials: vec![String::new()],
-            with_materials,
+            with_materials: *materials != ObjMaterials::Ignore,
+            makes_masks: matches!(materials, ObjMaterials::Made(_)),
             group_left_out: leave_out.contains(UNNAMED),
             leave_out,
             ..Self::default()
@@ -400,7 +404,7 @@ impl<'a> Guard<'a> {
         let normal = written(normal).map(|word| find(word, |of| of.normals));
         let normal = normal.transpose()?.map(|found| found.map_err(drop));
         // Without a file of materials nothing is looked up by them.
-        let uv = written(uv).filter(|_| !self.libraries.is_empty());
+        let uv = written(uv).filter(|_| self.makes_masks || !self.libraries.is_empty());
         let uv = uv.map(|word| find(word, |of| of.uvs)).transpose()?;
         let absent = |(written, available)| FaceProblem::NoSuchUv { written, available };
         let uv = uv.map(|found| found.map_err(absent));

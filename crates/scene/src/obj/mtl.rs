@@ -13,6 +13,7 @@ use crate::{
     material::Material,
     pattern::Pattern,
     texels::Texels,
+    text::file_in,
     texture::{Source, Texture, Wrap},
 };
 use std::{
@@ -326,6 +327,8 @@ fn opacity_channel(texels: &Texels) -> usize {
 
 /// A file that another one names. Some tools write paths with backslashes.
 fn beside(file: &Path, name: &str) -> PathBuf {
-    let folder = file.parent().unwrap_or(Path::new(""));
-    folder.join(name.replace('\\', "/"))
+    file_in(
+        file.parent().unwrap_or(Path::new("")),
+        &name.replace('\\', "/"),
+    )
 }

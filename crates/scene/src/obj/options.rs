@@ -64,7 +64,7 @@ impl From<MaterialUse> for ObjMaterials {
         match of {
             MaterialUse::Ignore => Self::Ignore,
             MaterialUse::Color => Self::Color,
-            MaterialUse::All => Self::All,
+            MaterialUse::All | MaterialUse::BlendMask => Self::All,
         }
     }
 }

@@ -33,14 +33,9 @@ pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec
     if count > MOST_CORNERS {
         return None;
     }
-    let mut triangles = ears(&flat);
-    let whole: f64 = fan.iter().map(|&of| area(&flat, of)).sum();
-    let areas = triangles.iter().map(|&of| area(&flat, of));
-    let covered: f64 = areas.clone().map(f64::abs).sum();
-    let fits = (covered - whole).abs() <= -least * count as f64;
-    if !fits || triangles.iter().any(|&of| area(&flat, of) < least) {
-        return None;
-    }
+    let outline: Vec<usize> = (0..count).collect();
+    let mut triangles = partition(&flat, &outline, least)
+        .or_else(|| partition(&flat, &without_spikes(&flat, outline, least), least))?;
     // From the lowest corner on, in the order of the file.
     for triangle in &mut triangles {
         let lowest = (0..3).min_by_key(|&corner| triangle[corner]).unwrap_or(0);
@@ -48,6 +43,40 @@ pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec
     }
     triangles.sort_unstable();
     Some(triangles)
+}
+
+/// Triangles within an outline, by the numbers of its corners; `None` if they do not cover it once,
+/// as where it crosses itself. Areas above `least` count as 0.
+fn partition(points: &[DVec2], outline: &[usize], least: f64) -> Option<Vec<[usize; 3]>> {
+    let flat: Vec<DVec2> = outline.iter().map(|&corner| points[corner]).collect();
+    let triangles = ears(&flat);
+    let whole: f64 = (2..flat.len()).map(|at| area(&flat, [0, at - 1, at])).sum();
+    let areas = triangles.iter().map(|&of| area(&flat, of));
+    let covered: f64 = areas.clone().map(f64::abs).sum();
+    let fits = (covered - whole).abs() <= -least * flat.len() as f64;
+    (fits && areas.into_iter().all(|area| area >= least)).then(|| {
+        triangles
+            .into_iter()
+            .map(|of| of.map(|at| outline[at]))
+            .collect()
+    })
+}
+
+/// Leaves out corners at which an outline turns back on the line that it came along, and those that
+/// are where the next one is: there is no area beside them.
+fn without_spikes(points: &[DVec2], mut outline: Vec<usize>, least: f64) -> Vec<usize> {
+    let turns_back = |outline: &[usize], at: usize| {
+        let count = outline.len();
+        let [before, own, after] = [at + count - 1, at, at + 1].map(|at| outline[at % count]);
+        let along = (points[own] - points[before]).dot(points[after] - points[own]);
+        along <= 0.0 && area(points, [before, own, after]).abs() <= -least
+    };
+    while outline.len() > 3
+        && let Some(at) = (0..outline.len()).find(|&at| turns_back(&outline, at))
+    {
+        outline.remove(at);
+    }
+    outline
 }
 
 /// Along the longest axis of the polygon's normal (Newell's method), so that it is wound

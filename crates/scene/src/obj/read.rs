@@ -1,10 +1,6 @@
 //! Reading the file, and what is refused of it.
 
-use super::{
-    guard::Guard,
-    import::import,
-    options::{ObjMaterials, ObjOptions},
-};
+use super::{guard::Guard, import::import, options::ObjOptions};
 use crate::{
     border::caught,
     error::{EXTENTS, SceneError},
@@ -48,11 +44,7 @@ pub fn parse_obj(
     options: &ObjOptions,
 ) -> Result<(Mesh, ImportReport), SceneError> {
     let bytes = without_mark(bytes);
-    let mut guard = Guard::new(
-        &bytes,
-        &options.leave_out,
-        options.materials != ObjMaterials::Ignore,
-    );
+    let mut guard = Guard::new(&bytes, &options.leave_out, &options.materials);
     let no_materials = |_: &Path| Ok(Default::default());
     let loaded = caught("tobj", || {
         tobj::load_obj_buf(&mut guard, &tobj::LoadOptions::default(), no_materials)

@@ -51,19 +51,24 @@ pub(super) struct TextureStatement {
     pub passed_over: Vec<&'static str>,
 }
 
-/// Options with the most words that each takes, and whether those are numbers.
-const OPTIONS: [(&str, usize, bool); 12] = [
+/// Options with the most words that each takes, and whether those are numbers: those of the MTL
+/// specification (Alias/Wavefront, version 4.2), `-turb`, by which some files call `-t`, and
+/// `-colorspace`.
+const OPTIONS: [(&str, usize, bool); 15] = [
     ("-clamp", 1, false),
     ("-blendu", 1, false),
     ("-blendv", 1, false),
     ("-cc", 1, false),
+    ("-colorspace", 1, false),
     ("-imfchan", 1, false),
     ("-type", 1, false),
     ("-mm", 2, true),
     ("-o", 3, true),
     ("-s", 3, true),
     ("-t", 3, true),
+    ("-turb", 3, true),
     ("-bm", 1, true),
+    ("-boost", 1, true),
     ("-texres", 1, true),
 ];
 
@@ -89,13 +94,17 @@ impl TextureStatement {
             rest = rest[option.len()..].trim_start();
             let (mut words, mut numbers) = (Vec::new(), Vec::new());
             while let Some(word) = first_word(rest).filter(|_| words.len() < most) {
+                let behind = rest[word.len()..].trim_start();
                 let number = word.parse::<f32>().ok().filter(|number| number.is_finite());
-                if number.is_none() && (numeric || !is_word_of(option, word)) {
+                let is_number = numeric && number.is_some();
+                let is_taken = is_number || (!numeric && is_word_of(option, word));
+                // The last word is the file's.
+                if !is_taken || behind.is_empty() {
                     break;
                 }
                 numbers.extend(number);
                 words.push(word);
-                rest = rest[word.len()..].trim_start();
+                rest = behind;
             }
             statement.follow(option, words.first().copied().unwrap_or(""), &numbers);
         }
@@ -109,12 +118,14 @@ impl TextureStatement {
             [at(0), at(1)]
         };
         match option {
-            "-clamp" if word == "on" => self.wrap = Wrap::Clamp,
+            "-clamp" if word.eq_ignore_ascii_case("on") => self.wrap = Wrap::Clamp,
             "-o" => self.uv.offset = two([0.0, 0.0]).into(),
             "-s" => self.uv.scale = two([1.0, 1.0]).into(),
             "-mm" => self.range = two([0.0, 1.0]),
-            "-t" if numbers.iter().any(|number| *number != 0.0) => self.passed_over.push(option),
-            "-imfchan" => match word {
+            "-t" | "-turb" if numbers.iter().any(|number| *number != 0.0) => {
+                self.passed_over.push(option)
+            }
+            "-imfchan" => match &*word.to_ascii_lowercase() {
                 "r" => self.channel = Channel::Of(0),
                 "g" => self.channel = Channel::Of(1),
                 "b" => self.channel = Channel::Of(2),
@@ -132,10 +143,12 @@ fn first_word(text: &str) -> Option<&str> {
 }
 
 fn is_word_of(option: &str, word: &str) -> bool {
+    let one_of = |words: &[&str]| words.iter().any(|of| of.eq_ignore_ascii_case(word));
     match option {
-        "-imfchan" => matches!(word, "r" | "g" | "b" | "m" | "l" | "z"),
-        "-type" => !word.contains('.'),
-        _ => matches!(word, "on" | "off"),
+        "-imfchan" => one_of(&["r", "g", "b", "m", "l", "z"]),
+        // Kinds of maps of reflections and names of spaces have no bounds.
+        "-type" | "-colorspace" => true,
+        _ => one_of(&["on", "off"]),
     }
 }
 
@@ -145,12 +158,43 @@ mod tests {
 
     #[test]
     fn options_stand_in_front_of_a_textures_name() {
-        let name = |text| TextureStatement::parse(text).file;
+        let name = |text: &str| TextureStatement::parse(text).file;
         assert_eq!(name("leaf.png"), "leaf.png");
         assert_eq!(name("-s 1 1 1 -o 0.5 my leaf.png"), "my leaf.png");
         assert_eq!(name("-bm 0.2 -imfchan l 2 leaves.tga"), "2 leaves.tga");
         assert_eq!(name("-s 1 1 1 2 leaves.tga"), "2 leaves.tga");
         assert_eq!(name("-clamp on on.png"), "on.png");
+        assert_eq!(name("-clamp OFF -imfchan R a.png"), "a.png");
+        // Every option with all of its words, and with as few as it may have.
+        for options in [
+            "-blendu on",
+            "-blendv off",
+            "-bm 0.5",
+            "-boost 2",
+            "-Boost 2.5 -cc on",
+            "-clamp on",
+            "-colorspace sRGB",
+            "-colorspace rec.709",
+            "-imfchan l",
+            "-mm 0 1",
+            "-mm 0.5",
+            "-o 1",
+            "-o 1 2",
+            "-o 1 2 3",
+            "-s 1e-1 -2 +.5",
+            "-t 0.1 0.1 0.1",
+            "-turb 0.1 0.1 0.1",
+            "-texres 512",
+            "-type cube_top",
+        ] {
+            for file in ["a.png", "my big leaf.png", "-leaf.png"] {
+                assert_eq!(name(&format!("{options} {file}")), file, "{options}");
+            }
+        }
+        // A number that stands last is the file's name.
+        assert_eq!(name("-boost 2 2"), "2");
+        assert_eq!(name("-s 1 1 7"), "7");
+        assert_eq!(name("-type on.png"), "on.png");
         assert_eq!(name("-leaf.png"), "-leaf.png");
         assert_eq!(name(""), "");
     }
@@ -163,8 +207,10 @@ mod tests {
         assert_eq!(of.uv.offset, Vec2::new(0.25, 0.5));
         assert_eq!((of.range, of.channel), ([0.1, 0.5], Channel::Of(1)));
         assert_eq!((of.wrap, of.passed_over.len()), (Wrap::Clamp, 0));
-        let of = TextureStatement::parse("-t 0.5 0 0 -imfchan z -cc on a.png");
-        assert_eq!(of.passed_over, ["-t", "-imfchan"]);
+        let of = TextureStatement::parse("-t 0.5 0 0 -imfchan z -cc on -turb 0 1 a.png");
+        assert_eq!(of.passed_over, ["-t", "-imfchan", "-turb"]);
+        let of = TextureStatement::parse("-clamp ON -imfchan R a.png");
+        assert_eq!((of.wrap, of.channel), (Wrap::Clamp, Channel::Of(0)));
         // v counts from the bottom of a texture in the file, from its top here.
         let uv = UvTransform {
             scale: Vec2::splat(2.0),

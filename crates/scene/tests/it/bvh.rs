@@ -8,7 +8,7 @@ use skiagraph_scene::{
     bvh::{MAX_DEPTH, Moved, Piece},
 };
 
-fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
+pub fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
     let positions = triangles.concat();
     let triangles = (0..triangles.len() as u32)
         .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
@@ -21,7 +21,7 @@ fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
 }
 
 /// Checks the whole tree and returns it.
-fn checked(mesh: &Mesh) -> Bvh {
+pub fn checked(mesh: &Mesh) -> Bvh {
     check(mesh, Bvh::build(mesh))
 }
 
@@ -174,7 +174,6 @@ fn unused_positions_do_not_widen_the_boxes() {
 }
 
 #[test]
-#[ignore = "a suite: `./test.sh --all` runs it"]
 fn identical_triangles() {
     for count in [2, 9, 100, 5_000] {
         checked(&mesh(&vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; count]));
@@ -304,13 +303,13 @@ const SPACE: LightSpace = LightSpace {
 };
 
 /// Primitive ids of runs of triangles, the last of which takes what is left.
-fn runs(triangles: usize, pieces: usize) -> Vec<Vec<u32>> {
+pub fn runs(triangles: usize, pieces: usize) -> Vec<Vec<u32>> {
     let end = |piece: usize| triangles * piece / pieces;
     let run = |piece| (end(piece) as u32..end(piece + 1) as u32).collect();
     (0..pieces).map(run).collect()
 }
 
-fn pieces(runs: &[Vec<u32>]) -> Vec<Piece<'_>> {
+pub fn pieces(runs: &[Vec<u32>]) -> Vec<Piece<'_>> {
     let mut pieces = Vec::new();
     for (copy_of, triangles) in runs.iter().enumerate() {
         pieces.push(Piece { triangles, copy_of });
@@ -319,7 +318,7 @@ fn pieces(runs: &[Vec<u32>]) -> Vec<Piece<'_>> {
 }
 
 /// Checks it as any tree, and returns that tree.
-fn checked_levels(mesh: &Mesh, two: &TwoLevelBvh) -> Bvh {
+pub fn checked_levels(mesh: &Mesh, two: &TwoLevelBvh) -> Bvh {
     let mut deepest = 0;
     let mut open: Vec<(u32, u32)> = (!two.nodes.is_empty())
         .then_some((0, 1))

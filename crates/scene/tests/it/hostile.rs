@@ -352,7 +352,10 @@ fn files_that_are_no_text_or_too_long() {
     sparse("huge.obj");
     std::fs::create_dir(file("folder.obj")).unwrap();
     for (name, said) in [
-        ("binary.ron", "it is not UTF-8 text"),
+        (
+            "binary.ron",
+            "it is not UTF-8 text: save it in that encoding",
+        ),
         (
             "huge.ron",
             "it has 4096 MiB, a scene file 1 at most: a mesh belongs into an .obj file of its own",

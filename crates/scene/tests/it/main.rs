@@ -6,6 +6,7 @@ mod common;
 #[path = "common/solids.rs"]
 mod solids;
 
+mod alike;
 mod bench;
 mod bvh;
 mod foreign_files;
@@ -19,6 +20,7 @@ mod obj;
 mod outlines;
 mod park;
 mod polygons;
+mod quiet_faults;
 mod scene_files;
 mod scene_writer;
 mod sponza;

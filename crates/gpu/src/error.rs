@@ -212,10 +212,16 @@ pub enum ExecuteError {
         /// File, line and column of the pass in the graph document, as text.
         place: String,
     },
-    /// The host called [`Executor::finish`](crate::Executor::finish) for a frame whose encoder it
-    /// has not submitted.
-    #[error("the frame that is waited for was encoded, but not submitted")]
-    NotSubmitted,
+    /// The frame that [`Executor::finish`](crate::Executor::finish) waits for was encoded and has
+    /// not run, so that it has no report.
+    #[error(
+        "frame {frame} has not run: its encoder was dropped or is not submitted, or wgpu refused \
+         its commands; encode another frame and submit it"
+    )]
+    NotRun {
+        /// Number of the frame, as [`Executor::encode`](crate::Executor::encode) returned it.
+        frame: u32,
+    },
     /// GPU timestamps could not be taken; the text is the reason.
     #[error("timestamps could not be taken: {0}")]
     Timing(String),

@@ -29,6 +29,8 @@ pub(super) struct CpuTurn<'t> {
     pub gives_up: &'t dyn Fn() -> bool,
     /// Time that the work of the pass took so far; `None` if it had none.
     pub worked: Option<Duration>,
+    /// True if a part of the frame was submitted.
+    pub has_submitted: bool,
 }
 
 /// A range of bytes of a buffer.
@@ -106,8 +108,11 @@ impl CpuTurn<'_> {
             label: Some("frame, behind work of the CPU"),
         };
         let next = self.device.create_command_encoder(&next);
-        self.queue
-            .submit([std::mem::replace(encoder, next).finish()]);
+        let done = std::mem::replace(encoder, next);
+        scoped(self.device, "frame, before work of the CPU", || {
+            self.queue.submit([done.finish()])
+        })?;
+        self.has_submitted = true;
         // After an error it may be mapped yet: it comes back behind `unmap` alone.
         self.wait_for(&mapped)?;
         let taken = {

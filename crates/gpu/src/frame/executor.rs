@@ -1,6 +1,7 @@
 //! Runs a plan on a device, frame by frame.
 
 use super::{
+    contents::Contents,
     cpu::{CpuTurn, Staging},
     fetch::Fetch,
     growth::Unchanged,
@@ -10,7 +11,7 @@ use super::{
     pass::GpuPass,
     prepare::{Prepared, Preparer},
     replan::{ReplanReport, Reused, has_same_params},
-    report::{Frame, FrameReport},
+    report::{Frame, FrameFault, FrameReport},
     state::{FrameDecision, State},
     statistics::Counters,
     timer::Timer,
@@ -18,7 +19,7 @@ use super::{
 };
 use crate::{
     device::{Gpu, partial},
-    error::{ExecuteError, poll, wait, with_table},
+    error::{ExecuteError, poll, scoped, wait, with_table},
     memory::{
         import::differs,
         memory::{Memory, ResourceFactory, check_bound, check_relied_on},
@@ -138,7 +139,7 @@ impl Executor {
             host_changes: HostChanges::default(),
             knows_changes: false,
             frames: 0,
-            frames_in_flight: FramesInFlight::default(),
+            frames_in_flight: FramesInFlight::new(device)?,
             staging: Staging::default(),
             skipped: Vec::new(),
         };
@@ -216,7 +217,10 @@ impl Executor {
         let begun = wgpu::CommandEncoderDescriptor { label };
         let mut encoder = self.device.create_command_encoder(&begun);
         let index = self.encode_with(&mut encoder, frame, Some(gives_up))?;
-        self.queue.submit([encoder.finish()]);
+        let name = format!("frame {index}");
+        scoped(&self.device, &name, || {
+            self.queue.submit([encoder.finish()])
+        })?;
         Ok(index)
     }
 
@@ -227,6 +231,9 @@ impl Executor {
         gives_up: Option<&dyn Fn() -> bool>,
     ) -> Result<u32, ExecuteError> {
         self.presence.check()?;
+        if self.frames_in_flight.is_pending() {
+            self.settle()?;
+        }
         self.grow_by_itself()?;
         let is_measured = frame.timing || frame.statistics;
         let may_rest = !frame.all && !is_measured && self.knows_changes;
@@ -244,11 +251,13 @@ impl Executor {
         if let Err(error) = self.record(&mut frame_in_flight, encoder, gives_up) {
             // Its queries are not resolved, and what it has written stays.
             frame_in_flight.timer = None;
-            self.state.forget_frame(&self.decision);
+            let before = &frame_in_flight.before;
+            self.state.forget_frame(&self.decision, before);
             self.frames_in_flight.recycle(frame_in_flight);
             return Err(error);
         }
         let index = frame_in_flight.index;
+        frame_in_flight.changed = self.host_changes.changed();
         self.host_changes.clear();
         self.skipped.clone_from(&frame_in_flight.skipped);
         self.frames_in_flight.submit(frame_in_flight, encoder);
@@ -282,7 +291,9 @@ impl Executor {
         if frame.statistics {
             frame_in_flight.counters = Counters::new(&state.plan, device)?;
         }
-        Ok(())
+        let rests = self.decision.rests;
+        self.frames_in_flight
+            .number(frame_in_flight, rests, device)
     }
 
     /// Encodes a frame that everything is ready for.
@@ -298,6 +309,10 @@ impl Executor {
             rests,
             ping_pong,
         } = &self.decision;
+        let number = frame_in_flight.number();
+        if !rests {
+            frame_in_flight.before.clone_from(&state.contents);
+        }
         if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
             && let Ok(uniform) = state.memory.buffer(id, ping_pong)
         {
@@ -306,15 +321,20 @@ impl Executor {
         state.copy_grown(encoder);
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
-        state.contents.first_copies(&mut copy_host);
+        state.contents.first_copies(number, &mut copy_host);
         let mut cpu = gives_up.map(|gives_up| CpuTurn {
             device: &self.device,
             queue: &self.queue,
             staging: &mut self.staging,
             gives_up,
             worked: None,
+            has_submitted: false,
         });
-        state.encode(&self.decision, frame_in_flight, encoder, cpu.as_mut())?;
+        let encoded = state.encode(&self.decision, frame_in_flight, encoder, cpu.as_mut());
+        if encoded.is_ok() || cpu.is_some_and(|cpu| cpu.has_submitted) {
+            frame_in_flight.grown.append(&mut state.grown);
+        }
+        encoded?;
         if let Some(timer) = frame_in_flight
             .timer
             .as_mut()
@@ -336,15 +356,17 @@ impl Executor {
                 is_counted &= readback.copy(change, plan, memory, ping_pong, encoder);
             }
             // Else a resource that has no room could stay so.
-            if is_counted {
-                state.idle.follow(encoder);
-            }
+            frame_in_flight.changes = is_counted.then_some(change);
         }
-        let (plan, passes) = (&state.plan, &mut state.passes);
-        state.contents.ran(plan, passes, runs, ping_pong);
+        let (plan, passes) = (&state.plan, &state.passes);
+        let before = (&frame_in_flight.before, ping_pong);
+        if !rests {
+            state.contents.ran(plan, passes, runs, before);
+        }
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
-        state.contents.copies(&mut copy_host);
+        let pending = self.frames_in_flight.oldest_pending();
+        state.contents.copies(number, pending, &mut copy_host);
         Ok(())
     }
 
@@ -357,11 +379,65 @@ impl Executor {
     /// If the device was lost, or a readback or the times of the frame failed. The failed frame
     /// brings no report.
     pub fn poll(&mut self) -> Result<Option<FrameReport>, ExecuteError> {
+        self.presence.check()?;
         if self.under_way() == 0 {
             return Ok(None);
         }
-        poll(&self.device, wgpu::PollType::Poll)?;
+        self.settle()?;
         self.frames_in_flight.report(&self.device, &self.presence)
+    }
+
+    /// Returns the frames that did not show what they should, in the order in which that was found,
+    /// and forgets them. It never waits: a frame that is not done yet is told by a later call. At
+    /// most 1,024 frames are kept for it, those found last.
+    ///
+    /// A frame is lost if its encoder is dropped, or if wgpu refuses its commands, in `finish` or
+    /// in `submit`. What was encoded before this was known and runs without it, or in another
+    /// order than that of encoding, may show something stale, and is told, too. Every frame that is
+    /// encoded afterwards is right; see [`Executor`]. A frame that had nothing to run
+    /// ([`encode`](Self::encode)) and asked for nothing is never told.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub fn take_faults(&mut self) -> Result<Vec<FrameFault>, ExecuteError> {
+        self.presence.check()?;
+        if self.frames_in_flight.is_pending() {
+            self.settle()?;
+        }
+        Ok(self.frames_in_flight.take_faults())
+    }
+
+    /// Finds out which frames have run, and takes back what was noted for those that are lost.
+    fn settle(&mut self) -> Result<(), ExecuteError> {
+        poll(&self.device, wgpu::PollType::Poll)?;
+        let (frames, state) = (&mut self.frames_in_flight, &mut self.state);
+        let setback = frames.settle();
+        if let Some(changes) = setback.settled {
+            state.idle.settle(changes);
+        }
+        if setback.is_lost || setback.forgets {
+            state.idle.note_change();
+            let has_memory = state.plan.remembers();
+            for lost in frames.iter_mut().rev().filter(|frame| frame.is_lost()) {
+                self.host_changes.tell_again(lost.changed);
+                state.grown.splice(..0, lost.grown.drain(..));
+            }
+            let first = frames.iter().find(|it| Some(it.number()) == setback.rewind);
+            if let Some(first) = first {
+                state.contents.rewind(&state.plan, &first.before);
+            }
+            if setback.forgets {
+                let followed = frames.iter().filter(|frame| frame.is_followed());
+                let frames = followed.map(|frame| (&frame.before, frame.is_lost()));
+                state.contents.forget(&frames.collect::<Vec<_>>());
+                if has_memory {
+                    self.host_changes.note_new_memory();
+                }
+            }
+            self.ping_pong = state.ping_pong(false);
+        }
+        self.frames_in_flight.sweep();
+        Ok(())
     }
 
     /// Returns the number of encoded frames that requested times, statistics or readbacks (fields
@@ -377,7 +453,7 @@ impl Executor {
     /// passes; the number is `u32::MAX` if no frame was encoded.
     ///
     /// # Errors
-    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`], after ten seconds, if the
+    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotRun`], after ten seconds, if the
     /// frame to report was not submitted.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         self.finish_within(None)
@@ -395,6 +471,7 @@ impl Executor {
         timeout: Option<Duration>,
     ) -> Result<FrameReport, ExecuteError> {
         let began = Instant::now();
+        let waited_for = self.frames_in_flight.oldest_asked();
         // One that is done is not kept waiting by those behind it.
         if let Some(report) = self.poll()? {
             return Ok(report);
@@ -407,10 +484,14 @@ impl Executor {
         self.presence.check()?;
         let waited = Instant::now();
         loop {
+            self.settle()?;
             if let Some(report) = self.frames_in_flight.report(&self.device, &self.presence)? {
                 return Ok(report);
             }
             if self.under_way() == 0 {
+                if let Some(frame) = waited_for {
+                    return Err(ExecuteError::NotRun { frame });
+                }
                 return Ok(FrameReport {
                     index: self.frames.wrapping_sub(1),
                     skipped: names(&self.skipped),
@@ -429,7 +510,8 @@ impl Executor {
         // The profiler never gives up a frame whose timestamps cannot be mapped.
         self.frames_in_flight.give_up();
         let report = self.frames_in_flight.report(&self.device, &self.presence)?;
-        report.ok_or(ExecuteError::NotSubmitted)
+        let frame = waited_for.unwrap_or_default();
+        report.ok_or(ExecuteError::NotRun { frame })
     }
 
     /// Returns the error of a frame that has not finished, with the passes of the last frame.
@@ -560,6 +642,7 @@ impl Executor {
     /// way out is another plan: [`Plan::with`], with the provider set, and
     /// [`replace_graph`](Self::replace_graph).
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
+        self.presence.check()?;
         // If it fails half way, some resources are this provider's.
         self.knows_changes &= provider.has_versions();
         let mut built = Vec::new();
@@ -627,7 +710,6 @@ impl Executor {
             if is_described && Ok(provider.version(&resource.name)) == version {
                 continue;
             }
-            self.presence.check()?;
             let before = state.memory.host(id).cloned();
             let mut factory = ResourceFactory {
                 device: &self.device,
@@ -807,7 +889,10 @@ impl Executor {
             resources: reused.made_resources(),
             ..ReplanReport::default()
         };
-        let contents = reused.contents();
+        let contents = reused.contents(&passes, &self.state.contents);
+        let frames = self.frames_in_flight.iter();
+        let befores = frames.map(|frame| reused.contents(&passes, &frame.before));
+        let befores: Vec<Contents> = befores.collect();
         let has_new_memory = reused.has_new_memory();
         let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();
         let positions = reused.positions;
@@ -832,6 +917,10 @@ impl Executor {
             &mut self.state.growth_readbacks,
             std::mem::take(&mut before.growth_readbacks),
         );
+        for (frame, before) in self.frames_in_flight.iter_mut().zip(befores) {
+            frame.before = before;
+            frame.changes = None;
+        }
         // Content due for a buffer that has grown again is copied on from there.
         self.state.grown.splice(..0, before.grown);
         if has_new_memory {
@@ -848,14 +937,13 @@ impl Executor {
     /// names.
     fn note_params(&mut self, before: &Plan, positions: &[Option<usize>]) -> Vec<String> {
         let mut uploads = Vec::new();
-        let schedule = self.state.plan.live().zip(positions);
-        for ((pass, position), made) in schedule.zip(&mut self.state.passes) {
+        for (at, (pass, position)) in self.state.plan.live().zip(positions).enumerate() {
             let Some(position) = *position else {
                 continue;
             };
             let old = before.pass(before.schedule().passes[position]);
             if !has_same_params(old, pass) {
-                made.input_versions.stale = true;
+                self.state.contents.note_stale(at);
                 uploads.push(pass.name.value.clone());
             }
         }
@@ -908,6 +996,7 @@ impl Executor {
         &mut self,
         provider: &mut dyn Provider,
     ) -> Result<Option<ReplanReport>, ExecuteError> {
+        self.presence.check()?;
         if !self
             .state
             .growth_readbacks

@@ -177,7 +177,10 @@ impl<'g> Host<'g> {
             let what = format!("{preset}, frame {index}, {:?}", frame.end);
             if frame.end != Some(End::Submitted) {
                 let told = fault == Some(FaultKind::NeverRan);
-                assert!(told || fault.is_none() && !frame.is_read, "{what}: {fault:?}");
+                assert!(
+                    told || fault.is_none() && !frame.is_read,
+                    "{what}: {fault:?}"
+                );
                 assert!(!reports.contains_key(index), "{what}");
                 continue;
             }
@@ -239,5 +242,8 @@ fn frames_that_never_ran_leave_nothing_stale() {
         assert!(right > FRAMES / PRESETS.len() / 8, "{preset}: only {right}");
         stales += stale;
     }
-    assert!(stales > 0, "no frame was stale, so none need have been told");
+    assert!(
+        stales > 0,
+        "no frame was stale, so none need have been told"
+    );
 }

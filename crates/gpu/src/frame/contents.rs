@@ -94,7 +94,10 @@ impl Contents {
             *latest = *known;
         }
         let known = other.host_copies.iter().find(|((_, copy), _)| *copy == of);
-        let copy = self.host_copies.iter_mut().find(|((_, copy), _)| *copy == id);
+        let copy = self
+            .host_copies
+            .iter_mut()
+            .find(|((_, copy), _)| *copy == id);
         if let (Some((_, copied)), Some((_, known))) = (copy, known) {
             *copied = *known;
         }

@@ -3,7 +3,7 @@
 
 use crate::{
     buffer,
-    error::{ExecuteError, scoped, wait},
+    error::{ExecuteError, scoped, submit, wait},
     pipelines::handles::{GpuOperand, Handles},
     signal::{Progress, Signal},
 };
@@ -29,6 +29,8 @@ pub(super) struct CpuTurn<'t> {
     pub gives_up: &'t dyn Fn() -> bool,
     /// Time that the work of the pass took so far; `None` if it had none.
     pub worked: Option<Duration>,
+    /// Number of the frame.
+    pub frame: u32,
     /// True if a part of the frame was submitted.
     pub has_submitted: bool,
 }
@@ -109,9 +111,7 @@ impl CpuTurn<'_> {
         };
         let next = self.device.create_command_encoder(&next);
         let done = std::mem::replace(encoder, next);
-        scoped(self.device, "frame, before work of the CPU", || {
-            self.queue.submit([done.finish()])
-        })?;
+        submit((self.device, self.queue), done, self.frame)?;
         self.has_submitted = true;
         // After an error it may be mapped yet: it comes back behind `unmap` alone.
         self.wait_for(&mapped)?;

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::{
     device::{Gpu, partial},
-    error::{ExecuteError, poll, scoped, wait, with_table},
+    error::{ExecuteError, poll, submit, wait, with_table},
     memory::{
         import::differs,
         memory::{Memory, ResourceFactory, check_bound, check_relied_on},
@@ -46,9 +46,15 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// or readbacks, collect its report with [`poll`](Self::poll), which does not wait, in this frame
 /// or a later one, or with [`finish`](Self::finish), which waits. Submit the encoders of all
 /// frames, in the order of encoding: later frames use the results of earlier ones, in skipped
-/// passes and as `.previous`. If an encoder is dropped instead, or wgpu refuses its submission, its
-/// passes count as run: encode the next frame with [`Frame::all`], which runs them again; the
-/// `.previous` contents of that next frame are then not those of the frame before.
+/// passes and as `.previous`.
+///
+/// A frame is *lost* if its encoder is dropped instead, or wgpu refuses its commands, in `finish`
+/// or in `submit`. Each frame that is encoded after that is as if the lost one had never been
+/// encoded, but for its number; so are `.previous` contents and materials with
+/// [`keep`](Resource::keep). A frame that was encoded before, and runs without the lost one or in
+/// another order than that of encoding, may show something stale; `.previous` contents and
+/// materials with `keep` then go on from what the frames have left that ran.
+/// [`take_faults`](Self::take_faults) tells the numbers of all these frames.
 ///
 /// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
 /// results that the graph document lists, *captures* are further contents that
@@ -120,7 +126,7 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
         let device = pipelines.device();
-        let presence = Presence::new(device)?;
+        let presence = Presence::new(device).map_err(|error| with_table(error, &plan))?;
         check_backend(device, &plan)?;
         let mut factory = ResourceFactory {
             device,
@@ -128,6 +134,8 @@ impl Executor {
             provider,
         };
         let state = State::new(plan, pipelines, &mut factory)?;
+        let frames_in_flight =
+            FramesInFlight::new(device).map_err(|error| with_table(error, &state.plan))?;
         let mut executor = Self {
             device: device.clone(),
             presence,
@@ -139,7 +147,7 @@ impl Executor {
             host_changes: HostChanges::default(),
             knows_changes: false,
             frames: 0,
-            frames_in_flight: FramesInFlight::new(device)?,
+            frames_in_flight,
             staging: Staging::default(),
             skipped: Vec::new(),
         };
@@ -161,7 +169,7 @@ impl Executor {
     }
 
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
-    /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
+    /// frame's number, counted from 0 and never given twice. It never waits; any number of frames may be in flight.
     /// Several may be encoded before the first is submitted, with changes of params, plan, imports
     /// and provider between them: each keeps the resources and values that it was encoded with.
     /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit the
@@ -175,8 +183,9 @@ impl Executor {
     /// [has versions](Provider::has_versions), or a plan without provided resources; and a plan
     /// without imports in which no pass uses `.previous` contents, a resource with
     /// [`keep`](Resource::keep) or the uniform [`frame`](skiagraph_graph::FRAME_BYTES). Frames with
-    /// [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are never left out so. A
-    /// submission that wgpu refuses counts as done: encode the next frame with [`Frame::all`].
+    /// [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are never left out so.
+    ///
+    /// While a frame before is not known to be done, `encode` polls the device, without waiting.
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
@@ -205,9 +214,10 @@ impl Executor {
     ///
     /// # Errors
     /// Those of `encode`, except that passes may work on the CPU; [`ExecuteError::CpuWork`] if
-    /// their work fails, [`ExecuteError::Unfinished`] if `gives_up` has ended the frame. A frame
-    /// that failed has no report and does not count: the next one runs its passes again, from the
-    /// same `.previous` contents. After `Unfinished` the GPU may never finish.
+    /// their work fails, [`ExecuteError::Unfinished`] if `gives_up` has ended the frame,
+    /// [`ExecuteError::Refused`] if wgpu refuses the frame's commands. A frame that failed has no
+    /// report and does not count: the next one runs its passes again, from the same `.previous`
+    /// contents. After `Unfinished` the GPU may never finish.
     pub fn submit(
         &mut self,
         frame: &Frame<'_>,
@@ -217,11 +227,7 @@ impl Executor {
         let begun = wgpu::CommandEncoderDescriptor { label };
         let mut encoder = self.device.create_command_encoder(&begun);
         let index = self.encode_with(&mut encoder, frame, Some(gives_up))?;
-        let name = format!("frame {index}");
-        scoped(&self.device, &name, || {
-            self.queue.submit([encoder.finish()])
-        })?;
-        Ok(index)
+        submit((&self.device, &self.queue), encoder, index).map(|()| index)
     }
 
     fn encode_with(
@@ -292,8 +298,7 @@ impl Executor {
             frame_in_flight.counters = Counters::new(&state.plan, device)?;
         }
         let rests = self.decision.rests;
-        self.frames_in_flight
-            .number(frame_in_flight, rests, device)
+        self.frames_in_flight.number(frame_in_flight, rests, device)
     }
 
     /// Encodes a frame that everything is ready for.
@@ -328,6 +333,7 @@ impl Executor {
             staging: &mut self.staging,
             gives_up,
             worked: None,
+            frame: frame_in_flight.index,
             has_submitted: false,
         });
         let encoded = state.encode(&self.decision, frame_in_flight, encoder, cpu.as_mut());
@@ -373,7 +379,7 @@ impl Executor {
     /// Returns the report of the oldest frame that requested times, statistics or readbacks (fields
     /// of [`Frame`]) and has not been reported yet. `None` if the GPU has not finished that frame,
     /// or if no such frame is left. It never waits. Each frame with a request brings one report, in
-    /// the order of encoding; frames whose encoder was dropped without being submitted bring none.
+    /// the order of encoding; lost frames (see [`Executor`]) bring none.
     ///
     /// # Errors
     /// If the device was lost, or a readback or the times of the frame failed. The failed frame
@@ -442,7 +448,8 @@ impl Executor {
 
     /// Returns the number of encoded frames that requested times, statistics or readbacks (fields
     /// of [`Frame`]) and have not been reported yet. It grows without bound if a host makes a
-    /// request in every frame but does not call [`poll`](Self::poll).
+    /// request in every frame but does not call [`poll`](Self::poll). Frames that are known to be
+    /// lost do not count.
     pub fn under_way(&self) -> usize {
         self.frames_in_flight.asked()
     }
@@ -453,8 +460,8 @@ impl Executor {
     /// passes; the number is `u32::MAX` if no frame was encoded.
     ///
     /// # Errors
-    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotRun`], after ten seconds, if the
-    /// frame to report was not submitted.
+    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotRun`] if the frame to report is lost
+    /// and no other has a report, or, after ten seconds, if it was not submitted.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         self.finish_within(None)
     }
@@ -653,7 +660,7 @@ impl Executor {
         } else {
             self.host_changes.touch_all();
         }
-        refreshed
+        refreshed.map_err(|error| with_table(error, self.plan()))
     }
 
     /// Notes which provided resources have changed; called after live passes have the new ones.

@@ -154,7 +154,8 @@ impl State {
             if let Some(id) = missing(&self.plan, &self.memory, at) {
                 return Err(not_there(&self.plan, &self.memory, id, at));
             }
-            made.bind(&self.plan, at, &self.memory, ping_pong, device)?;
+            made.bind(&self.plan, at, &self.memory, ping_pong, device)
+                .map_err(|error| with_table(error, &self.plan))?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 //! frames that ran in another order than they were encoded in.
 
 use crate::buffers::{INPUT, OLD, OUT, SEED, SEED_PARAM, compute, document, shader, writes};
-use crate::given::Number;
+use crate::given::{KIND, Number, STORAGE, buffer, sums, sums_request, texture};
 use crate::host::{
     GPU, LOSSES, encoder, executor, frame, lose, lost, numbers, planned, request, set, submit,
     words,
@@ -244,7 +244,9 @@ fn what_stays_survives_a_lost_copy() {
         let plan = executor.plan().with(|request| {
             request.grown.insert("list".to_owned(), 9);
         });
-        executor.replace_graph(plan.unwrap(), &mut NoProvider).unwrap();
+        executor
+            .replace_graph(plan.unwrap(), &mut NoProvider)
+            .unwrap();
         lost(&mut executor, &Frame::default(), loss);
         let expected = [10, 11, 12, 13, 14, 15, 0, 0, 0];
         assert_eq!(numbers(&mut executor, "list"), expected, "{loss:?}");
@@ -321,12 +323,42 @@ fn a_history_goes_on_from_what_was_written_last() {
     }
 }
 
+/// `submit` returns what wgpu refuses; nothing reaches the host's handler of uncaptured errors.
+#[test]
+fn commands_of_submit_that_are_refused_are_an_error() {
+    let mut executor = executor(&sums(), &sums_request());
+    let image = texture(&KIND, 1);
+    let import = |executor: &mut Executor, number: u32| {
+        let more = buffer(&[number], STORAGE);
+        executor.import_texture("image", &image).unwrap();
+        executor.import_buffer("more", &more).unwrap();
+        more
+    };
+    let read = Frame::new().with_read(&["sum"]);
+    let more = import(&mut executor, 1);
+    executor.submit(&read, &|| false).unwrap();
+    assert_eq!(words(&executor.finish().unwrap(), 0)[0], 2);
+    more.destroy();
+    let refused = executor.submit(&read, &|| false);
+    match refused {
+        Err(ExecuteError::Refused { frame, .. }) => assert_eq!(frame, 1),
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(told(&mut executor), [(1, FaultKind::NeverRan)]);
+    import(&mut executor, 2);
+    executor.submit(&read, &|| false).unwrap();
+    assert_eq!(words(&executor.finish().unwrap(), 0)[0], 3);
+    assert_eq!(told(&mut executor), []);
+}
+
 /// Only so many faults wait for a host that never asks.
 #[test]
 fn faults_that_nobody_asks_for_take_no_memory_without_bound() {
     let mut executor = executor(&caches(), &request(&NoProvider));
     let all = Frame::new().with_all(true);
-    let last = (0..1100).map(|_| lost(&mut executor, &all, LOSSES[0])).last();
+    let last = (0..1100)
+        .map(|_| lost(&mut executor, &all, LOSSES[0]))
+        .last();
     let faults = executor.take_faults().unwrap();
     assert_eq!(faults.len(), 1024);
     assert_eq!(faults.last().map(|fault| fault.index), last);

@@ -34,6 +34,9 @@ pub(super) type HostCopy = (ResourceId, ResourceId);
 /// that copied it first.
 type Copied = (u64, u64);
 
+/// What a copy holds whose content is not known: no content has this version.
+const UNKNOWN: Copied = (0, 0);
+
 /// Copies into the memory that is there: one is made for every frame.
 impl Clone for Contents {
     fn clone(&self) -> Self {
@@ -272,26 +275,37 @@ impl Contents {
         }
     }
 
-    /// Forgets what passes have seen, so that all run again, and which of `frames` were lost: of
+    /// Forgets what passes have seen, so that all run again, and what lost frames have written: of
     /// resources with two allocations the latest is that which the last of the others has written.
-    /// Each of the frames is given by the contents before it, and true if it is lost.
-    pub fn forget(&mut self, frames: &[(&Self, bool)]) {
-        for (at, (_, latest)) in self.latest.iter_mut().enumerate() {
-            let mut after = *latest;
-            let mut written = None;
-            for (before, is_lost) in frames.iter().rev() {
-                let before = before.latest[at].1;
-                if !is_lost && before != after {
-                    written = written.or(Some(after));
+    /// `frames` has the contents before each frame, in which the same is forgotten, and true if the
+    /// frame is lost.
+    pub fn forget(&mut self, frames: &mut [(&mut Self, bool)]) {
+        for at in 0..self.latest.len() {
+            let first = frames.first().map(|(first, _)| first.latest[at].1);
+            let mut right = first.unwrap_or(self.latest[at].1);
+            for number in 0..frames.len() {
+                let next = frames.get(number + 1);
+                let after = next.map_or(self.latest[at].1, |(next, _)| next.latest[at].1);
+                let (before, is_lost) = &mut frames[number];
+                let assumed = std::mem::replace(&mut before.latest[at].1, right);
+                if !*is_lost && assumed != after {
+                    right = after;
                 }
-                after = before;
             }
-            *latest = written.unwrap_or(after);
+            self.latest[at].1 = right;
+        }
+        for at in 0..self.host_copies.len() {
+            let first = frames.first().map(|(first, _)| first.host_copies[at].1);
+            let mut right = first.unwrap_or(self.host_copies[at].1).and(Some(UNKNOWN));
+            for (before, is_lost) in &mut *frames {
+                before.host_copies[at].1 = right;
+                right = if *is_lost { right } else { Some(UNKNOWN) };
+            }
+            self.host_copies[at].1 = right;
         }
         self.seen.fill(None);
-        for (_, copied) in &mut self.host_copies {
-            // No content has this version.
-            *copied = copied.map(|(_, number)| (0, number));
+        for (before, _) in frames {
+            before.seen.fill(None);
         }
     }
 }

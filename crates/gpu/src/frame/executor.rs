@@ -423,7 +423,6 @@ impl Executor {
         }
         if setback.is_lost || setback.forgets {
             state.idle.note_change();
-            let has_memory = state.plan.remembers();
             for lost in frames.iter_mut().rev().filter(|frame| frame.is_lost()) {
                 self.host_changes.tell_again(lost.changed);
                 state.grown.splice(..0, lost.grown.drain(..));
@@ -433,12 +432,11 @@ impl Executor {
                 state.contents.rewind(&state.plan, &first.before);
             }
             if setback.forgets {
-                let followed = frames.iter().filter(|frame| frame.is_followed());
-                let frames = followed.map(|frame| (&frame.before, frame.is_lost()));
-                state.contents.forget(&frames.collect::<Vec<_>>());
-                if has_memory {
-                    self.host_changes.note_new_memory();
-                }
+                let followed = frames.iter_mut().filter(|frame| frame.is_followed());
+                let frames = followed.map(|frame| (frame.is_lost(), &mut frame.before));
+                let mut frames: Vec<_> = frames.map(|(lost, before)| (before, lost)).collect();
+                state.contents.forget(&mut frames);
+                self.host_changes.note_new_memory();
             }
             self.ping_pong = state.ping_pong(false);
         }
@@ -898,7 +896,10 @@ impl Executor {
         };
         let contents = reused.contents(&passes, &self.state.contents);
         let frames = self.frames_in_flight.iter();
-        let befores = frames.map(|frame| reused.contents(&passes, &frame.before));
+        let befores = frames.map(|frame| match frame.is_followed() {
+            true => reused.contents(&passes, &frame.before),
+            false => Contents::default(),
+        });
         let befores: Vec<Contents> = befores.collect();
         let has_new_memory = reused.has_new_memory();
         let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();

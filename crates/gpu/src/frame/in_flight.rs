@@ -294,9 +294,10 @@ impl FramesInFlight {
             setback.rewind = Some(frame.number);
         }
         let rewound = setback.rewind.unwrap_or(u64::MAX);
-        let mut lost = self.under_way.iter().filter(|it| it.fate == Fate::Lost);
+        let is_lost = |it: &&FrameInFlight| it.fate == Fate::Lost && it.is_followed;
+        let mut lost = self.under_way.iter().filter(is_lost);
         setback.is_lost = lost.clone().next().is_some();
-        let built_on = lost.find(|it| it.is_followed && it.number < rewound);
+        let built_on = lost.find(|it| it.number < rewound);
         if let Some(number) = built_on.map(|frame| frame.number) {
             self.doubt(number, FaultKind::WithoutPredecessor);
             setback.forgets = true;
@@ -366,58 +367,58 @@ impl FramesInFlight {
         device: &wgpu::Device,
         presence: &Presence,
     ) -> Result<Option<FrameReport>, ExecuteError> {
-        while let Some(mut frame_in_flight) = self.under_way.pop_front() {
-            if frame_in_flight.fate == Fate::Pending || frame_in_flight.is_being_mapped() {
-                self.under_way.push_front(frame_in_flight);
-                // A lost device does not report that work under way will never come.
-                presence.check()?;
-                return Ok(None);
-            }
-            let timing = if frame_in_flight.is_timed {
-                match frame_in_flight.times(device) {
-                    Ok(Some(timing)) => Some(timing),
-                    Ok(None) => {
-                        self.under_way.push_front(frame_in_flight);
-                        // They never come from a device that is lost meanwhile.
-                        presence.check()?;
-                        return Ok(None);
-                    }
-                    Err(error) => {
-                        frame_in_flight.timer = None;
-                        self.recycle(frame_in_flight);
-                        return Err(error);
-                    }
-                }
-            } else {
-                None
-            };
-            let fetched: Result<Vec<_>, _> = frame_in_flight
-                .fetches
-                .drain(..)
-                .map(|fetch| fetch.take(&mut self.staging))
-                .collect();
-            let counted = frame_in_flight
-                .counters
-                .as_mut()
-                .map(Counters::take)
-                .transpose();
-            let report = fetched.and_then(|readbacks| {
-                Ok(FrameReport {
-                    index: frame_in_flight.index,
-                    timing,
-                    statistics: counted?,
-                    skipped: names(&frame_in_flight.skipped),
-                    readbacks,
-                    fault: frame_in_flight.fault,
-                })
-            });
-            self.recycle(frame_in_flight);
-            if report.is_err() {
-                presence.check()?;
-            }
-            return report.map(Some);
+        let Some(mut frame_in_flight) = self.under_way.pop_front() else {
+            return Ok(None);
+        };
+        if frame_in_flight.fate == Fate::Pending || frame_in_flight.is_being_mapped() {
+            self.under_way.push_front(frame_in_flight);
+            // A lost device does not report that work under way will never come.
+            presence.check()?;
+            return Ok(None);
         }
-        Ok(None)
+        let timing = if frame_in_flight.is_timed {
+            match frame_in_flight.times(device) {
+                Ok(Some(timing)) => Some(timing),
+                Ok(None) => {
+                    self.under_way.push_front(frame_in_flight);
+                    // They never come from a device that is lost meanwhile.
+                    presence.check()?;
+                    return Ok(None);
+                }
+                Err(error) => {
+                    frame_in_flight.timer = None;
+                    self.recycle(frame_in_flight);
+                    return Err(error);
+                }
+            }
+        } else {
+            None
+        };
+        let fetched: Result<Vec<_>, _> = frame_in_flight
+            .fetches
+            .drain(..)
+            .map(|fetch| fetch.take(&mut self.staging))
+            .collect();
+        let counted = frame_in_flight
+            .counters
+            .as_mut()
+            .map(Counters::take)
+            .transpose();
+        let report = fetched.and_then(|readbacks| {
+            Ok(FrameReport {
+                index: frame_in_flight.index,
+                timing,
+                statistics: counted?,
+                skipped: names(&frame_in_flight.skipped),
+                readbacks,
+                fault: frame_in_flight.fault,
+            })
+        });
+        self.recycle(frame_in_flight);
+        if report.is_err() {
+            presence.check()?;
+        }
+        report.map(Some)
     }
 
     /// Gives up the GPU times of the oldest frame with requests, and waits for no mapping, if the

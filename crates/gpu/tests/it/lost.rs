@@ -8,6 +8,7 @@ use crate::host::{
     words,
 };
 use crate::support::Files;
+use crate::tiny::image;
 use skiagraph_gpu::{ExecuteError, Executor, FaultKind, Frame};
 use skiagraph_graph::{NoProvider, ParamValue};
 
@@ -140,6 +141,68 @@ fn frames_in_another_order_are_told() {
     run(held);
     assert_eq!(told(&mut executor), [(late, out)]);
     assert_eq!(numbers(&mut executor, "b"), [13]);
+}
+
+/// Losses that become known one after the other.
+#[test]
+fn frames_that_are_lost_one_by_one_leave_nothing() {
+    let add = compute("add", "", r#""old": "total.previous", "out": "total""#);
+    let make = compute("make", "run: OnChange,", r#""out": "a""#);
+    let params = format!(r#"{SEED_PARAM} U32(name: "other", default: 1, min: 1)"#);
+    let names = ["a", "total"];
+    let files = document(&params, &names, &[make, add], &names)
+        .with("make.wgsl", writes(SEED, "params.seed"))
+        .with("add.wgsl", writes(OLD, "old[0] + 1u"))
+        .edited(
+            "graph.ron",
+            r#"name: "total", count: 1"#,
+            r#"name: "total", count: "other""#,
+        );
+    let values = |executor: &mut Executor| {
+        let report = frame(executor, &names);
+        [0, 1].map(|at| words(&report, at)[0])
+    };
+    for losses in LOSSES.map(|loss| [loss, LOSSES[0]]) {
+        for order in [[0, 1], [1, 0]] {
+            let mut executor = executor(&files, &request(&NoProvider));
+            assert_eq!(values(&mut executor), [5, 1]);
+            seed(&mut executor, 6);
+            let (one, first) = encoded(&mut executor);
+            let (two, second) = encoded(&mut executor);
+            let mut commands = [Some(first), Some(second)];
+            for (at, loss) in order.into_iter().zip(losses) {
+                lose(commands[at].take().unwrap(), loss);
+                let fault = ([one, two][at], FaultKind::NeverRan);
+                assert_eq!(told(&mut executor), [fault]);
+            }
+            assert_eq!(values(&mut executor), [6, 2], "{losses:?}, {order:?}");
+            assert_eq!(values(&mut executor), [6, 3], "{losses:?}, {order:?}");
+            // A frame at rest for another plan, and one that is lost before the plan changes.
+            lost(&mut executor, &Frame::default(), losses[0]);
+            set(&mut executor, "other", ParamValue::U32(2));
+            assert_eq!(values(&mut executor)[0], 6);
+        }
+    }
+}
+
+/// A plan may change while frames are under way that asked for contents at rest.
+#[test]
+fn frames_at_rest_outlive_a_change_of_the_plan() {
+    let mut executor = executor(&caches(), &request(&NoProvider));
+    assert_eq!(numbers(&mut executor, "b"), [6]);
+    let mut commands = encoder();
+    let read = Frame::new().with_read(&["b"]);
+    executor.encode(&mut commands, &read).unwrap();
+    let plan = planned(&image(), &request(&NoProvider));
+    executor.replace_graph(plan, &mut NoProvider).unwrap();
+    let mut next = encoder();
+    executor.encode(&mut next, &Frame::default()).unwrap();
+    let plan = planned(&caches(), &request(&NoProvider));
+    executor.replace_graph(plan, &mut NoProvider).unwrap();
+    run(commands);
+    lose(next, LOSSES[0]);
+    assert_eq!(words(&executor.finish().unwrap(), 0), [6]);
+    assert_eq!(numbers(&mut executor, "b"), [6]);
 }
 
 /// Several frames of one encoder are lost together.

@@ -29,7 +29,7 @@ enum End {
     SubmitRefused,
 }
 
-/// What is known of a frame that was encoded.
+/// A frame that was encoded.
 struct Encoded {
     time: usize,
     is_read: bool,
@@ -64,7 +64,7 @@ fn start(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Executor {
     Executor::on(gpu, plan, provider).unwrap()
 }
 
-/// What a scene shows that was made for this time.
+/// The picture of a scene that was made for this time.
 fn fresh(gpu: &Gpu, preset: &str, time: usize) -> Vec<u32> {
     let mut provider = SceneProvider::from_parts(parts(), sun());
     set(&mut provider, time);

@@ -22,9 +22,9 @@ pub(super) struct Contents {
     host_copies: Vec<(HostCopy, Option<Copied>)>,
     /// Versions of the inputs of each pass of the schedule when it ran last; `None` if it has not
     /// run, or its results are lost.
-    seen: Vec<Option<Vec<u64>>>,
+    pub seen: Vec<Option<Vec<u64>>>,
     /// True for each pass whose params or state have changed since it ran.
-    stale: Vec<bool>,
+    pub stale: Vec<bool>,
 }
 
 /// A provided resource, and the copy of it that the next frame reads as `.previous`.
@@ -34,7 +34,7 @@ pub(super) type HostCopy = (ResourceId, ResourceId);
 /// that copied it first.
 type Copied = (u64, u64);
 
-/// What a copy holds whose content is not known: no content has this version.
+/// Content of a copy that is not known: no content has this version.
 const UNKNOWN: Copied = (0, 0);
 
 /// Copies into the memory that is there: one is made for every frame.
@@ -104,26 +104,6 @@ impl Contents {
         if let (Some((_, copied)), Some((_, known))) = (copy, known) {
             *copied = *known;
         }
-    }
-
-    /// Marks the pass at position `at` of the schedule as changed: its params or its state.
-    pub fn note_stale(&mut self, at: usize) {
-        self.stale[at] = true;
-    }
-
-    /// True if the params or the state of a pass have changed since it ran.
-    pub fn is_stale(&self, at: usize) -> bool {
-        self.stale[at]
-    }
-
-    /// Returns the versions of the inputs that a pass saw when it ran last.
-    pub fn seen(&self, at: usize) -> Option<&[u64]> {
-        self.seen[at].as_deref()
-    }
-
-    /// Sets the versions of the inputs that a pass saw when it ran last; `None` makes it run again.
-    pub fn set_seen(&mut self, at: usize, seen: Option<Vec<u64>>) {
-        self.seen[at] = seen;
     }
 
     /// Sets `runs` to true for each pass of the schedule that runs. A group runs if one of its

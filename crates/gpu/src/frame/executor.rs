@@ -169,14 +169,14 @@ impl Executor {
     }
 
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
-    /// frame's number, counted from 0 and never given twice. It never waits; any number of frames may be in flight.
-    /// Several may be encoded before the first is submitted, with changes of params, plan, imports
-    /// and provider between them: each keeps the resources and values that it was encoded with.
-    /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit the
-    /// frames in the order of encoding. Textures and buffers that the graph document declares with
-    /// [`grow`](skiagraph_graph::Growth) and that proved too small for an earlier, submitted frame
-    /// are larger from this frame on (see [`Plan::grown`]), and their views are others
-    /// ([`output_view`](Self::output_view)).
+    /// frame's number, counted from 0 and never given twice. It never waits; any number of frames
+    /// may be in flight. Several may be encoded before the first is submitted, with changes of
+    /// params, plan, imports and provider between them: each keeps the resources and values that it
+    /// was encoded with. Changes of the provider are seen from the next [`refresh`](Self::refresh)
+    /// on. Submit the frames in the order of encoding. Textures and buffers that the graph document
+    /// declares with [`grow`](skiagraph_graph::Growth) and that proved too small for an earlier,
+    /// submitted frame are larger from this frame on (see [`Plan::grown`]), and their views are
+    /// others ([`output_view`](Self::output_view)).
     ///
     /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
     /// outputs of that frame are still there. This needs a provider that
@@ -314,7 +314,7 @@ impl Executor {
             rests,
             ping_pong,
         } = &self.decision;
-        let number = frame_in_flight.number();
+        let number = frame_in_flight.number;
         if !rests {
             frame_in_flight.before.clone_from(&state.contents);
         }
@@ -410,7 +410,7 @@ impl Executor {
         if self.frames_in_flight.is_pending() {
             self.settle()?;
         }
-        Ok(self.frames_in_flight.take_faults())
+        Ok(std::mem::take(&mut self.frames_in_flight.faults))
     }
 
     /// Finds out which frames have run, and takes back what was noted for those that are lost.
@@ -423,19 +423,32 @@ impl Executor {
         }
         if setback.is_lost || setback.forgets {
             state.idle.note_change();
-            for lost in frames.iter_mut().rev().filter(|frame| frame.is_lost()) {
+            for lost in frames
+                .under_way
+                .iter_mut()
+                .rev()
+                .filter(|frame| frame.is_lost())
+            {
                 self.host_changes.tell_again(lost.changed);
                 state.grown.splice(..0, lost.grown.drain(..));
             }
-            let first = frames.iter().find(|it| Some(it.number()) == setback.rewind);
+            let first = frames
+                .under_way
+                .iter()
+                .find(|it| Some(it.number) == setback.rewind);
             if let Some(first) = first {
                 state.contents.rewind(&state.plan, &first.before);
             }
             if setback.forgets {
-                let followed = frames.iter_mut().filter(|frame| frame.is_followed());
-                let frames = followed.map(|frame| (frame.is_lost(), &mut frame.before));
-                let mut frames: Vec<_> = frames.map(|(lost, before)| (before, lost)).collect();
-                state.contents.forget(&mut frames);
+                let followed = frames
+                    .under_way
+                    .iter_mut()
+                    .filter(|frame| frame.is_followed);
+                let followed = followed.map(|frame| {
+                    let is_lost = frame.is_lost();
+                    (&mut frame.before, is_lost)
+                });
+                state.contents.forget(&mut followed.collect::<Vec<_>>());
                 self.host_changes.note_new_memory();
             }
             self.ping_pong = state.ping_pong(false);
@@ -895,8 +908,8 @@ impl Executor {
             ..ReplanReport::default()
         };
         let contents = reused.contents(&passes, &self.state.contents);
-        let frames = self.frames_in_flight.iter();
-        let befores = frames.map(|frame| match frame.is_followed() {
+        let frames = self.frames_in_flight.under_way.iter();
+        let befores = frames.map(|frame| match frame.is_followed {
             true => reused.contents(&passes, &frame.before),
             false => Contents::default(),
         });
@@ -925,7 +938,7 @@ impl Executor {
             &mut self.state.growth_readbacks,
             std::mem::take(&mut before.growth_readbacks),
         );
-        for (frame, before) in self.frames_in_flight.iter_mut().zip(befores) {
+        for (frame, before) in self.frames_in_flight.under_way.iter_mut().zip(befores) {
             frame.before = before;
             frame.changes = None;
         }
@@ -951,7 +964,7 @@ impl Executor {
             };
             let old = before.pass(before.schedule().passes[position]);
             if !has_same_params(old, pass) {
-                self.state.contents.note_stale(at);
+                self.state.contents.stale[at] = true;
                 uploads.push(pass.name.value.clone());
             }
         }

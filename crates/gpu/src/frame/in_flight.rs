@@ -31,13 +31,13 @@ const FAULTS: usize = 1024;
 pub(super) struct FrameInFlight {
     pub index: u32,
     /// Number that the frame leaves on the GPU; 0 if it leaves none.
-    number: u64,
+    pub number: u64,
     stamp: Option<Stamp>,
     fate: Fate,
     /// True if `fate` was not known when the frames were last looked at.
     is_news: bool,
     /// True if passes run in the frame, so that later ones find other contents.
-    is_followed: bool,
+    pub is_followed: bool,
     /// Number of the frame before.
     follows: u64,
     /// True if the frame must run right after that one; if not, after any one before.
@@ -69,7 +69,8 @@ pub(super) struct FrameInFlight {
 
 /// The frames in flight, and the parts of finished ones that later frames reuse.
 pub(super) struct FramesInFlight {
-    under_way: VecDeque<FrameInFlight>,
+    /// In the order of encoding.
+    pub under_way: VecDeque<FrameInFlight>,
     spare: Vec<FrameInFlight>,
     pub staging: StagingPool,
     numbers: Numbers,
@@ -80,10 +81,10 @@ pub(super) struct FramesInFlight {
     /// First number of the frames that were encoded since the last fault was found.
     since_fault: u64,
     /// Faults that the host has not asked for.
-    faults: Vec<FrameFault>,
+    pub faults: Vec<FrameFault>,
 }
 
-/// What follows from the frames that are known to have run, or to be lost.
+/// Consequences of the frames that are known to have run, or to be lost.
 #[derive(Default)]
 pub(super) struct Setback {
     /// Number of changes before the last frame that ran.
@@ -99,16 +100,6 @@ pub(super) struct Setback {
 impl FrameInFlight {
     fn is_asked(&self) -> bool {
         self.is_timed || self.counters.is_some() || !self.fetches.is_empty()
-    }
-
-    /// Returns the number that the frame leaves on the GPU.
-    pub fn number(&self) -> u64 {
-        self.number
-    }
-
-    /// True if passes run in the frame.
-    pub fn is_followed(&self) -> bool {
-        self.is_followed
     }
 
     /// True if the frame is known to have never run.
@@ -161,14 +152,14 @@ impl FramesInFlight {
 
     /// Returns the number of frames that will bring a report.
     pub fn asked(&self) -> usize {
-        let mut asked = self.under_way.iter();
-        asked.by_ref().filter(|frame| frame.is_asked()).count()
+        let asked = self.under_way.iter().filter(|frame| frame.is_asked());
+        asked.count()
     }
 
     /// Returns the index of the oldest frame that will bring a report.
     pub fn oldest_asked(&self) -> Option<u32> {
-        let mut asked = self.under_way.iter().filter(|frame| frame.is_asked());
-        asked.next().map(|frame| frame.index)
+        let mut asked = self.under_way.iter();
+        asked.find(|it| it.is_asked()).map(|frame| frame.index)
     }
 
     /// True if it is not known of some frame whether it ran.
@@ -178,23 +169,9 @@ impl FramesInFlight {
 
     /// Returns the least number of a frame of which it is not known whether it ran.
     pub fn oldest_pending(&self) -> u64 {
-        let mut pending = self.under_way.iter().filter(|it| it.fate == Fate::Pending);
-        pending.next().map_or(u64::MAX, |frame| frame.number)
-    }
-
-    /// Returns the frames in the order of encoding.
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &FrameInFlight> {
-        self.under_way.iter()
-    }
-
-    /// Returns the frames in the order of encoding.
-    pub fn iter_mut(&mut self) -> impl DoubleEndedIterator<Item = &mut FrameInFlight> {
-        self.under_way.iter_mut()
-    }
-
-    /// Returns the faults that were found since the last call.
-    pub fn take_faults(&mut self) -> Vec<FrameFault> {
-        std::mem::take(&mut self.faults)
+        let mut pending = self.under_way.iter();
+        let oldest = pending.find(|frame| frame.fate == Fate::Pending);
+        oldest.map_or(u64::MAX, |frame| frame.number)
     }
 
     /// Returns an empty frame, with the reusable parts of a finished one.
@@ -318,7 +295,8 @@ impl FramesInFlight {
                 if self.faults.len() == FAULTS {
                     self.faults.remove(0);
                 }
-                self.faults.push(FrameFault::new(frame.index, kind));
+                let index = frame.index;
+                self.faults.push(FrameFault { index, kind });
             }
             setback.settled = frame.settled().or(setback.settled);
         }

@@ -164,11 +164,9 @@ impl<'a> Reused<'a> {
         let group = &self.plan.schedule().conditions.group;
         for (at, pass) in made.iter().enumerate() {
             if let Some(former) = self.positions[at].filter(|_| groups[group[at]]) {
-                contents.set_seen(at, self.seen(&pass.inputs, former, old));
+                contents.seen[at] = self.seen(&pass.inputs, former, old);
             }
-            if self.bound(at).is_none_or(|former| old.is_stale(former)) {
-                contents.note_stale(at);
-            }
+            contents.stale[at] = self.bound(at).is_none_or(|former| old.stale[former]);
         }
         contents
     }
@@ -239,7 +237,10 @@ impl<'a> Reused<'a> {
     /// Returns the versions of the inputs that the pass at the position `former` of the former plan
     /// saw when it ran last; `None` if they are not known.
     fn seen(&self, inputs: &[ResourceId], former: usize, old: &Contents) -> Option<Vec<u64>> {
-        let seen = self.old.passes[former].inputs.iter().zip(old.seen(former)?);
+        let seen = self.old.passes[former]
+            .inputs
+            .iter()
+            .zip(old.seen[former].as_ref()?);
         let seen: BTreeMap<ResourceId, u64> = seen.map(|(id, seen)| (*id, *seen)).collect();
         let of = |id: &ResourceId| seen.get(self.same.get(id)?).copied();
         let versions: Vec<u64> = inputs.iter().map(of).collect::<Option<_>>()?;

@@ -116,13 +116,6 @@ pub struct FrameFault {
     pub kind: FaultKind,
 }
 
-impl FrameFault {
-    /// Creates the fault of the frame with this number.
-    pub(super) fn new(index: u32, kind: FaultKind) -> Self {
-        Self { index, kind }
-    }
-}
-
 impl std::fmt::Display for FrameFault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "frame {} {}", self.index, self.kind)

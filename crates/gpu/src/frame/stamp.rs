@@ -60,7 +60,7 @@ fn source(first: u64, device: &wgpu::Device) -> Result<wgpu::Buffer, ExecuteErro
     })?
 }
 
-/// What is known of a frame that was encoded.
+/// Knowledge about a frame that was encoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Fate {
     /// It is not submitted or not done.

@@ -112,7 +112,7 @@ impl State {
     /// Sets other params of the pass at position `at` of the schedule; see [`GpuPass::set_params`].
     pub fn set_params(&mut self, at: usize, params: Vec<Option<wgpu::Buffer>>) {
         self.idle.note_change();
-        self.contents.note_stale(at);
+        self.contents.stale[at] = true;
         self.passes[at].set_params(params);
     }
 
@@ -175,7 +175,7 @@ impl State {
         self.idle.note_change();
         self.contents.rewind(&self.plan, before);
         for (at, _) in runs.iter().enumerate().filter(|(_, runs)| **runs) {
-            self.contents.set_seen(at, None);
+            self.contents.seen[at] = None;
         }
     }
 

@@ -84,7 +84,7 @@ fn a_lost_frame_at_rest_changes_nothing() {
     }
 }
 
-/// What was encoded before the loss was known is told; what comes after it is right.
+/// Frames that were encoded before the loss was known are told; those after it are right.
 #[test]
 fn frames_behind_a_lost_one_are_told() {
     for loss in LOSSES {
@@ -316,7 +316,7 @@ fn what_stays_survives_a_lost_copy() {
     }
 }
 
-/// What changed before a lost frame is told to the next one.
+/// Changes before a lost frame are told to the next one.
 #[test]
 fn flags_are_told_again() {
     let tell = compute("tell", "", r#""out": "told""#);

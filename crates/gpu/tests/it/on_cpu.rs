@@ -228,7 +228,7 @@ fn rests_on_no_failed_frame(run: &str) {
     assert_eq!(sums(&mut executor), (vec![2, 12, 22, 9], 3));
 }
 
-/// What wgpu refuses in front of the work is an error, and the CPU gets nothing stale.
+/// Commands in front of the work that wgpu refuses are an error; the CPU gets nothing stale.
 #[test]
 fn commands_before_the_work_that_are_refused_are_an_error() {
     let mut provider = Given(2);

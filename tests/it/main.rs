@@ -44,6 +44,7 @@ mod layers;
 mod light_buffer;
 mod light_cone;
 mod light_space;
+mod lost_frames;
 mod masked;
 mod mirrored;
 mod moving;

@@ -49,8 +49,7 @@ pub enum ExecuteError {
     OutOfMemory {
         /// Name of the resource or pass that needed the memory.
         name: String,
-        /// The largest resources of the graph as text ([`Plan::memory_table`]); empty if no plan
-        /// was at hand when the error arose.
+        /// The largest resources of the graph as text ([`Plan::memory_table`]).
         table: String,
     },
     /// The [`Provider`](crate::Provider) failed to build a resource, or to submit the commands that
@@ -212,10 +211,25 @@ pub enum ExecuteError {
         /// File, line and column of the pass in the graph document, as text.
         place: String,
     },
-    /// The host called [`Executor::finish`](crate::Executor::finish) for a frame whose encoder it
-    /// has not submitted.
-    #[error("the frame that is waited for was encoded, but not submitted")]
-    NotSubmitted,
+    /// wgpu refused the commands of a frame that [`Executor::submit`](crate::Executor::submit) has
+    /// submitted, for example because an import was destroyed. The frame never ran.
+    #[error("wgpu refused the commands of frame {frame}: {message}")]
+    Refused {
+        /// Number of the frame.
+        frame: u32,
+        /// wgpu's message.
+        message: String,
+    },
+    /// The frame that [`Executor::finish`](crate::Executor::finish) waits for was encoded and has
+    /// not run, so that it has no report.
+    #[error(
+        "frame {frame} has not run: its encoder was dropped or is not submitted, or wgpu refused \
+         its commands; encode another frame and submit it"
+    )]
+    NotRun {
+        /// Number of the frame, as [`Executor::encode`](crate::Executor::encode) returned it.
+        frame: u32,
+    },
     /// GPU timestamps could not be taken; the text is the reason.
     #[error("timestamps could not be taken: {0}")]
     Timing(String),
@@ -289,6 +303,24 @@ pub(crate) fn scoped<T>(
             name: name.to_owned(),
             message: chain(&error),
         }),
+    }
+}
+
+/// Submits the commands of the frame with this number, or a part of them.
+///
+/// # Errors
+/// [`ExecuteError::Refused`].
+pub(crate) fn submit(
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
+    encoder: wgpu::CommandEncoder,
+    frame: u32,
+) -> Result<(), ExecuteError> {
+    let submitted = scoped(device, "frame", || queue.submit([encoder.finish()]));
+    match submitted {
+        Err(ExecuteError::Resource { message, .. }) => {
+            Err(ExecuteError::Refused { frame, message })
+        }
+        other => other.map(drop),
     }
 }
 

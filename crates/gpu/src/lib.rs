@@ -39,7 +39,9 @@ mod signal;
 pub mod timing;
 
 pub use error::ExecuteError;
-pub use frame::{Executor, Frame, FrameReport, Prepared, Preparer, ReplanReport};
+pub use frame::{
+    Executor, FaultKind, Frame, FrameFault, FrameReport, Prepared, Preparer, ReplanReport,
+};
 pub use pipelines::pipelines::Pipelines;
 pub use provider::{CpuWork, Provider, ProviderError};
 pub use readback::{Content, Readback};

@@ -40,12 +40,6 @@ impl Signal {
         Progress::ALL[(self.0.load(Ordering::Acquire) & STATE) as usize]
     }
 
-    /// Signals when the GPU is done with the commands of the encoder.
-    pub fn when_done(&self, encoder: &wgpu::CommandEncoder) {
-        let teller = self.teller();
-        encoder.on_submitted_work_done(move || teller.tell(Progress::Done));
-    }
-
     /// Maps a buffer as soon as the encoder is submitted, and signals when it is mapped.
     pub fn when_mapped(
         &self,

@@ -4,43 +4,73 @@
 //! cost more than most passes. Instead every write, and every change that the host reports, gets a
 //! new number, and a pass remembers the numbers that it has seen.
 
-use super::pass::{GpuPass, InputVersions};
+use super::pass::GpuPass;
 use crate::memory::physical::{PingPong, Versions};
 use skiagraph_graph::{Origin, Plan, ResourceId, When};
-use std::collections::BTreeMap;
 
-/// Version numbers of the contents of a plan's resources.
-#[derive(Clone, Debug, Default)]
+/// Version numbers of the contents of a plan's resources, and those that its passes have seen.
+#[derive(Debug, Default)]
 pub(super) struct Contents {
     /// Version of every resource of the plan, by id.
     versions: Vec<u64>,
     clock: u64,
-    /// Index of the allocation with the latest content, for each resource with two allocations.
-    latest: BTreeMap<ResourceId, usize>,
-    /// Version of the content in each `.previous` copy of a provided resource.
-    copied: BTreeMap<ResourceId, u64>,
-    /// The provided resources that are read as `.previous`, with their copies.
-    host_copies: Vec<HostCopy>,
-    /// Versions before the frame.
-    before: Vec<u64>,
+    /// Index of the allocation with the latest content, for each resource with two allocations, in
+    /// the order of ids.
+    latest: Vec<(ResourceId, usize)>,
+    /// The provided resources that are read as `.previous`, with their copies; `None` for a copy
+    /// that was never filled.
+    host_copies: Vec<(HostCopy, Option<Copied>)>,
+    /// Versions of the inputs of each pass of the schedule when it ran last; `None` if it has not
+    /// run, or its results are lost.
+    pub seen: Vec<Option<Vec<u64>>>,
+    /// True for each pass whose params or state have changed since it ran.
+    pub stale: Vec<bool>,
 }
 
 /// A provided resource, and the copy of it that the next frame reads as `.previous`.
 pub(super) type HostCopy = (ResourceId, ResourceId);
 
+/// Content of a `.previous` copy of a provided resource: its version, and the number of the frame
+/// that copied it first.
+type Copied = (u64, u64);
+
+/// Content of a copy that is not known: no content has this version.
+const UNKNOWN: Copied = (0, 0);
+
+/// Copies into the memory that is there: one is made for every frame.
+impl Clone for Contents {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.versions.clone_from(&other.versions);
+        self.clock = other.clock;
+        self.latest.clone_from(&other.latest);
+        self.host_copies.clone_from(&other.host_copies);
+        self.seen.clone_from(&other.seen);
+        self.stale.clone_from(&other.stale);
+    }
+}
+
 impl Contents {
     /// Creates the versions of a plan whose resources have no known content.
     pub fn new(plan: &Plan, clock: u64) -> Self {
+        let passes = plan.schedule().passes.len();
         let mut contents = Self {
             versions: vec![0; plan.resources().len()],
             clock,
-            host_copies: host_copies(plan).collect(),
+            host_copies: host_copies(plan).map(|copy| (copy, None)).collect(),
+            seen: vec![None; passes],
+            stale: vec![false; passes],
             ..Self::default()
         };
         for &id in plan.schedule().lifetimes.keys() {
             contents.touch(id);
             if plan.versions(id) > 1 {
-                contents.latest.insert(id, 0);
+                contents.latest.push((id, 0));
             }
         }
         contents
@@ -61,11 +91,18 @@ impl Contents {
     /// content.
     pub fn take_over(&mut self, id: ResourceId, other: &Self, of: ResourceId) {
         self.versions[id.index()] = other.versions[of.index()];
-        if let Some(latest) = other.latest.get(&of) {
-            self.latest.insert(id, *latest);
+        let known = other.latest.iter().find(|(known, _)| *known == of);
+        let latest = self.latest.iter_mut().find(|(latest, _)| *latest == id);
+        if let (Some((_, latest)), Some((_, known))) = (latest, known) {
+            *latest = *known;
         }
-        if let Some(copied) = other.copied.get(&of) {
-            self.copied.insert(id, *copied);
+        let known = other.host_copies.iter().find(|((_, copy), _)| *copy == of);
+        let copy = self
+            .host_copies
+            .iter_mut()
+            .find(|((_, copy), _)| *copy == id);
+        if let (Some((_, copied)), Some((_, known))) = (copy, known) {
+            *copied = *known;
         }
     }
 
@@ -100,19 +137,19 @@ impl Contents {
 
     fn has_reason(&self, plan: &Plan, pass: &GpuPass, at: usize, runs: &[bool]) -> bool {
         let conditions = &plan.schedule().conditions;
-        match (conditions.when[at], &pass.input_versions.versions) {
+        match (conditions.when[at], &self.seen[at]) {
             (When::Always, _) => true,
             (When::Never | When::Follows, _) => false,
             (_, None) => true,
             (When::Once, Some(_)) => false,
             (When::OnChange, Some(seen)) => {
-                let inputs = pass.input_versions.inputs.iter().zip(seen);
+                let inputs = pass.inputs.iter().zip(seen);
                 let mut changed = inputs.map(|(id, seen)| {
                     let now = self.versions[counted(plan, *id).unwrap_or(*id).index()];
                     let resource = (*id, plan.resource(*id).keep);
                     now != *seen || conditions.is_written_before(resource, at, runs)
                 });
-                pass.input_versions.stale || changed.any(|changed| changed)
+                self.stale[at] || changed.any(|changed| changed)
             }
         }
     }
@@ -122,8 +159,8 @@ impl Contents {
     pub fn ping_pong(&self, plan: &Plan, runs: &[bool], turn: &mut PingPong) {
         let writers = &plan.schedule().conditions.writers;
         // Entries that exist stay in their place: every frame comes here.
-        turn.retain(|id, _| self.latest.contains_key(id));
-        for (&id, &latest) in &self.latest {
+        turn.retain(|id, _| self.latest.iter().any(|(known, _)| known == id));
+        for &(id, latest) in &self.latest {
             let is_written = writers[id.index()].is_some_and(|group| runs[group]);
             let current = if is_written { 1 - latest } else { latest };
             let previous = latest;
@@ -131,15 +168,14 @@ impl Contents {
         }
     }
 
-    /// Notes that these passes ran.
+    /// Notes that these passes ran in a frame that began with the contents `before`.
     pub fn ran(
         &mut self,
         plan: &Plan,
-        passes: &mut [GpuPass],
+        passes: &[GpuPass],
         runs: &[bool],
-        ping_pong: &PingPong,
+        (before, ping_pong): (&Self, &PingPong),
     ) {
-        self.before.clone_from(&self.versions);
         let conditions = &plan.schedule().conditions;
         let is_kept = |id: ResourceId| plan.resource(id).keep;
         let written = conditions.written.iter().filter(|(at, _)| runs[*at]);
@@ -150,7 +186,7 @@ impl Contents {
         // resource, else they were one group. A pass with `keep` has read its material as it was in
         // its place.
         let mut kept = written.filter(|(_, id)| is_kept(*id)).peekable();
-        for (at, pass) in passes.iter_mut().enumerate() {
+        for (at, pass) in passes.iter().enumerate() {
             while let Some(&(_, id)) = kept.next_if(|(by, _)| *by <= at) {
                 self.touch(id);
             }
@@ -158,46 +194,98 @@ impl Contents {
             if !(runs[at] && remembers) {
                 continue;
             }
-            let InputVersions {
-                inputs,
-                versions,
-                stale,
-            } = &mut pass.input_versions;
-            let seen = versions.get_or_insert_default();
+            let seen = self.seen[at].get_or_insert_default();
             seen.clear();
             // If two allocations take turns, the pass saw the one that the frame began with.
-            seen.extend(inputs.iter().map(|id| match counted(plan, *id) {
-                Some(base) => self.before[base.index()],
+            seen.extend(pass.inputs.iter().map(|id| match counted(plan, *id) {
+                Some(base) => before.versions[base.index()],
                 None => self.versions[id.index()],
             }));
-            *stale = false;
+            self.stale[at] = false;
         }
-        for (id, versions) in ping_pong {
-            self.latest.insert(*id, versions.current);
+        for (id, latest) in &mut self.latest {
+            *latest = ping_pong.get(id).map_or(*latest, |it| it.current);
         }
     }
 
     /// Calls `copy` for each `.previous` copy that was never filled, before a frame's first pass:
-    /// there was no frame before, so the current content takes its place.
-    pub fn first_copies(&mut self, mut copy: impl FnMut(HostCopy)) {
-        for &(base, of_base) in &self.host_copies {
-            self.copied.entry(of_base).or_insert_with(|| {
-                copy((base, of_base));
-                self.versions[base.index()]
+    /// there was no frame before, so the current content takes its place. The frame has this
+    /// number.
+    pub fn first_copies(&mut self, number: u64, mut copy: impl FnMut(HostCopy)) {
+        for (pair, copied) in &mut self.host_copies {
+            copied.get_or_insert_with(|| {
+                copy(*pair);
+                (self.versions[pair.0.index()], number)
             });
         }
     }
 
-    /// Calls `copy` for each provided resource that has changed since it was last copied, after a
-    /// frame's last pass.
-    pub fn copies(&mut self, mut copy: impl FnMut(HostCopy)) {
+    /// Calls `copy` for each provided resource that has changed since it was last copied, after the
+    /// last pass of the frame with this number. What a frame copies that may be lost, from
+    /// `pending` on, is copied again.
+    pub fn copies(&mut self, number: u64, pending: u64, mut copy: impl FnMut(HostCopy)) {
         for at in 0..self.host_copies.len() {
-            let (base, of_base) = self.host_copies[at];
-            let version = self.versions[base.index()];
-            if self.copied.insert(of_base, version) != Some(version) {
-                self.touch(of_base);
-                copy((base, of_base));
+            let (pair, copied) = self.host_copies[at];
+            let version = self.versions[pair.0.index()];
+            let known = copied.filter(|(known, _)| *known == version);
+            if known.is_none() {
+                self.host_copies[at].1 = Some((version, number));
+                self.touch(pair.1);
             }
+            if known.is_none_or(|(_, first)| first >= pending) {
+                copy(pair);
+            }
+        }
+    }
+
+    /// Restores the contents before frames that never ran. What the host has changed since then
+    /// stays changed.
+    pub fn rewind(&mut self, plan: &Plan, before: &Self) {
+        let versions = self.versions.iter_mut().zip(&before.versions);
+        for (resource, (version, before)) in plan.resources().iter().zip(versions) {
+            if resource.origin != Origin::Host {
+                *version = *before;
+            }
+        }
+        self.latest.clone_from(&before.latest);
+        self.host_copies.clone_from(&before.host_copies);
+        self.seen.clone_from(&before.seen);
+        for (stale, before) in self.stale.iter_mut().zip(&before.stale) {
+            *stale |= before;
+        }
+    }
+
+    /// Forgets what passes have seen, so that all run again, and what lost frames have written: of
+    /// resources with two allocations the latest is that which the last of the others has written.
+    /// `frames` has the contents before each frame, in which the same is forgotten, and true if the
+    /// frame is lost.
+    pub fn forget(&mut self, frames: &mut [(&mut Self, bool)]) {
+        for at in 0..self.latest.len() {
+            let first = frames.first().map(|(first, _)| first.latest[at].1);
+            let mut right = first.unwrap_or(self.latest[at].1);
+            for number in 0..frames.len() {
+                let next = frames.get(number + 1);
+                let after = next.map_or(self.latest[at].1, |(next, _)| next.latest[at].1);
+                let (before, is_lost) = &mut frames[number];
+                let assumed = std::mem::replace(&mut before.latest[at].1, right);
+                if !*is_lost && assumed != after {
+                    right = after;
+                }
+            }
+            self.latest[at].1 = right;
+        }
+        for at in 0..self.host_copies.len() {
+            let first = frames.first().map(|(first, _)| first.host_copies[at].1);
+            let mut right = first.unwrap_or(self.host_copies[at].1).and(Some(UNKNOWN));
+            for (before, is_lost) in &mut *frames {
+                before.host_copies[at].1 = right;
+                right = if *is_lost { right } else { Some(UNKNOWN) };
+            }
+            self.host_copies[at].1 = right;
+        }
+        self.seen.fill(None);
+        for (before, _) in frames {
+            before.seen.fill(None);
         }
     }
 }

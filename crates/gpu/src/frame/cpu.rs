@@ -3,7 +3,7 @@
 
 use crate::{
     buffer,
-    error::{ExecuteError, scoped, wait},
+    error::{ExecuteError, scoped, submit, wait},
     pipelines::handles::{GpuOperand, Handles},
     signal::{Progress, Signal},
 };
@@ -29,6 +29,10 @@ pub(super) struct CpuTurn<'t> {
     pub gives_up: &'t dyn Fn() -> bool,
     /// Time that the work of the pass took so far; `None` if it had none.
     pub worked: Option<Duration>,
+    /// Number of the frame.
+    pub frame: u32,
+    /// True if a part of the frame was submitted.
+    pub has_submitted: bool,
 }
 
 /// A range of bytes of a buffer.
@@ -106,8 +110,9 @@ impl CpuTurn<'_> {
             label: Some("frame, behind work of the CPU"),
         };
         let next = self.device.create_command_encoder(&next);
-        self.queue
-            .submit([std::mem::replace(encoder, next).finish()]);
+        let done = std::mem::replace(encoder, next);
+        submit((self.device, self.queue), done, self.frame)?;
+        self.has_submitted = true;
         // After an error it may be mapped yet: it comes back behind `unmap` alone.
         self.wait_for(&mapped)?;
         let taken = {

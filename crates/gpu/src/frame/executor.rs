@@ -1,6 +1,7 @@
 //! Runs a plan on a device, frame by frame.
 
 use super::{
+    contents::Contents,
     cpu::{CpuTurn, Staging},
     fetch::Fetch,
     growth::Unchanged,
@@ -10,7 +11,7 @@ use super::{
     pass::GpuPass,
     prepare::{Prepared, Preparer},
     replan::{ReplanReport, Reused, has_same_params},
-    report::{Frame, FrameReport},
+    report::{Frame, FrameFault, FrameReport},
     state::{FrameDecision, State},
     statistics::Counters,
     timer::Timer,
@@ -18,7 +19,7 @@ use super::{
 };
 use crate::{
     device::{Gpu, partial},
-    error::{ExecuteError, poll, wait, with_table},
+    error::{ExecuteError, poll, submit, wait, with_table},
     memory::{
         import::differs,
         memory::{Memory, ResourceFactory, check_bound, check_relied_on},
@@ -45,9 +46,15 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// or readbacks, collect its report with [`poll`](Self::poll), which does not wait, in this frame
 /// or a later one, or with [`finish`](Self::finish), which waits. Submit the encoders of all
 /// frames, in the order of encoding: later frames use the results of earlier ones, in skipped
-/// passes and as `.previous`. If an encoder is dropped instead, or wgpu refuses its submission, its
-/// passes count as run: encode the next frame with [`Frame::all`], which runs them again; the
-/// `.previous` contents of that next frame are then not those of the frame before.
+/// passes and as `.previous`.
+///
+/// A frame is *lost* if its encoder is dropped instead, or wgpu refuses its commands, in `finish`
+/// or in `submit`. Each frame that is encoded after that is as if the lost one had never been
+/// encoded, but for its number; so are `.previous` contents and materials with
+/// [`keep`](Resource::keep). A frame that was encoded before, and runs without the lost one or in
+/// another order than that of encoding, may show something stale; `.previous` contents and
+/// materials with `keep` then go on from what the frames have left that ran.
+/// [`take_faults`](Self::take_faults) tells the numbers of all these frames.
 ///
 /// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
 /// results that the graph document lists, *captures* are further contents that
@@ -119,7 +126,7 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
         let device = pipelines.device();
-        let presence = Presence::new(device)?;
+        let presence = Presence::new(device).map_err(|error| with_table(error, &plan))?;
         check_backend(device, &plan)?;
         let mut factory = ResourceFactory {
             device,
@@ -127,6 +134,8 @@ impl Executor {
             provider,
         };
         let state = State::new(plan, pipelines, &mut factory)?;
+        let frames_in_flight =
+            FramesInFlight::new(device).map_err(|error| with_table(error, &state.plan))?;
         let mut executor = Self {
             device: device.clone(),
             presence,
@@ -138,7 +147,7 @@ impl Executor {
             host_changes: HostChanges::default(),
             knows_changes: false,
             frames: 0,
-            frames_in_flight: FramesInFlight::default(),
+            frames_in_flight,
             staging: Staging::default(),
             skipped: Vec::new(),
         };
@@ -160,22 +169,23 @@ impl Executor {
     }
 
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
-    /// frame's number, counted from 0. It never waits; any number of frames may be in flight.
-    /// Several may be encoded before the first is submitted, with changes of params, plan, imports
-    /// and provider between them: each keeps the resources and values that it was encoded with.
-    /// Changes of the provider are seen from the next [`refresh`](Self::refresh) on. Submit the
-    /// frames in the order of encoding. Textures and buffers that the graph document declares with
-    /// [`grow`](skiagraph_graph::Growth) and that proved too small for an earlier, submitted frame
-    /// are larger from this frame on (see [`Plan::grown`]), and their views are others
-    /// ([`output_view`](Self::output_view)).
+    /// frame's number, counted from 0 and never given twice. It never waits; any number of frames
+    /// may be in flight. Several may be encoded before the first is submitted, with changes of
+    /// params, plan, imports and provider between them: each keeps the resources and values that it
+    /// was encoded with. Changes of the provider are seen from the next [`refresh`](Self::refresh)
+    /// on. Submit the frames in the order of encoding. Textures and buffers that the graph document
+    /// declares with [`grow`](skiagraph_graph::Growth) and that proved too small for an earlier,
+    /// submitted frame are larger from this frame on (see [`Plan::grown`]), and their views are
+    /// others ([`output_view`](Self::output_view)).
     ///
     /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
     /// outputs of that frame are still there. This needs a provider that
     /// [has versions](Provider::has_versions), or a plan without provided resources; and a plan
     /// without imports in which no pass uses `.previous` contents, a resource with
     /// [`keep`](Resource::keep) or the uniform [`frame`](skiagraph_graph::FRAME_BYTES). Frames with
-    /// [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are never left out so. A
-    /// submission that wgpu refuses counts as done: encode the next frame with [`Frame::all`].
+    /// [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are never left out so.
+    ///
+    /// While a frame before is not known to be done, `encode` polls the device, without waiting.
     ///
     /// # Errors
     /// If the plan lacks an output or capture of [`Frame::read`] or it cannot be copied; an import
@@ -204,9 +214,10 @@ impl Executor {
     ///
     /// # Errors
     /// Those of `encode`, except that passes may work on the CPU; [`ExecuteError::CpuWork`] if
-    /// their work fails, [`ExecuteError::Unfinished`] if `gives_up` has ended the frame. A frame
-    /// that failed has no report and does not count: the next one runs its passes again, from the
-    /// same `.previous` contents. After `Unfinished` the GPU may never finish.
+    /// their work fails, [`ExecuteError::Unfinished`] if `gives_up` has ended the frame,
+    /// [`ExecuteError::Refused`] if wgpu refuses the frame's commands. A frame that failed has no
+    /// report and does not count: the next one runs its passes again, from the same `.previous`
+    /// contents. After `Unfinished` the GPU may never finish.
     pub fn submit(
         &mut self,
         frame: &Frame<'_>,
@@ -216,8 +227,7 @@ impl Executor {
         let begun = wgpu::CommandEncoderDescriptor { label };
         let mut encoder = self.device.create_command_encoder(&begun);
         let index = self.encode_with(&mut encoder, frame, Some(gives_up))?;
-        self.queue.submit([encoder.finish()]);
-        Ok(index)
+        submit((&self.device, &self.queue), encoder, index).map(|()| index)
     }
 
     fn encode_with(
@@ -227,6 +237,9 @@ impl Executor {
         gives_up: Option<&dyn Fn() -> bool>,
     ) -> Result<u32, ExecuteError> {
         self.presence.check()?;
+        if self.frames_in_flight.is_pending() {
+            self.settle()?;
+        }
         self.grow_by_itself()?;
         let is_measured = frame.timing || frame.statistics;
         let may_rest = !frame.all && !is_measured && self.knows_changes;
@@ -244,11 +257,13 @@ impl Executor {
         if let Err(error) = self.record(&mut frame_in_flight, encoder, gives_up) {
             // Its queries are not resolved, and what it has written stays.
             frame_in_flight.timer = None;
-            self.state.forget_frame(&self.decision);
+            let before = &frame_in_flight.before;
+            self.state.forget_frame(&self.decision, before);
             self.frames_in_flight.recycle(frame_in_flight);
             return Err(error);
         }
         let index = frame_in_flight.index;
+        frame_in_flight.changed = self.host_changes.changed();
         self.host_changes.clear();
         self.skipped.clone_from(&frame_in_flight.skipped);
         self.frames_in_flight.submit(frame_in_flight, encoder);
@@ -282,7 +297,8 @@ impl Executor {
         if frame.statistics {
             frame_in_flight.counters = Counters::new(&state.plan, device)?;
         }
-        Ok(())
+        let rests = self.decision.rests;
+        self.frames_in_flight.number(frame_in_flight, rests, device)
     }
 
     /// Encodes a frame that everything is ready for.
@@ -298,6 +314,10 @@ impl Executor {
             rests,
             ping_pong,
         } = &self.decision;
+        let number = frame_in_flight.number;
+        if !rests {
+            frame_in_flight.before.clone_from(&state.contents);
+        }
         if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
             && let Ok(uniform) = state.memory.buffer(id, ping_pong)
         {
@@ -306,15 +326,21 @@ impl Executor {
         state.copy_grown(encoder);
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
-        state.contents.first_copies(&mut copy_host);
+        state.contents.first_copies(number, &mut copy_host);
         let mut cpu = gives_up.map(|gives_up| CpuTurn {
             device: &self.device,
             queue: &self.queue,
             staging: &mut self.staging,
             gives_up,
             worked: None,
+            frame: frame_in_flight.index,
+            has_submitted: false,
         });
-        state.encode(&self.decision, frame_in_flight, encoder, cpu.as_mut())?;
+        let encoded = state.encode(&self.decision, frame_in_flight, encoder, cpu.as_mut());
+        if encoded.is_ok() || cpu.is_some_and(|cpu| cpu.has_submitted) {
+            frame_in_flight.grown.append(&mut state.grown);
+        }
+        encoded?;
         if let Some(timer) = frame_in_flight
             .timer
             .as_mut()
@@ -336,37 +362,105 @@ impl Executor {
                 is_counted &= readback.copy(change, plan, memory, ping_pong, encoder);
             }
             // Else a resource that has no room could stay so.
-            if is_counted {
-                state.idle.follow(encoder);
-            }
+            frame_in_flight.changes = is_counted.then_some(change);
         }
-        let (plan, passes) = (&state.plan, &mut state.passes);
-        state.contents.ran(plan, passes, runs, ping_pong);
+        let (plan, passes) = (&state.plan, &state.passes);
+        let before = (&frame_in_flight.before, ping_pong);
+        if !rests {
+            state.contents.ran(plan, passes, runs, before);
+        }
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
-        state.contents.copies(&mut copy_host);
+        let pending = self.frames_in_flight.oldest_pending();
+        state.contents.copies(number, pending, &mut copy_host);
         Ok(())
     }
 
     /// Returns the report of the oldest frame that requested times, statistics or readbacks (fields
     /// of [`Frame`]) and has not been reported yet. `None` if the GPU has not finished that frame,
     /// or if no such frame is left. It never waits. Each frame with a request brings one report, in
-    /// the order of encoding; frames whose encoder was dropped without being submitted bring none.
+    /// the order of encoding; lost frames (see [`Executor`]) bring none.
     ///
     /// # Errors
     /// If the device was lost, or a readback or the times of the frame failed. The failed frame
     /// brings no report.
     pub fn poll(&mut self) -> Result<Option<FrameReport>, ExecuteError> {
+        self.presence.check()?;
         if self.under_way() == 0 {
             return Ok(None);
         }
-        poll(&self.device, wgpu::PollType::Poll)?;
+        self.settle()?;
         self.frames_in_flight.report(&self.device, &self.presence)
+    }
+
+    /// Returns the frames that did not show what they should, in the order in which that was found,
+    /// and forgets them. It never waits: a frame that is not done yet is told by a later call. At
+    /// most 1,024 frames are kept for it, those found last.
+    ///
+    /// A frame is lost if its encoder is dropped, or if wgpu refuses its commands, in `finish` or
+    /// in `submit`. What was encoded before this was known and runs without it, or in another
+    /// order than that of encoding, may show something stale, and is told, too. Every frame that is
+    /// encoded afterwards is right; see [`Executor`]. A frame that had nothing to run
+    /// ([`encode`](Self::encode)) and asked for nothing is never told.
+    ///
+    /// # Errors
+    /// If the device was lost.
+    pub fn take_faults(&mut self) -> Result<Vec<FrameFault>, ExecuteError> {
+        self.presence.check()?;
+        if self.frames_in_flight.is_pending() {
+            self.settle()?;
+        }
+        Ok(std::mem::take(&mut self.frames_in_flight.faults))
+    }
+
+    /// Finds out which frames have run, and takes back what was noted for those that are lost.
+    fn settle(&mut self) -> Result<(), ExecuteError> {
+        poll(&self.device, wgpu::PollType::Poll)?;
+        let (frames, state) = (&mut self.frames_in_flight, &mut self.state);
+        let setback = frames.settle();
+        if let Some(changes) = setback.settled {
+            state.idle.settle(changes);
+        }
+        if setback.is_lost || setback.forgets {
+            state.idle.note_change();
+            for lost in frames
+                .under_way
+                .iter_mut()
+                .rev()
+                .filter(|frame| frame.is_lost())
+            {
+                self.host_changes.tell_again(lost.changed);
+                state.grown.splice(..0, lost.grown.drain(..));
+            }
+            let first = frames
+                .under_way
+                .iter()
+                .find(|it| Some(it.number) == setback.rewind);
+            if let Some(first) = first {
+                state.contents.rewind(&state.plan, &first.before);
+            }
+            if setback.forgets {
+                let followed = frames
+                    .under_way
+                    .iter_mut()
+                    .filter(|frame| frame.is_followed);
+                let followed = followed.map(|frame| {
+                    let is_lost = frame.is_lost();
+                    (&mut frame.before, is_lost)
+                });
+                state.contents.forget(&mut followed.collect::<Vec<_>>());
+                self.host_changes.note_new_memory();
+            }
+            self.ping_pong = state.ping_pong(false);
+        }
+        self.frames_in_flight.sweep();
+        Ok(())
     }
 
     /// Returns the number of encoded frames that requested times, statistics or readbacks (fields
     /// of [`Frame`]) and have not been reported yet. It grows without bound if a host makes a
-    /// request in every frame but does not call [`poll`](Self::poll).
+    /// request in every frame but does not call [`poll`](Self::poll). Frames that are known to be
+    /// lost do not count.
     pub fn under_way(&self) -> usize {
         self.frames_in_flight.asked()
     }
@@ -377,8 +471,8 @@ impl Executor {
     /// passes; the number is `u32::MAX` if no frame was encoded.
     ///
     /// # Errors
-    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotSubmitted`], after ten seconds, if the
-    /// frame to report was not submitted.
+    /// Those of [`poll`](Self::poll), and [`ExecuteError::NotRun`] if the frame to report is lost
+    /// and no other has a report, or, after ten seconds, if it was not submitted.
     pub fn finish(&mut self) -> Result<FrameReport, ExecuteError> {
         self.finish_within(None)
     }
@@ -395,6 +489,7 @@ impl Executor {
         timeout: Option<Duration>,
     ) -> Result<FrameReport, ExecuteError> {
         let began = Instant::now();
+        let waited_for = self.frames_in_flight.oldest_asked();
         // One that is done is not kept waiting by those behind it.
         if let Some(report) = self.poll()? {
             return Ok(report);
@@ -407,10 +502,14 @@ impl Executor {
         self.presence.check()?;
         let waited = Instant::now();
         loop {
+            self.settle()?;
             if let Some(report) = self.frames_in_flight.report(&self.device, &self.presence)? {
                 return Ok(report);
             }
             if self.under_way() == 0 {
+                if let Some(frame) = waited_for {
+                    return Err(ExecuteError::NotRun { frame });
+                }
                 return Ok(FrameReport {
                     index: self.frames.wrapping_sub(1),
                     skipped: names(&self.skipped),
@@ -429,7 +528,8 @@ impl Executor {
         // The profiler never gives up a frame whose timestamps cannot be mapped.
         self.frames_in_flight.give_up();
         let report = self.frames_in_flight.report(&self.device, &self.presence)?;
-        report.ok_or(ExecuteError::NotSubmitted)
+        let frame = waited_for.unwrap_or_default();
+        report.ok_or(ExecuteError::NotRun { frame })
     }
 
     /// Returns the error of a frame that has not finished, with the passes of the last frame.
@@ -560,6 +660,7 @@ impl Executor {
     /// way out is another plan: [`Plan::with`], with the provider set, and
     /// [`replace_graph`](Self::replace_graph).
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
+        self.presence.check()?;
         // If it fails half way, some resources are this provider's.
         self.knows_changes &= provider.has_versions();
         let mut built = Vec::new();
@@ -570,7 +671,7 @@ impl Executor {
         } else {
             self.host_changes.touch_all();
         }
-        refreshed
+        refreshed.map_err(|error| with_table(error, self.plan()))
     }
 
     /// Notes which provided resources have changed; called after live passes have the new ones.
@@ -627,7 +728,6 @@ impl Executor {
             if is_described && Ok(provider.version(&resource.name)) == version {
                 continue;
             }
-            self.presence.check()?;
             let before = state.memory.host(id).cloned();
             let mut factory = ResourceFactory {
                 device: &self.device,
@@ -807,7 +907,13 @@ impl Executor {
             resources: reused.made_resources(),
             ..ReplanReport::default()
         };
-        let contents = reused.contents();
+        let contents = reused.contents(&passes, &self.state.contents);
+        let frames = self.frames_in_flight.under_way.iter();
+        let befores = frames.map(|frame| match frame.is_followed {
+            true => reused.contents(&passes, &frame.before),
+            false => Contents::default(),
+        });
+        let befores: Vec<Contents> = befores.collect();
         let has_new_memory = reused.has_new_memory();
         let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();
         let positions = reused.positions;
@@ -832,6 +938,10 @@ impl Executor {
             &mut self.state.growth_readbacks,
             std::mem::take(&mut before.growth_readbacks),
         );
+        for (frame, before) in self.frames_in_flight.under_way.iter_mut().zip(befores) {
+            frame.before = before;
+            frame.changes = None;
+        }
         // Content due for a buffer that has grown again is copied on from there.
         self.state.grown.splice(..0, before.grown);
         if has_new_memory {
@@ -848,14 +958,13 @@ impl Executor {
     /// names.
     fn note_params(&mut self, before: &Plan, positions: &[Option<usize>]) -> Vec<String> {
         let mut uploads = Vec::new();
-        let schedule = self.state.plan.live().zip(positions);
-        for ((pass, position), made) in schedule.zip(&mut self.state.passes) {
+        for (at, (pass, position)) in self.state.plan.live().zip(positions).enumerate() {
             let Some(position) = *position else {
                 continue;
             };
             let old = before.pass(before.schedule().passes[position]);
             if !has_same_params(old, pass) {
-                made.input_versions.stale = true;
+                self.state.contents.stale[at] = true;
                 uploads.push(pass.name.value.clone());
             }
         }
@@ -908,6 +1017,7 @@ impl Executor {
         &mut self,
         provider: &mut dyn Provider,
     ) -> Result<Option<ReplanReport>, ExecuteError> {
+        self.presence.check()?;
         if !self
             .state
             .growth_readbacks

@@ -240,9 +240,12 @@ impl Fetch {
         })
     }
 
-    /// Returns the staging buffer of a frame that was never submitted to the pool.
+    /// Returns the staging buffer of a frame that never ran to the pool. One that is mapped, as
+    /// those of refused commands are, is dropped.
     pub fn give_up(self, pool: &mut StagingPool) {
-        pool.0.push(self.staging);
+        if self.staging.mapped.progress() == Progress::Dropped {
+            pool.0.push(self.staging);
+        }
     }
 }
 

@@ -58,6 +58,13 @@ impl HostChanges {
         self.changed = Changed::default();
     }
 
+    /// Notes that a frame to which these changes were told never ran.
+    pub fn tell_again(&mut self, changed: Changed) {
+        self.changed.scene |= changed.scene;
+        self.changed.light |= changed.light;
+        self.changed.memory |= changed.memory;
+    }
+
     /// Notes that the host reported a change of this resource.
     pub fn touch(&mut self, name: &str) {
         self.changed.note(name);

@@ -1,7 +1,6 @@
 //! Frames before which nothing has changed: the outputs of an earlier frame are still there, and no
 //! pass need run.
 
-use crate::signal::{Progress, Signal};
 use skiagraph_graph::{Origin, Plan, ResourceId};
 
 /// Tells whether a plan's next frame would compute nothing new.
@@ -10,9 +9,8 @@ pub(super) struct Idle {
     repeats: bool,
     /// Number of these changes.
     changes: u64,
-    /// Number of changes before the frame that `done` follows; `None` before the first one.
-    followed: Option<u64>,
-    done: Signal,
+    /// Number of changes before the last frame that ran; `None` before the first one.
+    settled: Option<u64>,
 }
 
 impl Idle {
@@ -20,8 +18,7 @@ impl Idle {
         Self {
             repeats: repeats(plan),
             changes: 0,
-            followed: None,
-            done: Signal::default(),
+            settled: None,
         }
     }
 
@@ -35,18 +32,14 @@ impl Idle {
         self.changes += 1;
     }
 
-    /// True if the GPU is done with a frame since which nothing has changed. One whose encoder was
-    /// dropped is never done.
-    pub fn is_settled(&self) -> bool {
-        self.followed == Some(self.changes) && self.done.progress() == Progress::Done
+    /// Notes that a frame ran before which there were so many changes.
+    pub fn settle(&mut self, changes: u64) {
+        self.settled = Some(changes);
     }
 
-    /// Follows a frame that was encoded, unless an earlier one is not done.
-    pub fn follow(&mut self, encoder: &wgpu::CommandEncoder) {
-        if self.repeats && self.done.progress() != Progress::UnderWay {
-            self.followed = Some(self.changes);
-            self.done.when_done(encoder);
-        }
+    /// True if a frame ran since which nothing has changed.
+    pub fn is_settled(&self) -> bool {
+        self.repeats && self.settled == Some(self.changes)
     }
 }
 

@@ -30,18 +30,8 @@ pub(super) struct GpuPass {
     variants: Vec<(Vec<Versions>, Vec<Step<Handles>>)>,
     /// The states for which the device has accepted the pass.
     tried: Vec<Vec<Versions>>,
-    /// Versions of the inputs, which decide if the pass runs again.
-    pub input_versions: InputVersions,
-}
-
-/// Resources that a pass reads, and their versions when it ran last.
-#[derive(Clone, Debug, Default)]
-pub(super) struct InputVersions {
+    /// The resources whose changes decide if the pass runs again.
     pub inputs: Vec<ResourceId>,
-    /// Version of each input; `None` if the pass has not run, or its results are lost.
-    pub versions: Option<Vec<u64>>,
-    /// True if the params or the state of the pass have changed since it ran.
-    pub stale: bool,
 }
 
 impl GpuPass {
@@ -84,11 +74,7 @@ impl GpuPass {
             ping_pong: two_versions(plan, pass),
             variants: Vec::new(),
             tried: Vec::new(),
-            input_versions: InputVersions {
-                inputs: inputs(plan, at),
-                versions: None,
-                stale: false,
-            },
+            inputs: inputs(plan, at),
         })
     }
 
@@ -189,7 +175,6 @@ impl GpuPass {
     pub fn set_params(&mut self, params: Vec<Option<wgpu::Buffer>>) {
         self.params = params;
         self.rebind();
-        self.input_versions.stale = true;
     }
 }
 

@@ -2,7 +2,7 @@
 //! the time. Bindings to existing memory are made later, when the plan is put in.
 
 use crate::{
-    error::{ExecuteError, named},
+    error::{ExecuteError, named, with_table},
     pipelines::pipelines::{Pipeline, Pipelines},
     presence::Presence,
 };
@@ -32,14 +32,14 @@ impl Preparer {
     /// If the device refuses a shader or pipeline, or is lost. An error about a pass names the pass
     /// and its place in the graph document.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
-        Presence::new(self.pipelines.device())?;
+        Presence::new(self.pipelines.device()).map_err(|error| with_table(error, &plan))?;
         let mut pipelines = Vec::new();
         for pass in plan.live() {
             for step in &pass.steps {
                 let made = self.pipelines.get_or_make(&pass.name, step);
-                let made =
-                    made.map_err(|error| named(error, &pass.name, &pass.name.span.to_string()))?;
-                pipelines.extend(made);
+                let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
+                let made = made.map_err(|error| with_table(refused(error), &plan));
+                pipelines.extend(made?);
             }
         }
         Ok(Prepared { plan, pipelines })

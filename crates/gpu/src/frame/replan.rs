@@ -7,11 +7,7 @@
 //! parts, and replaces it when nothing can fail any more. Resources and passes are matched by name,
 //! because indices differ between plans.
 
-use super::{
-    contents::Contents,
-    pass::{GpuPass, InputVersions},
-    state::State,
-};
+use super::{contents::Contents, pass::GpuPass, state::State};
 use crate::{
     error::ExecuteError,
     memory::memory::Memory,
@@ -111,26 +107,14 @@ impl<'a> Reused<'a> {
         Some((linked, &self.old.passes[position]))
     }
 
-    /// Creates the passes of the plan, with the input versions that they remember.
+    /// Creates the passes of the plan.
     pub fn passes(
         &self,
         pipelines: &Pipelines,
         device: &wgpu::Device,
     ) -> Result<Vec<GpuPass>, ExecuteError> {
-        let groups = self.groups();
-        let make = |(at, group): (usize, &usize)| {
-            let mut pass = GpuPass::new(self.plan, at, self.before(at), pipelines, device)?;
-            if let Some((_, old)) = self.before(at).filter(|_| groups[*group]) {
-                pass.input_versions.versions =
-                    self.seen(&pass.input_versions.inputs, &old.input_versions);
-            }
-            let bound = self.bound(at);
-            pass.input_versions.stale =
-                bound.is_none_or(|before| self.old.passes[before].input_versions.stale);
-            Ok(pass)
-        };
-        let groups = &self.plan.schedule().conditions.group;
-        groups.iter().enumerate().map(make).collect()
+        let made = |at| GpuPass::new(self.plan, at, self.before(at), pipelines, device);
+        (0..self.positions.len()).map(made).collect()
     }
 
     /// Returns the names of the passes with new pipelines.
@@ -162,7 +146,9 @@ impl<'a> Reused<'a> {
         lasting.any(|id| !self.same.contains_key(id))
     }
 
-    pub fn contents(&self) -> Contents {
+    /// Returns the contents `old` of the former plan, as far as the passes of this one, `made`,
+    /// find them.
+    pub fn contents(&self, made: &[GpuPass], old: &Contents) -> Contents {
         let mut contents = Contents::new(self.plan, self.old.contents.clock());
         let has_changed = |id: ResourceId, former: ResourceId| {
             self.memory.version(id) != self.old.memory.version(former)
@@ -172,7 +158,15 @@ impl<'a> Reused<'a> {
             if has_changed(id, former) {
                 continue;
             }
-            contents.take_over(id, &self.old.contents, former);
+            contents.take_over(id, old, former);
+        }
+        let groups = self.groups();
+        let group = &self.plan.schedule().conditions.group;
+        for (at, pass) in made.iter().enumerate() {
+            if let Some(former) = self.positions[at].filter(|_| groups[group[at]]) {
+                contents.seen[at] = self.seen(&pass.inputs, former, old);
+            }
+            contents.stale[at] = self.bound(at).is_none_or(|former| old.stale[former]);
         }
         contents
     }
@@ -240,10 +234,13 @@ impl<'a> Reused<'a> {
         self.positions[at].filter(|_| same_steps && same_numbers)
     }
 
-    /// Returns the versions of the inputs that a pass saw when it ran last; `None` if they are not
-    /// known.
-    fn seen(&self, inputs: &[ResourceId], old: &InputVersions) -> Option<Vec<u64>> {
-        let seen = old.inputs.iter().zip(old.versions.as_ref()?);
+    /// Returns the versions of the inputs that the pass at the position `former` of the former plan
+    /// saw when it ran last; `None` if they are not known.
+    fn seen(&self, inputs: &[ResourceId], former: usize, old: &Contents) -> Option<Vec<u64>> {
+        let seen = self.old.passes[former]
+            .inputs
+            .iter()
+            .zip(old.seen[former].as_ref()?);
         let seen: BTreeMap<ResourceId, u64> = seen.map(|(id, seen)| (*id, *seen)).collect();
         let of = |id: &ResourceId| seen.get(self.same.get(id)?).copied();
         let versions: Vec<u64> = inputs.iter().map(of).collect::<Option<_>>()?;

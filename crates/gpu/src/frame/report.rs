@@ -101,4 +101,38 @@ pub struct FrameReport {
     /// Contents of the requested outputs and captures: one entry for each name in [`Frame::read`],
     /// in that order.
     pub readbacks: Vec<Readback>,
+    /// Reason why the contents may be stale; `None` if they are right.
+    pub fault: Option<FaultKind>,
+}
+
+/// A frame that did not show what it should: an entry of
+/// [`Executor::take_faults`](crate::Executor::take_faults). Its text names the frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FrameFault {
+    /// Number of the frame, as [`encode`](crate::Executor::encode) returned it.
+    pub index: u32,
+    /// Reason.
+    pub kind: FaultKind,
+}
+
+impl std::fmt::Display for FrameFault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "frame {} {}", self.index, self.kind)
+    }
+}
+
+/// Reasons why a frame did not show what it should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FaultKind {
+    /// Its commands never ran.
+    #[error("never ran: its encoder was dropped, or wgpu refused its commands")]
+    NeverRan,
+    /// It was encoded before an earlier frame was known to be lost, whose results it needs.
+    #[error("ran without an earlier frame that it was encoded to follow: it may be stale")]
+    WithoutPredecessor,
+    /// It was submitted in another order than it was encoded in, or behind frames that were.
+    #[error("was not submitted in the order of encoding, or behind such frames: it may be stale")]
+    OutOfOrder,
 }

@@ -112,6 +112,7 @@ impl State {
     /// Sets other params of the pass at position `at` of the schedule; see [`GpuPass::set_params`].
     pub fn set_params(&mut self, at: usize, params: Vec<Option<wgpu::Buffer>>) {
         self.idle.note_change();
+        self.contents.stale[at] = true;
         self.passes[at].set_params(params);
     }
 
@@ -153,7 +154,8 @@ impl State {
             if let Some(id) = missing(&self.plan, &self.memory, at) {
                 return Err(not_there(&self.plan, &self.memory, id, at));
             }
-            made.bind(&self.plan, at, &self.memory, ping_pong, device)?;
+            made.bind(&self.plan, at, &self.memory, ping_pong, device)
+                .map_err(|error| with_table(error, &self.plan))?;
         }
         Ok(())
     }
@@ -167,11 +169,13 @@ impl State {
         self.bind(&ready, &self.ping_pong(true), device)
     }
 
-    /// Notes that a frame has failed when some of its passes had run: all of them run again.
-    pub fn forget_frame(&mut self, FrameDecision { runs, .. }: &FrameDecision) {
+    /// Notes that a frame that began with the contents `before` has failed when some of its passes
+    /// had run: all of them run again.
+    pub fn forget_frame(&mut self, FrameDecision { runs, .. }: &FrameDecision, before: &Contents) {
         self.idle.note_change();
-        for (pass, _) in self.passes.iter_mut().zip(runs).filter(|(_, runs)| **runs) {
-            pass.input_versions.versions = None;
+        self.contents.rewind(&self.plan, before);
+        for (at, _) in runs.iter().enumerate().filter(|(_, runs)| **runs) {
+            self.contents.seen[at] = None;
         }
     }
 
@@ -290,9 +294,9 @@ impl State {
 
     /// Copies contents into the larger buffers and textures that replaced smaller ones since the
     /// last frame.
-    pub fn copy_grown(&mut self, encoder: &mut wgpu::CommandEncoder) {
-        for pair in self.grown.drain(..) {
-            match &pair {
+    pub fn copy_grown(&self, encoder: &mut wgpu::CommandEncoder) {
+        for pair in &self.grown {
+            match pair {
                 (Physical::Buffer(from), Physical::Buffer(to)) => {
                     encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size());
                 }

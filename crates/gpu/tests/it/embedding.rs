@@ -283,6 +283,11 @@ fn lose_the_device(before: bool) {
         ("import_buffer", executor.import_buffer("more", &later)),
         ("finish", executor.finish().map(|_| ())),
         ("finish again", executor.finish().map(|_| ())),
+        // Although nothing is under way.
+        ("poll", executor.poll().map(|_| ())),
+        ("take_faults", executor.take_faults().map(|_| ())),
+        ("grow", executor.grow(none).map(|_| ())),
+        ("refresh", executor.refresh(none)),
         ("resize", executor.resize([9, 9], none).map(|_| ())),
         (
             "replace_graph",
@@ -304,7 +309,6 @@ fn lose_the_device(before: bool) {
     }
     // Nothing to be said, and nothing to go wrong.
     executor.touch("image").unwrap();
-    executor.refresh(&mut NoProvider).unwrap();
     assert!(executor.output_view("sum").is_some());
 }
 

@@ -6,7 +6,7 @@ use crate::host::{self, GPU, executor, frame, request, set, submit, words};
 use crate::program::{Event, ITEMS, Value, any_program};
 use crate::support::{Files, load, right};
 use proptest::prelude::*;
-use skiagraph_gpu::{Executor, Frame, import};
+use skiagraph_gpu::{Executor, FaultKind, Frame, import};
 use skiagraph_graph::{Code, NoProvider, ParamValue};
 use std::collections::BTreeMap;
 
@@ -210,8 +210,8 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Culling, order, sharing, two versions, skipped passes, uploads, passes that come and go:
-    /// none of it may be seen in a value.
+    /// Culling, order, sharing, two versions, skipped passes, uploads, passes that come and go,
+    /// frames that never run: none of it may be seen in a value.
     #[test]
     fn frames_mean_what_the_file_says(program in any_program()) {
         let host = host_buffer(ITEMS, 9);
@@ -238,8 +238,9 @@ proptest! {
         }
         let names: Vec<String> = program.outputs.iter().map(|at| format!("m{at}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let expected = program.interpret();
-        for (number, (event, expected)) in program.events.iter().zip(expected).enumerate() {
+        let expected = program.interpret().into_iter().zip(&program.losses);
+        let mut lost = Vec::new();
+        for (number, (event, (expected, loss))) in program.events.iter().zip(expected).enumerate() {
             match *event {
                 Event::Nothing => {}
                 Event::Seed(value) => set(&mut executor, "seed", ParamValue::U32(value)),
@@ -257,6 +258,11 @@ proptest! {
                     resized.unwrap_or_else(|error| panic!("{error}"));
                 }
             }
+            if let Some(loss) = loss {
+                let wanted = Frame::new().with_read(&names);
+                lost.push(host::lost(&mut executor, &wanted, *loss));
+                continue;
+            }
             let report = frame(&mut executor, &names);
             let values: Vec<Value> = (0..names.len())
                 .map(|at| words(&report, at).try_into().expect("as many as there are items"))
@@ -266,5 +272,9 @@ proptest! {
                 "frame {} after {:?}, skipped {:?}", number, event, report.skipped
             );
         }
+        let faults = executor.take_faults().unwrap();
+        prop_assert!(faults.iter().all(|fault| fault.kind == FaultKind::NeverRan));
+        let told: Vec<u32> = faults.iter().map(|fault| fault.index).collect();
+        prop_assert_eq!(told, lost);
     }
 }

@@ -33,6 +33,7 @@ mod history;
 mod idle;
 mod imports;
 mod keep;
+mod lost;
 mod memory;
 mod on_cpu;
 mod pipelines;

@@ -228,6 +228,22 @@ fn rests_on_no_failed_frame(run: &str) {
     assert_eq!(sums(&mut executor), (vec![2, 12, 22, 9], 3));
 }
 
+/// Commands in front of the work that wgpu refuses are an error; the CPU gets nothing stale.
+#[test]
+fn commands_before_the_work_that_are_refused_are_an_error() {
+    let mut provider = Given(2);
+    let plan = right(graph(&files(ADD)).plan(&request(&provider)));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider).unwrap();
+    let frame = Frame::new();
+    assert_eq!(executor.submit(&frame, &|| false).unwrap(), 0);
+    executor.output_buffer("sums").unwrap().destroy();
+    let refused = executor.submit(&frame, &|| false);
+    assert!(
+        matches!(refused, Err(ExecuteError::Refused { frame: 1, .. })),
+        "{refused:?}"
+    );
+}
+
 #[test]
 fn a_frame_without_such_work_is_submitted_as_well() {
     let files = Files::graph(

@@ -243,3 +243,96 @@ fn more_memory_than_there_is() {
         other => panic!("{other}"),
     }
 }
+
+/// A provider that wants terabytes in its second version.
+struct Vast(u64);
+
+impl Describe for Vast {
+    fn names(&self) -> Vec<String> {
+        vec!["items".to_owned()]
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        (name == "items").then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
+    }
+}
+
+impl Provider for Vast {
+    fn version(&self, _: &str) -> u64 {
+        self.0
+    }
+
+    fn build(
+        &mut self,
+        _: &str,
+        device: &wgpu::Device,
+        _: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        let limits = device.limits();
+        let edge = limits.max_texture_dimension_2d;
+        let vast = wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width: edge,
+                height: edge,
+                depth_or_array_layers: limits.max_texture_array_layers,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        if self.0 > 1 {
+            drop(device.create_texture(&vast));
+        }
+        Ok(device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 4,
+            usage: wgpu::BufferUsages::STORAGE,
+            mapped_at_creation: false,
+        }))
+    }
+}
+
+/// Wherever memory is refused, the error has the table: when executors are made, and later.
+#[test]
+fn more_memory_than_there_is_for_a_provider() {
+    let files = Files::graph(
+        r#"
+    materials: [Buffer(name: "out", count: 1)],
+    passes: [Compute(name: "take", dispatch: Groups(1, 1, 1))],
+    outputs: ["out"],
+"#,
+    )
+    .with(
+        "take.wgsl",
+        "var<storage, read_write> out: array<u32>;
+         var<storage, read> items: array<u32>;
+         @compute @workgroup_size(1) fn main() { out[0] = items[0]; }",
+    )
+    .edited(
+        "graph.ron",
+        "dispatch: Groups(1, 1, 1)",
+        r#"dispatch: Groups(1, 1, 1), bind: {"items": "items"}"#,
+    );
+    let plan = |provider: &Vast| right(right(load(&files)).plan(&request(provider)));
+    let has_table = |refused: Result<(), ExecuteError>| match refused {
+        Err(ExecuteError::OutOfMemory { name, table }) => {
+            assert_eq!(name, "items");
+            assert!(table.contains("all together"), "{table}");
+        }
+        other => panic!("{other:?}"),
+    };
+    let mut provider = Vast(2);
+    let made = Executor::new(&GPU.device, &GPU.queue, plan(&provider), &mut provider);
+    has_table(made.map(drop));
+    provider.0 = 1;
+    let made = Executor::new(&GPU.device, &GPU.queue, plan(&provider), &mut provider);
+    let mut executor = made.unwrap();
+    provider.0 = 3;
+    has_table(executor.refresh(&mut provider));
+    let resized = executor.resize([3, 3], &mut provider);
+    has_table(resized.map(drop));
+}

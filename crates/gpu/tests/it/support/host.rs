@@ -40,6 +40,62 @@ pub fn encoder() -> wgpu::CommandEncoder {
     GPU.device.create_command_encoder(&Default::default())
 }
 
+/// Ways in which a frame never runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loss {
+    Dropped,
+    FinishRefused,
+    SubmitRefused,
+    /// It is finished, and the commands are dropped.
+    NotSubmitted,
+}
+
+pub const LOSSES: [Loss; 4] = [
+    Loss::Dropped,
+    Loss::FinishRefused,
+    Loss::SubmitRefused,
+    Loss::NotSubmitted,
+];
+
+/// Loses what is encoded.
+pub fn lose(mut encoder: wgpu::CommandEncoder, loss: Loss) {
+    let buffer = || {
+        GPU.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 4,
+            usage: wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    };
+    let refusal = GPU.device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let is_refused = matches!(loss, Loss::FinishRefused | Loss::SubmitRefused);
+    match loss {
+        Loss::Dropped => drop(encoder),
+        Loss::NotSubmitted => drop(encoder.finish()),
+        Loss::FinishRefused => {
+            encoder.copy_buffer_to_buffer(&buffer(), 0, &buffer(), 0, 4);
+            GPU.queue.submit([encoder.finish()]);
+        }
+        Loss::SubmitRefused => {
+            let cleared = buffer();
+            encoder.clear_buffer(&cleared, 0, None);
+            let commands = encoder.finish();
+            cleared.destroy();
+            GPU.queue.submit([commands]);
+        }
+    }
+    let refused = pollster::block_on(refusal.pop());
+    assert_eq!(refused.is_some(), is_refused, "{loss:?}: {refused:?}");
+}
+
+/// Encodes a frame that never runs and returns its number.
+pub fn lost(executor: &mut Executor, frame: &Frame<'_>, loss: Loss) -> u32 {
+    let mut encoder = encoder();
+    let index = executor.encode(&mut encoder, frame);
+    lose(encoder, loss);
+    index.unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// A frame that is submitted and waited for.
 pub fn frame(executor: &mut Executor, read: &[&str]) -> FrameReport {
     let frame = Frame::new().with_read(read);

@@ -2,6 +2,7 @@
 
 use crate::{
     buffers::{OUT, SEED, SEED_PARAM, compute},
+    host::{LOSSES, Loss},
     support::Files,
 };
 use proptest::prelude::*;
@@ -98,6 +99,8 @@ pub struct Program {
     passes: Vec<Pass>,
     pub outputs: Vec<usize>,
     pub events: Vec<Event>,
+    /// How the frame after each event is lost.
+    pub losses: Vec<Option<Loss>>,
     pub poison: Option<u8>,
 }
 
@@ -190,19 +193,24 @@ impl Program {
 
     /// The outputs after each frame when every pass is run in file order, those that run `Once` in
     /// the first frame only and those that run by the flag when it is set. That `OnChange` saves
-    /// work must not be seen.
+    /// work must not be seen. A frame that is lost is none.
     pub fn interpret(&self) -> Vec<Vec<Value>> {
         let mut now = [[0u32; ITEMS]; MATERIALS];
         let mut before = now;
         let (mut seed, mut flag, mut extra, mut host) = (5u32, true, true, 9u32);
         let mut frames = Vec::new();
-        for (number, event) in self.events.iter().enumerate() {
+        let mut number = 0;
+        for (event, loss) in self.events.iter().zip(&self.losses) {
             match *event {
                 Event::Seed(value) => seed = value,
                 Event::Flag(value) => flag = value,
                 Event::Extra(value) => extra = value,
                 Event::Host(value) => host = value,
                 Event::Nothing | Event::Resize(_) => {}
+            }
+            if loss.is_some() {
+                frames.push(Vec::new());
+                continue;
             }
             let runs = |run: usize| match run {
                 2 => number == 0,
@@ -245,6 +253,7 @@ impl Program {
             }
             frames.push(self.outputs.iter().map(|material| now[*material]).collect());
             before = now;
+            number += 1;
         }
         frames
     }
@@ -294,6 +303,10 @@ fn any_event() -> impl Strategy<Value = Event> {
     ]
 }
 
+fn any_loss() -> impl Strategy<Value = Option<Loss>> {
+    prop_oneof![3 => Just(None), 1 => prop::sample::select(LOSSES.to_vec()).prop_map(Some)]
+}
+
 pub fn any_program() -> impl Strategy<Value = Program> {
     (
         prop::collection::vec(
@@ -303,7 +316,7 @@ pub fn any_program() -> impl Strategy<Value = Program> {
         prop::collection::vec(prop::bool::weighted(0.3), MATERIALS),
         prop::collection::vec(any_pass(), 1..7),
         prop::collection::btree_set(0..MATERIALS, 1..3),
-        prop::collection::vec(any_event(), 3..7),
+        prop::collection::vec((any_event(), any_loss()), 3..9),
         prop_oneof![Just(None), Just(Some(0xa5))],
     )
         .prop_map(
@@ -344,12 +357,14 @@ pub fn any_program() -> impl Strategy<Value = Program> {
                 if passes.iter().any(|pass| pass.optional) {
                     outputs.extend(0..MATERIALS);
                 }
+                let (events, losses) = events.into_iter().unzip();
                 Program {
                     runs,
                     kept,
                     passes,
                     outputs: outputs.into_iter().collect(),
                     events,
+                    losses,
                     poison,
                 }
             },

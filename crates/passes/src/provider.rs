@@ -755,7 +755,8 @@ impl SceneProvider {
     /// [counts](skiagraph_graph::Plan::relies_on) masks, materials and texture coordinates
     /// (`scene.masks`, `scene.materials`, `scene.uvs` and their like). It makes other plans invalid
     /// if it changes numbers of items that they use. Each masked part changes that of masks, and so
-    /// does the first double-sided one in a mesh without masks. If the mesh or the part has
+    /// does the first double-sided one in a mesh without masks; the first part with [`Sheets`]
+    /// changes that of `scene.sheets`. If the mesh or the part has
     /// materials, the numbers of items of materials and texture coordinates change. All plans are
     /// invalid if the mesh grows. Invalid plans must be made anew
     /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)). Until then

@@ -42,12 +42,6 @@ impl Sheets {
         }
     }
 
-    /// Returns true if triangle `primitive` is a sheet.
-    pub fn contains(&self, primitive: u32) -> bool {
-        let word = self.0.get(primitive as usize / 32);
-        word.is_some_and(|word| word >> (primitive % 32) & 1 == 1)
-    }
-
     /// Returns one bit per triangle, set for sheets: 32 to a word, lowest bit first. No words if no
     /// triangle was ever a sheet.
     pub fn words(&self) -> &[u32] {
@@ -63,12 +57,17 @@ mod tests {
 
     const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
 
+    fn is_sheet(sheets: &Sheets, primitive: u32) -> bool {
+        let word = sheets.words().get(primitive as usize / 32);
+        word.is_some_and(|word| word >> (primitive % 32) & 1 == 1)
+    }
+
     /// Triangles whose materials are: 0 plain, 1 double-sided, 2 masked.
     fn sheets_of(triangles: &[[u32; 3]], materials: &[u32]) -> Vec<u32> {
         let mesh = painted(triangles, materials);
         let sheets = Sheets::new(&mesh);
         (0..triangles.len() as u32)
-            .filter(|&id| sheets.contains(id))
+            .filter(|&id| is_sheet(&sheets, id))
             .collect()
     }
 
@@ -123,7 +122,7 @@ mod tests {
         sheets.put(&leaves(3, 2), 0, 100);
         sheets.put(&Mesh::default(), 0, 130);
         let expected = |id: u32| id < 3 || id == 30 || (36..70).contains(&id);
-        assert!((0..200).all(|id| sheets.contains(id) == expected(id)));
+        assert!((0..200).all(|id| is_sheet(&sheets, id) == expected(id)));
         assert_eq!(sheets.words().len(), 5);
     }
 }

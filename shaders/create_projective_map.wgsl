@@ -3,9 +3,14 @@
 // each fragment has them, because a plane's are not linear across such a map. Three vertices per
 // primitive, pulled. Martin, Tan 2004, section 4; Williams 1978.
 
-#import "shared/map_fit.wgsl"
-#import "shared/geometry.wgsl"
-#import "shared/solid.wgsl"
+#import "shared/map_caster.wgsl"
+
+struct Params {
+    cull: u32,
+    two_sided_bias: f32,
+}
+
+var<uniform> params: Params;
 
 // Face of a point light's map.
 override face: u32 = 0u;
@@ -48,21 +53,27 @@ fn projected(corner: u32) -> Vertex {
 
 @fragment
 fn fragment(vertex: Vertex) -> @builtin(frag_depth) f32 {
-    return map_depth(vertex.depth);
+    return reached_depth(vertex.depth);
 }
 
-// Texels that a mask leaves out cast no shadow.
+// Texels that a mask leaves out cast no shadow; the lit face of a sheet, which is in the map, is
+// put away from the light, lest it shade itself.
 @fragment
-fn fragment_masked(vertex: MaskedVertex) -> @builtin(frag_depth) f32 {
-    if !is_opaque(vertex.primitive, vertex.weights.x, vertex.weights.y) {
+fn fragment_masked(
+    vertex: MaskedVertex,
+    @builtin(front_facing) is_front: bool,
+) -> @builtin(frag_depth) f32 {
+    let rise = length(vec2(dpdx(vertex.depth), dpdy(vertex.depth)));
+    if !is_cast(vertex.primitive, vertex.weights, is_front, params.cull) {
         discard;
     }
-    return map_depth(vertex.depth);
+    let bias = select(0.0, params.two_sided_bias * rise, is_sheet(vertex.primitive));
+    return min(reached_depth(vertex.depth) + bias, 1.0);
 }
 
 // Surfaces that no shadow ray reaches are no casters, 1 as where there is none: a triangle that a
 // lamp lies in is seen edge-on, and may cover any texel.
-fn map_depth(depth: f32) -> f32 {
+fn reached_depth(depth: f32) -> f32 {
     let is_reached = light_kind == LIGHT_DIRECTIONAL || depth > LIGHT_GAP;
     return select(1.0, saturate(depth), is_reached);
 }

@@ -2,9 +2,14 @@
 // primitive). Texels that a mask leaves out cast no shadow. Williams, "Casting Curved Shadows on
 // Curved Surfaces", SIGGRAPH 1978.
 
-#import "shared/map_fit.wgsl"
-#import "shared/geometry.wgsl"
-#import "shared/solid.wgsl"
+#import "shared/map_caster.wgsl"
+
+struct Params {
+    cull: u32,
+    two_sided_bias: f32,
+}
+
+var<uniform> params: Params;
 
 struct MaskedVertex {
     @builtin(position) clip: vec4<f32>,
@@ -21,15 +26,22 @@ fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
 
 @vertex
 fn vertex_masked(@builtin(vertex_index) corner: u32) -> MaskedVertex {
+    let primitive = corner / 3u;
     let texel = light_texel(corner_position(corner));
-    let clip = texel_clip(texel.xy, texel.z);
+    var depth = texel.z;
+    if is_sheet(primitive) {
+        // Its lit face is in the map: away from the light, lest it shade itself.
+        let plane = depth_plane(light_triangle(primitive));
+        depth += params.two_sided_bias * length(plane.slope);
+    }
+    let clip = texel_clip(texel.xy, depth);
     let own = corner % 3u;
-    return MaskedVertex(clip, corner / 3u, vec2(f32(own == 1u), f32(own == 2u)));
+    return MaskedVertex(clip, primitive, vec2(f32(own == 1u), f32(own == 2u)));
 }
 
 @fragment
-fn fragment_masked(vertex: MaskedVertex) {
-    if !is_opaque(vertex.primitive, vertex.weights.x, vertex.weights.y) {
+fn fragment_masked(vertex: MaskedVertex, @builtin(front_facing) is_front: bool) {
+    if !is_cast(vertex.primitive, vertex.weights, is_front, params.cull) {
         discard;
     }
 }

@@ -32,7 +32,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
     let triangle = light_triangle(primitive);
     var vertex = Vertex(vec4(0.0), triangle.a, triangle.b, triangle.c, primitive);
     // Others are outer_unplaced.wgsl's.
-    if is_placed(triangle) && casts(triangle, params.cull) {
+    if is_placed(triangle) && casts(primitive, triangle, params.cull) {
         vertex.clip = texel_clip(cover(triangle, index % 3u), MIDDLE);
     }
     return vertex;

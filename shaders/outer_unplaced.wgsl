@@ -46,7 +46,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
     vertex.summed = triangle.summed;
     vertex.volume = triangle.volume;
     vertex.nearest = saturate(triangle.nearest);
-    if casts(LightTriangle(none, none, none, triangle.volume), params.cull) {
+    if casts(primitive, LightTriangle(none, none, none, triangle.volume), params.cull) {
         let part = part_of_map(triangle);
         if part.count > 0u {
             let corner = corner_around(part, narrowest(part, triangle), index % 3u);

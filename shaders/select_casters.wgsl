@@ -16,11 +16,10 @@ var<uniform> params: Params;
 var<storage, read_write> selected: array<CasterCorner>;
 // Vertices, instances, first vertex, first instance.
 var<storage, read_write> draw_call: array<atomic<u32>, 4>;
-// Which triangles of `selected` are large, by their number there, and two calls to draw them: three
-// vertices each, and as many as their edges take.
+// Which triangles of `selected` are large, by their number there, and two such calls to draw them:
+// three vertices each, and as many as their edges take.
 var<storage, read_write> selected_large: array<u32>;
-var<storage, read_write> large_call: array<atomic<u32>, 4>;
-var<storage, read_write> edge_call: array<atomic<u32>, 4>;
+var<storage, read_write> large_calls: array<array<atomic<u32>, 4>>;
 
 const CORNERS: u32 = 192u;
 // Vertices at the edges of a large triangle, see inner_one_ring.wgsl.
@@ -65,10 +64,10 @@ fn with_large(thread: Thread) {
     let tag = kept_tag(corner, thread.lane, triangle) | select(0u, LARGE, large);
     let slot = place(corner, thread.lane, triangle, tag);
     if slot != NO_SLOT && large && slot % 3u == 0u {
-        let number = atomicAdd(&large_call[0], 3u) / 3u;
-        atomicStore(&large_call[1], 1u);
-        atomicAdd(&edge_call[0], EDGE_VERTICES);
-        atomicStore(&edge_call[1], 1u);
+        let number = atomicAdd(&large_calls[0][0], 3u) / 3u;
+        atomicStore(&large_calls[0][1], 1u);
+        atomicAdd(&large_calls[1][0], EDGE_VERTICES);
+        atomicStore(&large_calls[1][1], 1u);
         selected_large[number] = slot / 3u;
     }
 }
@@ -84,7 +83,7 @@ fn is_large(triangle: LightTriangle) -> bool {
 
 fn kept_tag(corner: u32, lane: u32, triangle: LightTriangle) -> u32 {
     var kept = false;
-    if is_asked(corner) && casts(triangle, params.cull) {
+    if is_asked(corner) && casts(corner / 3u, triangle, params.cull) {
         let first = lane - lane % 3u;
         let next = texels[first + (lane + 1u) % 3u].xy;
         let own = texels[first + (lane + 2u) % 3u].xy;
@@ -118,7 +117,8 @@ fn gather(corner: u32, lane: u32) -> LightTriangle {
 // Returns where in `selected` the corner is, NO_SLOT if nowhere.
 fn place(corner: u32, lane: u32, triangle: LightTriangle, tag: u32) -> u32 {
     // A triangle without a place in the map covers no texel for sure.
-    let in_map = is_asked(corner) && is_placed(triangle) && casts(triangle, params.cull);
+    let in_map = is_asked(corner) && is_placed(triangle)
+        && casts(corner / 3u, triangle, params.cull);
     let word = lane / 96u;
     let bit = 1u << (lane / 3u % 32u);
     if in_map {

@@ -26,9 +26,11 @@ fn adjacent_corner(
     if side_of_edge(p, q, own) * side_of_edge(p, q, opposite) >= 0.0 {
         return NO_NEIGHBOUR;
     }
-    // On opposite sides, and wound alike: it faces as this one does, which is in the map.
+    // On opposite sides, and wound alike: it faces as this one does, which is in the map, though a
+    // sheet's facing does not tell.
     let next = 3u * (corner / 3u) + (corner + 1u) % 3u;
     let wound_alike = scene_indices[next] != scene_indices[entry];
-    let both_cast = cull != CULL_FRONT && cull != CULL_BACK;
-    return select(NO_NEIGHBOUR, corner, wound_alike || both_cast);
+    let both_cast = (cull != CULL_FRONT && cull != CULL_BACK) || is_sheet(corner / 3u);
+    let faces_alike = wound_alike && !is_sheet(entry / 3u);
+    return select(NO_NEIGHBOUR, corner, faces_alike || both_cast);
 }

@@ -4,6 +4,7 @@
 
 #import "shared/map_fit.wgsl"
 #import "shared/geometry.wgsl"
+#import "shared/one_sided.wgsl"
 #import "shared/predicates.wgsl"
 
 struct LightTriangle {
@@ -63,10 +64,12 @@ fn is_placed(triangle: LightTriangle) -> bool {
         || max(triangle.a.z, max(triangle.b.z, triangle.c.z)) < 0.0;
 }
 
-// Returns true if the triangle is in the map at all. One seen edge-on, n . l = 0, is.
-fn casts(triangle: LightTriangle, cull: u32) -> bool {
-    return !(cull == CULL_FRONT && triangle.area < 0.0)
-        && !(cull == CULL_BACK && triangle.area > 0.0);
+// Returns true if the triangle is in the map at all. One seen edge-on, n . l = 0, is, and so are
+// both faces of a sheet.
+fn casts(primitive: u32, triangle: LightTriangle, cull: u32) -> bool {
+    let is_culled = (cull == CULL_FRONT && triangle.area < 0.0)
+        || (cull == CULL_BACK && triangle.area > 0.0);
+    return !is_culled || is_sheet(primitive);
 }
 
 // Returns the distances inward of the edges ab, bc and ca.

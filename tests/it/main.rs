@@ -59,6 +59,7 @@ mod rays;
 mod readme;
 mod receivers;
 mod shaders;
+mod sheets;
 mod splits;
 mod spot_layers;
 mod texels;

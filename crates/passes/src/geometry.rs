@@ -173,7 +173,11 @@ impl Geometry {
         number.ok_or(Error::NoPart(id))
     }
 
-    fn part(&self, id: PartId) -> Result<&Part, Error> {
+    /// The part of a handle.
+    ///
+    /// # Errors
+    /// [`Error::NoPart`].
+    pub fn part(&self, id: PartId) -> Result<&Part, Error> {
         match self.pieces.get(id.piece).map(|piece| &piece.content) {
             Some(Content::Part(part)) if part.id == id => Ok(part),
             _ => Err(Error::NoPart(id)),

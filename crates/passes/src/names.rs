@@ -48,6 +48,10 @@ names! {
     /// reads. It has no items if no triangle of the scene is masked (cut out by the alpha of its
     /// texture) or double-sided.
     pub MASKS = "scene.masks";
+    /// Name of the storage buffer of the [`Sheets`](skiagraph_scene::Sheets), a bit per triangle,
+    /// which `shared/sheets.wgsl` reads: the triangles of which shadow maps draw both faces. It has
+    /// no items if the scene has none.
+    pub SHEETS = "scene.sheets";
     pub(crate) UVS = "scene.uvs";
     pub(crate) UV_INDICES = "scene.uv_indices";
     pub(crate) MATERIALS = "scene.materials";

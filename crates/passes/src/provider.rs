@@ -21,8 +21,8 @@ use skiagraph_gpu::CpuWork;
 use skiagraph_gpu::{Provider, ProviderError};
 use skiagraph_graph::{Describe, Plan, Provided, ProvidedBinding};
 use skiagraph_scene::{
-    BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, View,
-    packed_masks::mask_words,
+    BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, Sheets,
+    View, packed_masks::mask_words,
 };
 use std::{ops::Range, sync::Arc, time::Instant};
 
@@ -45,6 +45,7 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `scene.tlas` | `acceleration_structure`; primitive id = custom data + primitive index |
 /// | `scene.embree` | work for the CPU, with the feature `embree` |
 /// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
+/// | `scene.sheets` | `array<u32>`: a bit per primitive, set for [`Sheets`] |
 /// | `scene.uvs` | `array<vec2<f32>>`, v down |
 /// | `scene.uv_indices` | `array<u32>`, three per primitive |
 /// | `scene.materials` | 32-byte [`MaterialRecord`](crate::MaterialRecord)s |
@@ -80,8 +81,9 @@ use std::{ops::Range, sync::Arc, time::Instant};
 pub struct SceneProvider {
     pub(crate) scene: Arc<Scene>,
     pub(crate) versions: Versions,
-    /// Words of [`MASKS`], made at once: plans ask how many there are.
-    pub(crate) masks: Vec<u32>,
+    /// Words of [`MASKS`] and [`SHEETS`], made at once: plans ask how many there are.
+    pub(crate) masks: Arc<Vec<u32>>,
+    sheets: Arc<Sheets>,
     pub(crate) buffers: Buffers,
     structures: Structures,
     #[cfg(feature = "embree")]
@@ -103,7 +105,8 @@ impl SceneProvider {
         let lights = lights::from_scene(&scene);
         Self {
             versions: Versions::new(Eye::default(), scene.light(), lights),
-            masks: mask_words(&scene.mesh),
+            masks: mask_words(&scene.mesh).into(),
+            sheets: Sheets::new(&scene.mesh).into(),
             scene,
             buffers: Buffers::default(),
             structures: Structures::default(),
@@ -467,12 +470,8 @@ impl SceneProvider {
                 let opposite = self.geometry.adjacency(mesh, self.version(name));
                 self.upload_triangles(name, opposite.as_chunks::<3>().0, on)
             }
-            MASKS => {
-                let words = std::mem::take(&mut self.masks);
-                let done = self.upload_items(name, &words, on);
-                self.masks = words;
-                done
-            }
+            MASKS => self.upload_items(name, &Arc::clone(&self.masks), on),
+            SHEETS => self.upload_items(name, Arc::clone(&self.sheets).words(), on),
             UVS => self.upload_appended(name, &mesh.surfaces.uvs, on),
             UV_INDICES => self.upload_triangles(name, &mesh.surfaces.uv_indices, on),
             MATERIAL_INDICES => {
@@ -630,7 +629,8 @@ impl SceneProvider {
     /// triangles and other items: if they change, graphs must be planned anew
     /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
     pub fn set_mesh(&mut self, mesh: Mesh) {
-        self.masks = mask_words(&mesh);
+        self.masks = mask_words(&mesh).into();
+        self.sheets = Sheets::new(&mesh).into();
         Arc::make_mut(&mut self.scene).mesh = mesh;
         self.atlas = Arc::default();
         self.geometry = self.geometry.replaced_by(Geometry::whole());
@@ -738,7 +738,8 @@ impl SceneProvider {
     pub fn reserve(&mut self, room: Room, limits: &wgpu::Limits) -> Result<(), Error> {
         self.geometry.limit = Some(binding_limit(limits));
         self.geometry.reserve(room, &mut self.scene)?;
-        self.masks = mask_words(&self.scene.mesh);
+        self.masks = mask_words(&self.scene.mesh).into();
+        self.put_sheets(&Mesh::default(), 0);
         self.versions.change_mesh();
         Ok(())
     }
@@ -754,7 +755,8 @@ impl SceneProvider {
     /// [counts](skiagraph_graph::Plan::relies_on) masks, materials and texture coordinates
     /// (`scene.masks`, `scene.materials`, `scene.uvs` and their like). It makes other plans invalid
     /// if it changes numbers of items that they use. Each masked part changes that of masks, and so
-    /// does the first double-sided one in a mesh without masks. If the mesh or the part has
+    /// does the first double-sided one in a mesh without masks; the first part with [`Sheets`]
+    /// changes that of `scene.sheets`. If the mesh or the part has
     /// materials, the numbers of items of materials and texture coordinates change. All plans are
     /// invalid if the mesh grows. Invalid plans must be made anew
     /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)). Until then
@@ -768,6 +770,7 @@ impl SceneProvider {
     /// called, a mesh that the device cannot bind is an error of the next refresh instead.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
         let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
+        self.put_sheets(mesh, self.geometry.part(part)?.at.triangle);
         self.note_change(change);
         Ok(part)
     }
@@ -789,6 +792,7 @@ impl SceneProvider {
     /// As [`add_part`](Self::add_part).
     pub fn add_host_part(&mut self, mesh: &HostMesh, map: &DAffine3) -> Result<PartId, Error> {
         let (part, change) = self.geometry.add_host(mesh, map, &mut self.scene)?;
+        self.put_sheets(&mesh.movable().rest, self.geometry.part(part)?.at.triangle);
         self.note_change(change);
         Ok(part)
     }
@@ -846,13 +850,19 @@ impl SceneProvider {
         Ok(())
     }
 
+    /// Notes which triangles of a part that was put into the mesh are sheets.
+    fn put_sheets(&mut self, part: &Mesh, first: usize) {
+        let all = self.scene.mesh.triangles.len();
+        Arc::make_mut(&mut self.sheets).put(part, first, all);
+    }
+
     fn note_change(&mut self, change: Change) {
         if change.is_grown {
             self.versions.change_mesh();
         }
         if change.is_turned || change.is_painted {
             // Texture coordinates come in the order of corners.
-            self.masks = mask_words(&self.scene.mesh);
+            self.masks = mask_words(&self.scene.mesh).into();
             self.versions.change_winding();
         }
         if change.is_painted {
@@ -905,6 +915,7 @@ impl Describe for SceneProvider {
             TLAS => Some(Provided::ACCELERATION_STRUCTURE),
             EMBREE => cfg!(feature = "embree").then_some(Provided::CPU_WORK),
             MASKS => array(Some(self.masks.len()), 4),
+            SHEETS => array(Some(self.sheets.words().len()), 4),
             UVS => array(Some(mesh.surfaces.uvs.len()), 8),
             UV_INDICES => array(Some(3 * mesh.surfaces.uv_indices.len()), 4),
             MATERIALS => array(Some(mesh.surfaces.materials.len()), 32),

@@ -357,7 +357,8 @@ impl<'a> Summary<'a> {
         let s = if methods.len() == 1 { "s" } else { "" };
         let methods = methods.join(", ");
         Some(format!(
-            "{share}: what {methods} promise{s} ends at shadows of these, unless --set cull=none"
+            "{share}: what {methods} promise{s} ends at shadows of these where they are one-sided, \
+             unless --set cull=none"
         ))
     }
 

@@ -70,9 +70,6 @@ impl Adjacency {
 /// Edges of a masked triangle have no other one.
 fn leave_out_masked(mesh: &Mesh, opposite: &mut [u32]) {
     let is_masked = |primitive: usize| mesh.surfaces.mask(primitive as u32).is_some();
-    if !mesh.surfaces.need_care() {
-        return;
-    }
     for (entry, corner) in opposite.iter_mut().enumerate() {
         let across = *corner != NO_NEIGHBOUR && is_masked(*corner as usize / 3);
         if across || is_masked(entry / 3) {

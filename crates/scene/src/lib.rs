@@ -75,6 +75,7 @@ pub mod scene_file;
 pub mod scene_writer;
 #[cfg(feature = "schema")]
 mod schema;
+pub mod sheets;
 pub mod texels;
 #[cfg(feature = "files")]
 mod text;
@@ -102,6 +103,7 @@ pub use path::{CameraKey, CameraPath, LightKey};
 pub use scene::Scene;
 #[cfg(feature = "schema")]
 pub use schema::schema;
+pub use sheets::Sheets;
 pub use texture::{Texture, Wrap};
 
 #[cfg(feature = "files")]

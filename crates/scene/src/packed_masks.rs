@@ -26,10 +26,7 @@ pub fn mask_words(mesh: &Mesh) -> Vec<u32> {
     let mut words = vec![0; count as usize];
     let mut waiting: Vec<(usize, usize)> = Vec::new();
     for primitive in 0..count {
-        let own = &mut words[primitive as usize];
-        if surfaces.is_double_sided(primitive) {
-            *own |= DOUBLE_SIDED;
-        }
+        words[primitive as usize] = DOUBLE_SIDED * u32::from(surfaces.is_double_sided(primitive));
         if surfaces.mask(primitive).is_none() {
             continue;
         }

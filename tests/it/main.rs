@@ -45,6 +45,7 @@ mod light_cone;
 mod light_space;
 mod masked;
 mod mirrored;
+mod moved_device;
 mod moving;
 mod moving_rays;
 mod one_submission;

@@ -3,7 +3,7 @@
 
 use crate::{
     adjacencies::Adjacencies,
-    buffers::check_size,
+    buffers::{binding_limit, check_size},
     built::{How, Work},
     error::Error,
     hierarchies::{Fitted, Hierarchies, Parted, Tree},
@@ -532,6 +532,49 @@ impl Geometry {
             is_elsewhere: true,
             ..Change::default()
         })
+    }
+
+    /// Notes the device that the scene's buffers are on from now on, with its limits. Vertices in
+    /// hosts' buffers of others are not read.
+    pub fn move_to(&mut self, device: &wgpu::Device) {
+        let most = binding_limit(&device.limits());
+        self.limit = self.limit.map(|_| most);
+        self.hierarchies = Hierarchies::default();
+        let fits = |kept: &mut Kept| size_of_val(&*kept.tree.nodes) as u64 <= most;
+        self.bvh = self.bvh.take_if(fits);
+        for host in self.pieces.iter_mut().filter_map(Piece::host_mut) {
+            host.is_elsewhere = !host.mesh.is_on(device);
+        }
+    }
+
+    /// The parts whose vertices are in buffers of other devices than the scene's.
+    pub fn elsewhere(&self) -> Vec<PartId> {
+        let is_elsewhere = |id: &PartId| {
+            let host = self.pieces[id.piece].host();
+            host.is_some_and(|host| host.is_elsewhere)
+        };
+        self.parts.iter().copied().filter(is_elsewhere).collect()
+    }
+
+    /// Gives the parts of a host's mesh another buffer of the same mesh; their number, and what has
+    /// changed.
+    pub fn set_host_mesh(&mut self, mesh: &HostMesh) -> (usize, Change) {
+        let mut parts = 0;
+        for piece in &mut self.pieces {
+            if let Some(host) = piece.host_mut()
+                && Arc::ptr_eq(host.mesh.movable(), mesh.movable())
+            {
+                (host.mesh, host.is_elsewhere) = (mesh.clone(), false);
+                piece.moved = next_version();
+                parts += 1;
+            }
+        }
+        let is_elsewhere = parts > 0;
+        let change = Change {
+            is_elsewhere,
+            ..Change::default()
+        };
+        (parts, change)
     }
 
     /// Returns a part whose vertices are in a buffer of the host, if there is one.

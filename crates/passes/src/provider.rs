@@ -18,7 +18,7 @@ use crate::{
 use glam::{DAffine3, Vec3, Vec4};
 #[cfg(feature = "embree")]
 use skiagraph_gpu::CpuWork;
-use skiagraph_gpu::{Provider, ProviderError};
+use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
 use skiagraph_graph::{Describe, Plan, Provided, ProvidedBinding};
 use skiagraph_scene::{
     BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, View,
@@ -84,6 +84,8 @@ pub struct SceneProvider {
     pub(crate) masks: Vec<u32>,
     pub(crate) buffers: Buffers,
     structures: Structures,
+    /// The device that all of them are on, once there is one.
+    device: Option<DeviceIdentity>,
     #[cfg(feature = "embree")]
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
     pub(crate) geometry: Geometry,
@@ -107,6 +109,7 @@ impl SceneProvider {
             scene,
             buffers: Buffers::default(),
             structures: Structures::default(),
+            device: None,
             #[cfg(feature = "embree")]
             embree: None,
             geometry: Geometry::whole(),
@@ -149,6 +152,44 @@ impl SceneProvider {
             }
         }
         self.submit_built(device, queue)
+    }
+
+    /// Moves the provider to another device, such as one that is opened after the first was lost.
+    /// The scene, parts with their handles and places, lights, camera and versions stay; all
+    /// resources are built again, on the new device, when executors there first need them.
+    /// Executors on the device before get [`ExecuteError::OtherDevice`] from their next
+    /// [`refresh`](skiagraph_gpu::Executor::refresh). Moving to the device that the provider is on
+    /// changes nothing.
+    ///
+    /// Vertices of [host parts](Self::add_host_part) are in buffers of the device before: until
+    /// [`set_host_mesh`](Self::set_host_mesh) gives them others, or they are removed, what is made
+    /// of them fails with [`Error::HostVertices`], which lists these parts.
+    ///
+    /// [`ExecuteError::OtherDevice`]: skiagraph_gpu::ExecuteError::OtherDevice
+    pub fn move_to(&mut self, device: &wgpu::Device) {
+        if self.device.as_ref().is_some_and(|known| known.is(device)) {
+            return;
+        }
+        self.buffers.drop_all();
+        self.structures = Structures::default();
+        self.kernels = Kernels::default();
+        self.geometry.move_to(device);
+        self.device = Some(DeviceIdentity::new(device));
+    }
+
+    /// Checks that all is on `device`, which the first call decides.
+    fn check_device(&mut self, device: &wgpu::Device) -> Result<(), Error> {
+        match &self.device {
+            Some(known) if known.is(device) => {}
+            Some(_) => {
+                return Err(Error::OtherDevice {
+                    name: "the provider",
+                    way_out: ": move it to this one by `SceneProvider::move_to`",
+                });
+            }
+            None => self.move_to(device),
+        }
+        Ok(())
     }
 
     /// Lists the resources that this provider has built: an entry for each, in the order of their
@@ -298,12 +339,24 @@ impl SceneProvider {
         }
     }
 
+    /// Checks that the vertices of all parts of hosts' buffers are on the provider's device.
+    fn check_host_parts(&self) -> Result<(), Error> {
+        let parts = self.geometry.elsewhere();
+        let why = "they are in buffers of another device".to_owned();
+        if parts.is_empty() {
+            Ok(())
+        } else {
+            Err(Error::HostVertices { parts, why })
+        }
+    }
+
     fn bind_host_parts(
         &mut self,
         (name, buffer): (&str, &wgpu::Buffer),
         writes: Vec<HostWrite>,
         on: On,
     ) -> Result<Bound, Error> {
+        self.check_host_parts()?;
         let primitives;
         let [positions, indices] = match name {
             POSITIONS => [buffer, buffer].map(Clone::clone),
@@ -786,11 +839,40 @@ impl SceneProvider {
     /// at the next refresh, and [`deform`](Self::deform).
     ///
     /// # Errors
-    /// As [`add_part`](Self::add_part).
+    /// As [`add_part`](Self::add_part), and [`Error::OtherDevice`] if the mesh is on another device
+    /// than the provider's resources.
     pub fn add_host_part(&mut self, mesh: &HostMesh, map: &DAffine3) -> Result<PartId, Error> {
+        self.check_mesh(mesh)?;
         let (part, change) = self.geometry.add_host(mesh, map, &mut self.scene)?;
         self.note_change(change);
         Ok(part)
+    }
+
+    /// Gives all parts of a host's mesh another buffer, after the provider has
+    /// [moved](Self::move_to) to another device or the first buffer was destroyed. `mesh` is made
+    /// of theirs by [`HostMesh::with_vertices`]. Their handles, places and stated bounds stay. The
+    /// next [`refresh`](skiagraph_gpu::Executor::refresh) reads the vertices, which must be in the
+    /// buffer, or their upload submitted, before. Returns the number of these parts.
+    ///
+    /// # Errors
+    /// [`Error::OtherDevice`] if the mesh is on another device than the provider's resources.
+    pub fn set_host_mesh(&mut self, mesh: &HostMesh) -> Result<usize, Error> {
+        self.check_mesh(mesh)?;
+        let (parts, change) = self.geometry.set_host_mesh(mesh);
+        self.note_change(change);
+        Ok(parts)
+    }
+
+    /// Checks that a host's mesh is on the provider's device, if there is one yet.
+    fn check_mesh(&self, mesh: &HostMesh) -> Result<(), Error> {
+        match &self.device {
+            Some(known) if !mesh.is_on(known.device()) => Err(Error::OtherDevice {
+                name: "the host's mesh",
+                way_out: " than the provider: make it on the provider's, or move the provider \
+                          first by `SceneProvider::move_to`",
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Notes that the host has rewritten the vertices of a part in its buffer (skinning, morphing).
@@ -824,6 +906,8 @@ impl SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<(), Error> {
+        self.check_device(device)?;
+        self.check_host_parts()?;
         let writes = self.geometry.host_writes(None).into_iter();
         let writes = HostWrite::sorted(writes.map(|(_, write)| write).collect());
         if writes.is_empty() {
@@ -934,6 +1018,10 @@ impl Provider for SceneProvider {
         true
     }
 
+    fn device(&self) -> Option<&DeviceIdentity> {
+        self.device.as_ref()
+    }
+
     fn missing(&self, name: &str) -> Option<String> {
         let is_of_shape = is_of_shape(name) || lights::describe(name, self.lights()).is_some();
         (self.geometry.is_unplaced() && is_of_shape).then(|| {
@@ -949,7 +1037,8 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        let buffer = self.buffer(name, On { device, queue });
+        let checked = self.check_device(device);
+        let buffer = checked.and_then(|()| self.buffer(name, On { device, queue }));
         buffer.map_err(ProviderError::from_error)
     }
 
@@ -972,6 +1061,7 @@ impl Provider for SceneProvider {
         if name != TLAS {
             return Err(why(unknown(name)));
         }
+        self.check_device(device).map_err(why)?;
         let on = On { device, queue };
         let vertices = self.buffer(POSITIONS, on).map_err(why)?;
         let indices = self.buffer(INDICES, on).map_err(why)?;

@@ -20,7 +20,7 @@ use crate::{
     device::{Gpu, partial},
     error::{ExecuteError, poll, wait, with_table},
     memory::{
-        import::differs,
+        import::{differs, is_on},
         memory::{Memory, ResourceFactory, check_bound, check_relied_on},
         physical::{Physical, PingPong},
     },
@@ -111,7 +111,8 @@ impl Executor {
     /// the queue of that device.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// Those of [`new`](Self::new), of which [`ExecuteError::OtherDevice`] names a queue or a
+    /// provider of another device.
     pub fn with_pipelines(
         pipelines: &Pipelines,
         queue: &wgpu::Queue,
@@ -119,7 +120,9 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
         let device = pipelines.device();
-        let presence = Presence::new(device)?;
+        let mut presence = Presence::new(device)?;
+        presence.check_queue(queue)?;
+        presence.check_provider(provider)?;
         check_backend(device, &plan)?;
         let mut factory = ResourceFactory {
             device,
@@ -451,7 +454,8 @@ impl Executor {
     /// # Errors
     /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,
     /// [`ExecuteError::Import`] if the texture differs from its description,
-    /// [`ExecuteError::DeviceLost`] if the device is lost.
+    /// [`ExecuteError::OtherDevice`] if it is of another device, [`ExecuteError::DeviceLost`] if
+    /// the device is lost.
     pub fn import_texture(
         &mut self,
         name: &str,
@@ -473,8 +477,8 @@ impl Executor {
 
     /// Sets the sampler of the import `name`, which
     /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Passes with `run:
-    /// OnChange` that use it run in the next frame. wgpu does not tell how a sampler filters, so a
-    /// wrong one is refused only when a pass binds it.
+    /// OnChange` that use it run in the next frame. wgpu tells neither how a sampler filters nor
+    /// which device it is of, so a wrong one is refused only when a pass binds it.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -501,6 +505,10 @@ impl Executor {
                 why,
             });
         }
+        let is_own = is_on(&self.device, &physical);
+        let way_out = "hand over one that was made on the executor's device";
+        self.presence
+            .check_own(is_own, format!("the import `{name}`"), way_out)?;
         // One that no live pass uses waits for a plan in which one does.
         let Some(id) = self.state.live(name) else {
             self.state.memory.spare(name, physical);
@@ -554,12 +562,14 @@ impl Executor {
     /// # Errors
     /// If a resource cannot be built or its description differs from the one that the graph was
     /// planned for ([`ExecuteError::OtherThanPlanned`], for example in the number of items or the
-    /// kind of light), or the device is lost. That resource and those after it stay as they are;
+    /// kind of light), the provider's resources are on another device
+    /// ([`ExecuteError::OtherDevice`]), or the device is lost. That resource and those after it stay as they are;
     /// the next call asks for them again. [`Plan::relies_on`] lists resources whose description
     /// counts although no live pass binds them: if one of them differs, all stay as they are. The
     /// way out is another plan: [`Plan::with`], with the provider set, and
     /// [`replace_graph`](Self::replace_graph).
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
+        self.presence.check_provider(provider)?;
         // If it fails half way, some resources are this provider's.
         self.knows_changes &= provider.has_versions();
         let mut built = Vec::new();
@@ -787,6 +797,7 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
         self.presence.check()?;
+        self.presence.check_provider(provider)?;
         check_backend(&self.device, &plan)?;
         let mut factory = ResourceFactory {
             device: &self.device,

@@ -35,6 +35,7 @@ mod imports;
 mod keep;
 mod memory;
 mod on_cpu;
+mod other_device;
 mod pipelines;
 mod provided;
 mod readback;

@@ -553,7 +553,7 @@ fn names_parts(error: &ExecuteError, expected: &[PartId]) {
     let Some(Error::HostVertices { parts, .. }) = reason else {
         panic!("{text}");
     };
-    let [mut named, mut expected] = [parts, expected].map(<[PartId]>::to_vec);
+    let [mut named, mut expected] = [&parts[..], expected].map(<[PartId]>::to_vec);
     (named.sort(), expected.sort());
     assert_eq!(named, expected);
     assert!(

@@ -58,7 +58,8 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `light_areas` | array of [`LightAreaUniform`]; `light_areas[2]` alone is a uniform |
 ///
 /// Resources that are built stay, and are shared by all graphs that are executed with the same
-/// provider. A provider therefore belongs to the device that it was first used with. Executors that
+/// provider. A provider therefore belongs to the device that it was first used with, until it
+/// [moves](Self::move_to) to another one. Executors that
 /// are created after a camera, light or mesh was set use it at once. Others use it after their next
 /// [`refresh`](skiagraph_gpu::Executor::refresh), which rebuilds those resources that depend on the
 /// change and that a pass of the plan reads.
@@ -833,7 +834,7 @@ impl SceneProvider {
     /// [`HostMesh`], which must hold all its vertices ([`HostMesh::with_bounds`]), and
     /// [`scene`](Self::scene) has the part's positions at rest.
     ///
-    /// The host keeps the buffer, and calls [`rewrite_part`](Self::rewrite_part) after each write
+    /// The host keeps the buffer, or hands over [another](Self::set_host_mesh), and calls [`rewrite_part`](Self::rewrite_part) after each write
     /// to the part's vertices. While the mesh has such a part, all that needs every position on the
     /// CPU fails with [`Error::OnDevice`]: the hierarchies of the engines `LightSpace` and `Embree`
     /// at the next refresh, and [`deform`](Self::deform).

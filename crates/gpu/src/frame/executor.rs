@@ -28,7 +28,9 @@ use crate::{
     presence::Presence,
     provider::Provider,
 };
-use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceId, ResourceKind};
+use skiagraph_graph::{
+    Origin, Panicked, ParamValue, Plan, Resource, ResourceId, ResourceKind, caught,
+};
 use std::{
     sync::Arc,
     time::{Duration, Instant},
@@ -243,8 +245,12 @@ impl Executor {
             self.frames_in_flight.recycle(frame_in_flight);
             return Err(with_table(error, self.plan()));
         }
-        // From here on nothing can fail but work of the CPU.
-        if let Err(error) = self.record(&mut frame_in_flight, encoder, gives_up) {
+        // From here on nothing can fail but work of the CPU, if the encoder is of the device. wgpu
+        // tells the device of an encoder to nobody, and panics where one of another instance is
+        // given a thing whose number is not taken there.
+        let recorded = caught(|| self.record(&mut frame_in_flight, encoder, gives_up));
+        let recorded = recorded.unwrap_or_else(|panicked| Err(in_encoder(panicked)));
+        if let Err(error) = recorded {
             // Its queries are not resolved, and what it has written stays.
             frame_in_flight.timer = None;
             self.state.forget_frame(&self.decision);
@@ -995,6 +1001,16 @@ impl Executor {
             Ok(report) => Ok(Some(report)),
         }
     }
+}
+
+/// The error of a panic while the host's encoder is written to.
+fn in_encoder(panicked: Panicked) -> ExecuteError {
+    let name = "the encoder".to_owned();
+    if panicked.message.starts_with("Cannot get non-existent") {
+        let way_out = "make it by the executor's device";
+        return ExecuteError::OtherDevice { name, way_out };
+    }
+    ExecuteError::Panicked { name, panicked }
 }
 
 /// Refuses a plan whose graph is not proven on the device's backend.

@@ -340,3 +340,35 @@ fn looking_at_a_device_takes_microseconds() {
         executor.import_texture("image", &image).unwrap();
     });
 }
+
+/// wgpu tells no device of an encoder. It refuses one of another device of the instance when that
+/// is finished, and panics where one of another instance lacks a number.
+#[test]
+fn an_encoder_of_another_device_is_no_panic() {
+    let (gpu, others) = devices();
+    let mut number = Number::new(&gpu.device, 3);
+    for other in &others {
+        let heard = Arc::new(AtomicUsize::new(0));
+        let counter = Arc::clone(&heard);
+        other.device.on_uncaptured_error(Arc::new(move |_| {
+            counter.fetch_add(1, Ordering::Relaxed);
+        }));
+        let mut takes = Executor::on(&gpu, plan(&taker(), &number, &gpu), &mut number).unwrap();
+        let mut sums = sums_on(&gpu);
+        let (image, more) = (texture(&gpu.device), buffer(&gpu.device, 5, false));
+        sums.import_texture("image", &image).unwrap();
+        sums.import_buffer("more", &more).unwrap();
+        for executor in [&mut takes, &mut sums] {
+            let mut encoder = other.device.create_command_encoder(&Default::default());
+            match executor.encode(&mut encoder, &Frame::default()) {
+                Ok(_) => {
+                    drop(encoder.finish());
+                    assert!(heard.swap(0, Ordering::Relaxed) > 0);
+                }
+                error => refused(error, "the encoder", "executor's device"),
+            }
+        }
+        assert_eq!(numbers(&gpu, &mut takes, "copy"), [3]);
+        assert_eq!(numbers(&gpu, &mut sums, "sum"), [5; 64]);
+    }
+}

@@ -37,6 +37,7 @@ mod fits;
 mod foreign;
 mod host;
 mod host_buffers;
+mod host_depth;
 mod hostile;
 mod lamp_maps;
 mod layers;

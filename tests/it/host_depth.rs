@@ -112,8 +112,8 @@ fn clip(matrix: &Mat4, at: Vec3, is_fused: bool) -> Vec4 {
     Vec4::new(x, y, z, w)
 }
 
-/// The depth that a rasteriser writes at a place of its picture in pixels, if the triangle is there,
-/// and how slender that is: the square of its longest edge over twice its area.
+/// The depth that a rasteriser writes at a place of its picture in pixels, if the triangle is
+/// there, and how slender that is: the square of its longest edge over twice its area.
 fn drawn(clips: [Vec4; 3], (at, size): (DVec2, DVec2), how: Interpolation) -> Option<(f32, f64)> {
     let ndc = clips.map(|of| of.xyz() / of.w);
     let on_grid = |of: Vec3| {
@@ -152,7 +152,7 @@ fn drawn(clips: [Vec4; 3], (at, size): (DVec2, DVec2), how: Interpolation) -> Op
     Some((depth, longest * longest / area.abs()))
 }
 
-/// What shaders/from_depth.wgsl makes of a depth, in f32.
+/// The arithmetic of shaders/from_depth.wgsl, in f32.
 struct Unprojection {
     relative_from_clip: Mat4,
     origin: Vec3,
@@ -335,7 +335,7 @@ fn hold(rounds: usize, seed: u64) -> usize {
             most[1] = most[1].max(before / allowed);
             assert!(
                 before >= 0.0 && before <= allowed,
-                "{round}, {how:?}, {format:?}, {:?}: {before} of {allowed}; depth {seen}, size {size}",
+                "{round}, {how:?}, {format:?}, {:?}: {before} of {allowed}; depth {seen}",
                 camera.depth
             );
         }

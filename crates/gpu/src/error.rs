@@ -189,7 +189,7 @@ pub enum ExecuteError {
         /// Thing that is of another device: `the provider`, `the queue`, an import or a provided
         /// resource with its name.
         name: String,
-        /// What a host does instead, as text.
+        /// Advice for the host, as text.
         way_out: &'static str,
     },
     /// The device was lost or did not answer; the text describes the symptom.

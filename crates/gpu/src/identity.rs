@@ -78,7 +78,7 @@ pub(crate) fn has_buffer(device: &wgpu::Device, buffer: &wgpu::Buffer) -> bool {
 /// Returns true if a queue is that of a device; `buffer` is any of the device.
 pub(crate) fn has_queue(device: &wgpu::Device, queue: &wgpu::Queue, buffer: &wgpu::Buffer) -> bool {
     hears(device, || {
-        // Of one byte at an odd place none is ever written, whatever buffer the other one has there.
+        // One byte at an odd place is never written, whatever buffer has that number there.
         let _ = queue.write_buffer_with(buffer, 1, wgpu::BufferSize::MIN);
     })
 }

@@ -173,8 +173,8 @@ pub enum Error {
         /// Handle of the part.
         PartId,
     ),
-    /// The vertices of parts in buffers of the host cannot be read, for example because a buffer was
-    /// destroyed, or is on another device than the provider's resources.
+    /// The vertices of parts in buffers of the host cannot be read, for example because a buffer
+    /// was destroyed, or is on another device than the provider's resources.
     #[error(
         "the vertices of {parts:?} cannot be read: {why}; hand over others by \
          `HostMesh::with_vertices` and `SceneProvider::set_host_mesh`, or remove these parts"
@@ -185,14 +185,16 @@ pub enum Error {
         /// Reason, that of wgpu if the device refuses them.
         why: String,
     },
-    /// The provider's resources, or a host's mesh, are on another device.
-    #[error("{name} is of another device{way_out}")]
-    OtherDevice {
+    /// The provider's resources are on another device than the one that is asked of, or a host's
+    /// mesh on another one than these.
+    #[error(
+        "{0} is of another device: move the provider by `SceneProvider::move_to`, and make hosts' \
+         meshes on its device"
+    )]
+    OtherDevice(
         /// Thing that is of another device: `the provider` or `the host's mesh`.
-        name: &'static str,
-        /// What a host does instead, as text.
-        way_out: &'static str,
-    },
+        &'static str,
+    ),
     /// The device could not read back the result of
     /// [`SceneProvider::check_bounds`](crate::SceneProvider::check_bounds).
     #[error(transparent)]

@@ -547,13 +547,19 @@ impl Geometry {
         }
     }
 
-    /// The parts whose vertices are in buffers of other devices than the scene's.
-    pub fn elsewhere(&self) -> Vec<PartId> {
-        let is_elsewhere = |id: &PartId| {
-            let host = self.pieces[id.piece].host();
-            host.is_some_and(|host| host.is_elsewhere)
-        };
-        self.parts.iter().copied().filter(is_elsewhere).collect()
+    /// Checks that the vertices of all parts of hosts' buffers are on the device of the scene's.
+    ///
+    /// # Errors
+    /// [`Error::HostVertices`] with those that are not.
+    pub fn check_host_parts(&self) -> Result<(), Error> {
+        let host = |id: &PartId| self.pieces[id.piece].host();
+        let is_elsewhere = |id: &PartId| host(id).is_some_and(|host| host.is_elsewhere);
+        let parts: Vec<PartId> = self.parts.iter().copied().filter(is_elsewhere).collect();
+        if parts.is_empty() {
+            return Ok(());
+        }
+        let why = "they are in buffers of another device".to_owned();
+        Err(Error::HostVertices { parts, why })
     }
 
     /// Gives the parts of a host's mesh another buffer of the same mesh; their number, and what has
@@ -619,28 +625,23 @@ impl Geometry {
         version < self.begun
     }
 
-    /// The ranges of positions that are others than in a version of the shape.
-    pub fn positions_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
+    /// The ranges of positions, or of normals, that are others than in a version of the shape:
+    /// those of pieces that were moved on the CPU. `name` says which; the list has `count` items.
+    pub fn moved_since(
+        &self,
+        version: u64,
+        (name, count): (&str, usize),
+        mesh: &Mesh,
+    ) -> Vec<Range<usize>> {
         if self.is_begun_after(version) {
-            return all(mesh.positions.len());
+            return all(count);
         }
-        let moved = self.moved_here(version);
-        moved.map(|piece| piece.ranges(mesh)[0].clone()).collect()
-    }
-
-    /// The ranges of normals that are others than in a version of the shape.
-    pub fn normals_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
-        if self.is_begun_after(version) {
-            return all(mesh.normals.len());
-        }
-        let moved = self.moved_here(version);
-        moved.map(|piece| piece.ranges(mesh)[1].clone()).collect()
-    }
-
-    /// The pieces that were moved since a version on the CPU.
-    fn moved_here(&self, version: u64) -> impl Iterator<Item = &Piece> {
         let moved = self.pieces.iter();
-        moved.filter(move |piece| piece.moved > version && piece.host().is_none())
+        let moved = moved.filter(|piece| piece.moved > version && piece.host().is_none());
+        let list = usize::from(name == NORMALS);
+        moved
+            .map(|piece| piece.ranges(mesh)[list].clone())
+            .collect()
     }
 
     /// The ranges of triangles that have other corners than in a version of the winding.
@@ -820,11 +821,6 @@ impl Geometry {
         let tree = self.hierarchies.light_space(space, mesh, most, keep)?;
         self.work.nodes += tree.nodes.len() as u64;
         Ok(tree)
-    }
-
-    /// True if the mesh is in parts.
-    pub fn is_parted(&self) -> bool {
-        self.first.is_some()
     }
 
     /// Returns the hierarchy of a mesh in parts in the light space of `space`, of which only the

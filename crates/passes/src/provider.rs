@@ -182,12 +182,7 @@ impl SceneProvider {
     fn check_device(&mut self, device: &wgpu::Device) -> Result<(), Error> {
         match &self.device {
             Some(known) if known.is(device) => {}
-            Some(_) => {
-                return Err(Error::OtherDevice {
-                    name: "the provider",
-                    way_out: ": move it to this one by `SceneProvider::move_to`",
-                });
-            }
+            Some(_) => return Err(Error::OtherDevice("the provider")),
             None => self.move_to(device),
         }
         Ok(())
@@ -212,7 +207,7 @@ impl SceneProvider {
 
     /// The buffer of that name with what is in it now.
     fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
-        let is_parted = self.geometry.is_parted();
+        let is_parted = self.geometry.is_in_parts();
         self.buffers.lay_over(self.versions.shape, is_parted);
         self.buffers.keeps_gaps = self.geometry.a_host_part().is_some();
         let version = self.version(name);
@@ -296,10 +291,8 @@ impl SceneProvider {
     ) -> Result<How, Error> {
         let (version, known) = (self.version(name), self.buffers.version(name));
         let (known, mesh) = (known.unwrap_or_default(), &self.scene.mesh);
-        let changed = match name {
-            POSITIONS => self.geometry.positions_since(known, mesh),
-            _ => self.geometry.normals_since(known, mesh),
-        };
+        let list = (name, items.len());
+        let changed = self.geometry.moved_since(known, list, mesh);
         let append = |range: Range<usize>, to: &mut Vec<Vec4>| {
             to.extend(items[range].iter().map(|item| item.extend(w)));
         };
@@ -340,24 +333,13 @@ impl SceneProvider {
         }
     }
 
-    /// Checks that the vertices of all parts of hosts' buffers are on the provider's device.
-    fn check_host_parts(&self) -> Result<(), Error> {
-        let parts = self.geometry.elsewhere();
-        let why = "they are in buffers of another device".to_owned();
-        if parts.is_empty() {
-            Ok(())
-        } else {
-            Err(Error::HostVertices { parts, why })
-        }
-    }
-
     fn bind_host_parts(
         &mut self,
         (name, buffer): (&str, &wgpu::Buffer),
         writes: Vec<HostWrite>,
         on: On,
     ) -> Result<Bound, Error> {
-        self.check_host_parts()?;
+        self.geometry.check_host_parts()?;
         let primitives;
         let [positions, indices] = match name {
             POSITIONS => [buffer, buffer].map(Clone::clone),
@@ -464,7 +446,7 @@ impl SceneProvider {
         // As in the other hierarchy, leaves are joined where there are too many nodes to bind; the
         // last item is the centre.
         let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64 - 1;
-        if self.geometry.is_parted() {
+        if self.geometry.is_in_parts() {
             // An eighth of the scene's size nearer or farther, boxes are as tight.
             let space = (space, light.max_distance / 16.0);
             return self.upload_light_space_of_parts(space, most as usize, on);
@@ -834,10 +816,11 @@ impl SceneProvider {
     /// [`HostMesh`], which must hold all its vertices ([`HostMesh::with_bounds`]), and
     /// [`scene`](Self::scene) has the part's positions at rest.
     ///
-    /// The host keeps the buffer, or hands over [another](Self::set_host_mesh), and calls [`rewrite_part`](Self::rewrite_part) after each write
-    /// to the part's vertices. While the mesh has such a part, all that needs every position on the
-    /// CPU fails with [`Error::OnDevice`]: the hierarchies of the engines `LightSpace` and `Embree`
-    /// at the next refresh, and [`deform`](Self::deform).
+    /// The host keeps the buffer, or hands over [another](Self::set_host_mesh), and calls
+    /// [`rewrite_part`](Self::rewrite_part) after each write to the part's vertices. While the mesh
+    /// has such a part, all that needs every position on the CPU fails with [`Error::OnDevice`]:
+    /// the hierarchies of the engines `LightSpace` and `Embree` at the next refresh, and
+    /// [`deform`](Self::deform).
     ///
     /// # Errors
     /// As [`add_part`](Self::add_part), and [`Error::OtherDevice`] if the mesh is on another device
@@ -867,11 +850,9 @@ impl SceneProvider {
     /// Checks that a host's mesh is on the provider's device, if there is one yet.
     fn check_mesh(&self, mesh: &HostMesh) -> Result<(), Error> {
         match &self.device {
-            Some(known) if !mesh.is_on(known.device()) => Err(Error::OtherDevice {
-                name: "the host's mesh",
-                way_out: " than the provider: make it on the provider's, or move the provider \
-                          first by `SceneProvider::move_to`",
-            }),
+            Some(known) if !mesh.is_on(known.device()) => {
+                Err(Error::OtherDevice("the host's mesh"))
+            }
             _ => Ok(()),
         }
     }
@@ -908,7 +889,7 @@ impl SceneProvider {
         queue: &wgpu::Queue,
     ) -> Result<(), Error> {
         self.check_device(device)?;
-        self.check_host_parts()?;
+        self.geometry.check_host_parts()?;
         let writes = self.geometry.host_writes(None).into_iter();
         let writes = HostWrite::sorted(writes.map(|(_, write)| write).collect());
         if writes.is_empty() {

@@ -246,8 +246,7 @@ impl Executor {
             return Err(with_table(error, self.plan()));
         }
         // From here on nothing can fail but work of the CPU, if the encoder is of the device. wgpu
-        // tells the device of an encoder to nobody, and panics where one of another instance is
-        // given a thing whose number is not taken there.
+        // does not tell that, and panics where an instance has no thing of a number.
         let recorded = caught(|| self.record(&mut frame_in_flight, encoder, gives_up));
         let recorded = recorded.unwrap_or_else(|panicked| Err(in_encoder(panicked)));
         if let Err(error) = recorded {
@@ -569,10 +568,10 @@ impl Executor {
     /// If a resource cannot be built or its description differs from the one that the graph was
     /// planned for ([`ExecuteError::OtherThanPlanned`], for example in the number of items or the
     /// kind of light), the provider's resources are on another device
-    /// ([`ExecuteError::OtherDevice`]), or the device is lost. That resource and those after it stay as they are;
-    /// the next call asks for them again. [`Plan::relies_on`] lists resources whose description
-    /// counts although no live pass binds them: if one of them differs, all stay as they are. The
-    /// way out is another plan: [`Plan::with`], with the provider set, and
+    /// ([`ExecuteError::OtherDevice`]), or the device is lost. That resource and those after it
+    /// stay as they are; the next call asks for them again. [`Plan::relies_on`] lists resources
+    /// whose description counts although no live pass binds them: if one of them differs, all stay
+    /// as they are. The way out is another plan: [`Plan::with`], with the provider set, and
     /// [`replace_graph`](Self::replace_graph).
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         self.presence.check_provider(provider)?;

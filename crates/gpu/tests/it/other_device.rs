@@ -305,7 +305,7 @@ fn a_provider_of_another_device_is_named_by_each_method() {
         refused(executor.replace(prepared, &mut theirs), name, way);
         executor.refresh(&mut own).unwrap();
         assert_eq!(numbers(&gpu, &mut executor, "copy"), [1]);
-        // What was prepared on one device is made anew on the other.
+        // Pipelines that were prepared on one device are made anew on the other.
         let prepared = executor.preparer().prepare(planned.clone()).unwrap();
         let mut executor =
             Executor::on(other, plan(&taker(), &theirs, other), &mut theirs).unwrap();
@@ -315,7 +315,7 @@ fn a_provider_of_another_device_is_named_by_each_method() {
     assert_eq!(heard.load(Ordering::Relaxed), 0, "hosts hear nothing");
 }
 
-/// What it costs to look, so that a host may hand over its texture in every frame.
+/// The price of looking, so that a host may hand over its texture in every frame.
 #[test]
 #[ignore = "a measurement: cargo test -p skiagraph-gpu --test gpu looking -- --ignored --nocapture"]
 fn looking_at_a_device_takes_microseconds() {

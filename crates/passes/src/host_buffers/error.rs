@@ -13,8 +13,8 @@ pub enum HostMeshError {
     Usage,
     /// The buffer or decoder of the vertices is of another device, or the device is lost.
     #[error(
-        "the {0} of the vertices is of another device than the one that was given, or that is lost: \
-         make it on the device that the scene is drawn on"
+        "the {0} of the vertices is of another device than the one that was given, or that is \
+         lost: make it on the device that the scene is drawn on"
     )]
     OtherDevice(
         /// Thing that is of another device: `buffer` or `decoder`.

@@ -56,7 +56,7 @@ pub(super) struct Own {
     levels: OnceLock<wgpu::Buffer>,
 }
 
-/// What a mesh has on the CPU, whichever buffer its vertices are in.
+/// The part of a mesh that is on the CPU, whichever buffer its vertices are in.
 #[derive(Debug)]
 pub(super) struct Rest {
     /// The only part of it.

@@ -542,7 +542,8 @@ fn names_parts(error: &ExecuteError, expected: &[PartId]) {
         panic!("{text}");
     };
     let [mut named, mut expected] = [&parts[..], expected].map(<[PartId]>::to_vec);
-    (named.sort(), expected.sort());
+    named.sort();
+    expected.sort();
     assert_eq!(named, expected);
     assert!(
         expected
@@ -645,7 +646,8 @@ fn a_destroyed_buffer_is_named_by_its_parts() {
         panic!("{error}");
     };
     let mut expected = parts.to_vec();
-    (named.sort(), expected.sort());
+    named.sort();
+    expected.sort();
     assert!(named == expected && why.contains("destroyed"), "{why}");
     // Another buffer, and all is well.
     let vertices = stage.stone.on(&gpu);

@@ -82,14 +82,6 @@ impl Buffers {
         }
     }
 
-    /// Drops all buffers, but not the count of bytes.
-    pub fn drop_all(&mut self) {
-        *self = Self {
-            work: self.work,
-            ..Self::default()
-        };
-    }
-
     /// The buffer of that name, if there is one whose content is of that version.
     pub fn get(&self, name: &str, version: u64) -> Option<&wgpu::Buffer> {
         let held = self.held.get(name)?.iter();

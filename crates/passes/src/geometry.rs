@@ -6,7 +6,7 @@ use crate::{
     buffers::{binding_limit, check_size},
     built::{How, Work},
     error::Error,
-    hierarchies::{Fitted, Hierarchies, Parted, Tree},
+    hierarchies::{Fitted, Hierarchies, Parted, Tree, all},
     host_buffers::{HostMesh, HostWrite},
     names::{BVH_NODES, INDICES, NORMALS, POSITIONS, next_version},
     outlines::Outlines,
@@ -575,9 +575,8 @@ impl Geometry {
                 parts += 1;
             }
         }
-        let is_elsewhere = parts > 0;
         let change = Change {
-            is_elsewhere,
+            is_elsewhere: parts > 0,
             ..Change::default()
         };
         (parts, change)
@@ -911,11 +910,6 @@ impl Geometry {
         self.work.laid += laid;
         uniform
     }
-}
-
-/// The range of a whole list.
-fn all(count: usize) -> Vec<Range<usize>> {
-    std::iter::once(0..count).collect()
 }
 
 /// Lengthens a list by so many items; the range of the new ones.

@@ -7,7 +7,7 @@ use crate::{
     error::Error,
     eye::Eye,
     geometry::{Change, Geometry, nodes_to_walk},
-    hierarchies::Tree,
+    hierarchies::{Tree, all},
     host_buffers::{Bound, HostMesh, HostWrite, Kernels, Written},
     lights,
     names::*,
@@ -171,9 +171,9 @@ impl SceneProvider {
         if self.device.as_ref().is_some_and(|known| known.is(device)) {
             return;
         }
-        self.buffers.drop_all();
-        self.structures = Structures::default();
-        self.kernels = Kernels::default();
+        let work = self.buffers.work;
+        (self.buffers, self.structures, self.kernels) = Default::default();
+        self.buffers.work = work;
         self.geometry.move_to(device);
         self.device = Some(DeviceIdentity::new(device));
     }
@@ -470,7 +470,6 @@ impl SceneProvider {
         let buffers = &mut self.buffers;
         let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
         let known = names.map(|name| buffers.take_up(name, of.since));
-        let all = |count: usize| std::iter::once(0..count).collect::<Vec<_>>();
         let [nodes, primitives] = of.changed;
         let nodes = if known[0] { nodes } else { all(of.nodes.len()) };
         buffers.patch_list(names[0], &of.nodes, &nodes, version, on)?;

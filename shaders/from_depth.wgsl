@@ -1,7 +1,7 @@
 // Stage to find the receiver of each pixel from a host's depth and normals; one thread per pixel.
 // The receiver's primitive is not known, so it is put before its surface instead: nearer to the eye
-// by the error of its depth, and along its normal by the error of the arithmetic here. A surface
-// seen from its front does not shade itself then.
+// by the error of its depth, and along its normal by what the rasteriser has moved the surface, and
+// by the error of the arithmetic here (docs/embedding.md). A surface does not shade itself then.
 
 #import "shared/light.wgsl"
 #import "shared/ids.wgsl"
@@ -33,10 +33,13 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
         textureStore(position, pixel, vec4(0.0));
         return;
     }
-    let slope = slope_along(pixel, vec2(1u, 0u), seen) + slope_along(pixel, vec2(0u, 1u), seen);
-    let error = 2.0 * HALF_ULP * params.depth_steps * abs(seen) + params.snapping * slope;
-    let relative = relative_at_depth(pixel, viewport, nearer_depth(seen, error));
+    // As much again for the arithmetic here.
+    let nearer = nearer_depth(seen, 2.0 * HALF_ULP * params.depth_steps * abs(seen));
+    let relative = relative_at_depth(pixel, viewport, nearer);
     let place = (relative + unprojection.origin_low) + unprojection.origin;
+    let beside = relative_at_depth(pixel + vec2(1u, 0u), viewport, nearer);
+    let below = relative_at_depth(pixel + vec2(0u, 1u), viewport, nearer);
+    let pixel_size = distance(relative, beside) + distance(relative, below);
 
     var away = textureLoad(normal, pixel, 0).xyz;
     if params.unsigned != 0u {
@@ -44,30 +47,14 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     }
     let length_squared = dot(away, away);
     away *= inverseSqrt(max(length_squared, 1e-37));
+    // A plane through corners that were moved sideways by a share of a pixel is no farther from the
+    // right one than that, however steep it is. Normals may be 45 degrees off the plane's.
     let rounding = 4.0 * HALF_ULP * (length(place) + 2.0 * length(relative));
-    let receiver = place + rounding * away;
+    let receiver = place + (params.snapping * pixel_size + rounding) * away;
     var n_dot_l = 0.0;
     if length_squared > 0.0 && light_shines_on(receiver) {
         n_dot_l = dot(away, to_light_from(receiver));
     }
     textureStore(primitive, pixel, vec4(UNKNOWN_PRIMITIVE));
     textureStore(position, pixel, vec4(receiver, n_dot_l));
-}
-
-// How much the depth changes from pixel to pixel: on the side where it changes less, since the
-// other one may be beyond the surface's edge.
-fn slope_along(pixel: vec2<u32>, step: vec2<u32>, seen: f32) -> f32 {
-    let last = textureDimensions(depth) - 1u;
-    // Numbers are unsigned: before the first pixel one wraps around.
-    let before = pixel - step;
-    let after = pixel + step;
-    var slope = 3.0e38;
-    if all(before <= last) {
-        slope = abs(seen - textureLoad(depth, before, 0));
-    }
-    if all(after <= last) {
-        slope = min(slope, abs(seen - textureLoad(depth, after, 0)));
-    }
-    // A picture of one pixel has no neighbours.
-    return select(slope, 0.0, slope == 3.0e38);
 }

@@ -17,7 +17,7 @@ use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, Scene, View};
 use std::{fs, path::Path, sync::Arc};
 use wgpu::util::DeviceExt;
 
-const VIEWPORT: [u32; 2] = [192, 128];
+pub const VIEWPORT: [u32; 2] = [192, 128];
 const PRESETS: [&str; 3] = ["light_buffer", "rt", "crsm"];
 
 /// Which pixels see the light.
@@ -189,7 +189,7 @@ fn a_light_and_a_camera_that_are_none_are_errors() {
 }
 
 /// Returns the texels of a texture of u32.
-fn texels(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Vec<u32> {
+pub fn texels(gpu: &Gpu, mut encoder: wgpu::CommandEncoder, texture: &wgpu::Texture) -> Vec<u32> {
     let (width, height) = (texture.width(), texture.height());
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
@@ -284,9 +284,9 @@ fn buffers_on_the_gpu_are_read_once_and_welded() {
 }
 
 /// A host's camera: name, world to eye, eye to clip, depth.
-type Camera = (&'static str, DMat4, DMat4, Depth);
+pub type Camera = (&'static str, DMat4, DMat4, Depth);
 
-fn cameras(scene: &Scene) -> [Camera; 4] {
+pub fn cameras(scene: &Scene) -> [Camera; 4] {
     let seen = &scene.views[0];
     let eye = look_to_mat4(seen.eye, seen.direction.normalize(), seen.up);
     let aspect = f64::from(VIEWPORT[0]) / f64::from(VIEWPORT[1]);
@@ -327,7 +327,7 @@ fn cameras(scene: &Scene) -> [Camera; 4] {
 }
 
 /// A preset on a host's depth and normals.
-fn on_depth(
+pub fn on_depth(
     gpu: &Gpu,
     preset: &str,
     provider: &mut SceneProvider,
@@ -403,6 +403,19 @@ fn the_document_for_a_hosts_depth_is_right() {
     assert!(!provided.contains(&"scene.normals"), "{provided:?}");
 }
 
+/// Column and row of a pixel.
+pub fn pixel(index: usize) -> [usize; 2] {
+    [index % VIEWPORT[0] as usize, index / VIEWPORT[0] as usize]
+}
+
+/// The place of a primitive that a pixel shows, and the normal there.
+pub fn surface(mesh: &Mesh, primitive: u32, matrix: DMat4, index: usize) -> [DVec3; 2] {
+    let ndc = |at: usize, of: u32| (at as f64 + 0.5) / f64::from(of) * 2.0 - 1.0;
+    let [x, y] = pixel(index);
+    let ndc = [ndc(x, VIEWPORT[0]), -ndc(y, VIEWPORT[1])];
+    gbuffer::receiver(mesh, primitive, matrix, ndc)
+}
+
 /// Every answer is right where the receiver was put, which is before its own surface, and so near
 /// to it that few pixels differ from the exact answer.
 #[test]
@@ -428,10 +441,7 @@ fn a_hosts_depth_is_as_good_as_its_rounding() {
                 if !matches!(status[pixel], 2..=4) {
                     continue;
                 }
-                let [x, y] = [pixel % VIEWPORT[0] as usize, pixel / VIEWPORT[0] as usize];
-                let ndc = |at: usize, of: u32| (at as f64 + 0.5) / f64::from(of) * 2.0 - 1.0;
-                let ndc = [ndc(x, VIEWPORT[0]), -ndc(y, VIEWPORT[1])];
-                let [exact, normal] = gbuffer::receiver(&park.mesh, primitives[pixel], matrix, ndc);
+                let [exact, normal] = surface(&park.mesh, primitives[pixel], matrix, pixel);
                 let place = Vec3::from_slice(&place[..3]);
                 behind += usize::from((place.as_dvec3() - exact).dot(normal) < 0.0);
                 farthest = farthest.max(place.as_dvec3().distance(exact));

@@ -97,6 +97,7 @@ fn the_rust_of_the_documents_is_code_that_runs() {
         "crates/passes/examples/preset/shadows.rs",
         "tests/it/host.rs",
         "tests/it/host_buffers.rs",
+        "tests/it/moved_device.rs",
         "tests/it/moving.rs",
         "tests/it/unit_visibility.rs",
         "tests/it/views.rs",

@@ -181,6 +181,16 @@ pub enum ExecuteError {
         /// Name of the output or capture, or `pipeline statistics`.
         name: String,
     },
+    /// Something belongs to another device than the executor. wgpu would refuse it, panic, or take
+    /// another thing of the same number for it.
+    #[error("{name} is of another device than the executor: {way_out}")]
+    OtherDevice {
+        /// Thing that is of another device: `the provider`, `the queue`, an import or a provided
+        /// resource with its name.
+        name: String,
+        /// Advice for the host, as text.
+        way_out: &'static str,
+    },
     /// The device was lost or did not answer; the text describes the symptom.
     #[error("the device was lost: {0}")]
     DeviceLost(String),

@@ -29,6 +29,7 @@ pub mod device;
 mod error;
 mod experimental;
 mod frame;
+mod identity;
 pub mod import;
 mod memory;
 mod pipelines;
@@ -42,6 +43,7 @@ pub use error::ExecuteError;
 pub use frame::{
     Executor, FaultKind, Frame, FrameFault, FrameReport, Prepared, Preparer, ReplanReport,
 };
+pub use identity::DeviceIdentity;
 pub use pipelines::pipelines::Pipelines;
 pub use provider::{CpuWork, Provider, ProviderError};
 pub use readback::{Content, Readback};

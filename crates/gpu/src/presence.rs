@@ -1,12 +1,15 @@
-//! Checks before each frame that the device is not lost, without allocating anything.
+//! Checks before each frame that the device is not lost, without allocating anything; checks that
+//! things are of the device.
 
 use crate::{
     buffer,
     error::{ExecuteError, scoped},
+    identity,
+    provider::Provider,
     signal::{Progress, Signal},
 };
 
-/// Tells whether a device is lost.
+/// Tells whether a device is lost, and whether queues and providers are of it.
 ///
 /// wgpu reports a loss only to a single callback, which the host may have set. But it refuses at
 /// once to map a buffer of a lost device, while a working device maps it at the next poll. So this
@@ -15,6 +18,8 @@ pub(crate) struct Presence {
     device: wgpu::Device,
     buffer: wgpu::Buffer,
     asked: Signal,
+    /// Number of the last provider's device that was found to be this one.
+    provider: Option<u64>,
 }
 
 impl Presence {
@@ -29,9 +34,55 @@ impl Presence {
             })?,
             device: device.clone(),
             asked: Signal::default(),
+            provider: None,
         };
         presence.check()?;
         Ok(presence)
+    }
+
+    /// Returns an error if `queue` is that of another device.
+    ///
+    /// # Errors
+    /// [`ExecuteError::OtherDevice`], or [`ExecuteError::DeviceLost`].
+    pub fn check_queue(&self, queue: &wgpu::Queue) -> Result<(), ExecuteError> {
+        let is_own = identity::has_queue(&self.device, queue, &self.buffer);
+        self.check_own(
+            is_own,
+            "the queue",
+            "hand over the one that came with the device",
+        )
+    }
+
+    /// Returns an error if the resources of `provider` are on another device.
+    ///
+    /// # Errors
+    /// [`ExecuteError::OtherDevice`], or [`ExecuteError::DeviceLost`].
+    pub fn check_provider(&mut self, provider: &dyn Provider) -> Result<(), ExecuteError> {
+        if let Some(of) = provider.device()
+            && self.provider != Some(of.number)
+        {
+            self.check_own(of.is(&self.device), "the provider", MOVE)?;
+            self.provider = Some(of.number);
+        }
+        Ok(())
+    }
+
+    /// Returns an error if a thing is not of this device, as it seems; a lost device tells nothing.
+    ///
+    /// # Errors
+    /// [`ExecuteError::OtherDevice`], or [`ExecuteError::DeviceLost`].
+    pub fn check_own(
+        &self,
+        is_own: bool,
+        name: impl Into<String>,
+        way_out: &'static str,
+    ) -> Result<(), ExecuteError> {
+        if is_own {
+            return Ok(());
+        }
+        self.check()?;
+        let name = name.into();
+        Err(ExecuteError::OtherDevice { name, way_out })
     }
 
     /// Returns an error if the device is lost.
@@ -67,6 +118,10 @@ fn maps_another(device: &wgpu::Device) -> bool {
 }
 
 const NAME: &str = "is the device there";
+
+/// The way out for a provider of another device.
+const MOVE: &str = "move it to the executor's (`SceneProvider::move_to`), or make an executor on \
+                    the provider's device; executors on two devices need a provider each";
 
 /// A buffer that is only mapped has no usage in the driver's eyes.
 const USAGE: wgpu::BufferUsages = wgpu::BufferUsages::MAP_WRITE.union(wgpu::BufferUsages::COPY_SRC);

@@ -1,5 +1,6 @@
 //! Resources that the host builds for a graph, such as scene buffers.
 
+use crate::identity::DeviceIdentity;
 use skiagraph_graph::{Describe, NoProvider};
 use std::{
     error::Error,
@@ -29,6 +30,15 @@ pub trait Provider: Describe {
     /// the call on.
     fn has_versions(&self) -> bool {
         false
+    }
+
+    /// Returns the device that the built resources are on; `None`, the default, if there are none
+    /// yet, or the provider does not know. Executors on another device refuse the provider by
+    /// [`ExecuteError::OtherDevice`](crate::ExecuteError::OtherDevice). Of a provider that does not
+    /// know, each buffer that it builds is looked at. A provider around another one must hand the
+    /// call on.
+    fn device(&self) -> Option<&DeviceIdentity> {
+        None
     }
 
     /// Returns the reason, as text, why the resource `name` cannot be built yet, for example

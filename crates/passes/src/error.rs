@@ -173,12 +173,27 @@ pub enum Error {
         /// Handle of the part.
         PartId,
     ),
-    /// The device refuses to read the vertices of a host, for example because their buffer was
-    /// destroyed.
-    #[error("the vertices of a host's mesh cannot be read: {0}")]
-    HostVertices(
-        /// Reason that wgpu gives.
-        String,
+    /// The vertices of parts in buffers of the host cannot be read, for example because a buffer
+    /// was destroyed, or is on another device than the provider's resources.
+    #[error(
+        "the vertices of {parts:?} cannot be read: {why}; hand over others by \
+         `HostMesh::with_vertices` and `SceneProvider::set_host_mesh`, or remove these parts"
+    )]
+    HostVertices {
+        /// Handles of the parts.
+        parts: Vec<PartId>,
+        /// Reason, that of wgpu if the device refuses them.
+        why: String,
+    },
+    /// The provider's resources are on another device than the one that is asked of, or a host's
+    /// mesh on another one than these.
+    #[error(
+        "{0} is of another device: move the provider by `SceneProvider::move_to`, and make hosts' \
+         meshes on its device"
+    )]
+    OtherDevice(
+        /// Thing that is of another device: `the provider` or `the host's mesh`.
+        &'static str,
     ),
     /// The device could not read back the result of
     /// [`SceneProvider::check_bounds`](crate::SceneProvider::check_bounds).

@@ -3,10 +3,10 @@
 
 use crate::{
     adjacencies::Adjacencies,
-    buffers::check_size,
+    buffers::{binding_limit, check_size},
     built::{How, Work},
     error::Error,
-    hierarchies::{Fitted, Hierarchies, Parted, Tree},
+    hierarchies::{Fitted, Hierarchies, Parted, Tree, all},
     host_buffers::{HostMesh, HostWrite},
     names::{BVH_NODES, INDICES, NORMALS, POSITIONS, next_version},
     outlines::Outlines,
@@ -538,6 +538,54 @@ impl Geometry {
         })
     }
 
+    /// Notes the device that the scene's buffers are on from now on, with its limits. Vertices in
+    /// hosts' buffers of others are not read.
+    pub fn move_to(&mut self, device: &wgpu::Device) {
+        let most = binding_limit(&device.limits());
+        self.limit = self.limit.map(|_| most);
+        self.hierarchies = Hierarchies::default();
+        let fits = |kept: &mut Kept| size_of_val(&*kept.tree.nodes) as u64 <= most;
+        self.bvh = self.bvh.take_if(fits);
+        for host in self.pieces.iter_mut().filter_map(Piece::host_mut) {
+            host.is_elsewhere = !host.mesh.is_on(device);
+        }
+    }
+
+    /// Checks that the vertices of all parts of hosts' buffers are on the device of the scene's.
+    ///
+    /// # Errors
+    /// [`Error::HostVertices`] with those that are not.
+    pub fn check_host_parts(&self) -> Result<(), Error> {
+        let host = |id: &PartId| self.pieces[id.piece].host();
+        let is_elsewhere = |id: &PartId| host(id).is_some_and(|host| host.is_elsewhere);
+        let parts: Vec<PartId> = self.parts.iter().copied().filter(is_elsewhere).collect();
+        if parts.is_empty() {
+            return Ok(());
+        }
+        let why = "they are in buffers of another device".to_owned();
+        Err(Error::HostVertices { parts, why })
+    }
+
+    /// Gives the parts of a host's mesh another buffer of the same mesh; their number, and what has
+    /// changed.
+    pub fn set_host_mesh(&mut self, mesh: &HostMesh) -> (usize, Change) {
+        let mut parts = 0;
+        for piece in &mut self.pieces {
+            if let Some(host) = piece.host_mut()
+                && Arc::ptr_eq(host.mesh.movable(), mesh.movable())
+            {
+                (host.mesh, host.is_elsewhere) = (mesh.clone(), false);
+                piece.moved = next_version();
+                parts += 1;
+            }
+        }
+        let change = Change {
+            is_elsewhere: parts > 0,
+            ..Change::default()
+        };
+        (parts, change)
+    }
+
     /// Returns a part whose vertices are in a buffer of the host, if there is one.
     pub fn a_host_part(&self) -> Option<PartId> {
         self.parts.iter().copied().find(|&id| {
@@ -580,28 +628,23 @@ impl Geometry {
         version < self.begun
     }
 
-    /// The ranges of positions that are others than in a version of the shape.
-    pub fn positions_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
+    /// The ranges of positions, or of normals, that are others than in a version of the shape:
+    /// those of pieces that were moved on the CPU. `name` says which; the list has `count` items.
+    pub fn moved_since(
+        &self,
+        version: u64,
+        (name, count): (&str, usize),
+        mesh: &Mesh,
+    ) -> Vec<Range<usize>> {
         if self.is_begun_after(version) {
-            return all(mesh.positions.len());
+            return all(count);
         }
-        let moved = self.moved_here(version);
-        moved.map(|piece| piece.ranges(mesh)[0].clone()).collect()
-    }
-
-    /// The ranges of normals that are others than in a version of the shape.
-    pub fn normals_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
-        if self.is_begun_after(version) {
-            return all(mesh.normals.len());
-        }
-        let moved = self.moved_here(version);
-        moved.map(|piece| piece.ranges(mesh)[1].clone()).collect()
-    }
-
-    /// The pieces that were moved since a version on the CPU.
-    fn moved_here(&self, version: u64) -> impl Iterator<Item = &Piece> {
         let moved = self.pieces.iter();
-        moved.filter(move |piece| piece.moved > version && piece.host().is_none())
+        let moved = moved.filter(|piece| piece.moved > version && piece.host().is_none());
+        let list = usize::from(name == NORMALS);
+        moved
+            .map(|piece| piece.ranges(mesh)[list].clone())
+            .collect()
     }
 
     /// The ranges of triangles that have other corners than in a version of the winding.
@@ -783,11 +826,6 @@ impl Geometry {
         Ok(tree)
     }
 
-    /// True if the mesh is in parts.
-    pub fn is_parted(&self) -> bool {
-        self.first.is_some()
-    }
-
     /// Returns the hierarchy of a mesh in parts in the light space of `space`, of which only the
     /// parts are fitted that have moved. A centre nearer than `near` to the last one changes
     /// nothing. The versions are those of the shape and of the resource.
@@ -876,11 +914,6 @@ impl Geometry {
         self.work.laid += laid;
         uniform
     }
-}
-
-/// The range of a whole list.
-fn all(count: usize) -> Vec<Range<usize>> {
-    std::iter::once(0..count).collect()
 }
 
 /// Lengthens a list by so many items; the range of the new ones.

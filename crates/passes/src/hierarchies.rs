@@ -104,7 +104,6 @@ impl Hierarchies {
     ) -> Result<Parted, Error> {
         let tree = &fitted.tree;
         let known = known.filter(|known| known.space.centre.distance(space.centre) <= near);
-        let all = |count: usize| std::iter::once(0..count).collect::<Vec<_>>();
         let (mut kept, since, pieces, mut changed) = match known {
             Some(known) => {
                 let changed = [fitted.nodes.clone(), fitted.primitives.clone()];
@@ -198,6 +197,11 @@ impl Hierarchies {
             how: How::Made,
         })
     }
+}
+
+/// The range of a whole list.
+pub(crate) fn all(count: usize) -> Vec<Range<usize>> {
+    std::iter::once(0..count).collect()
 }
 
 fn too_large(mesh: &Mesh) -> Error {

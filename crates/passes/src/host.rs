@@ -1,5 +1,6 @@
 //! Inputs of a preset from a host program's own resources.
 
+use skiagraph_gpu::DeviceIdentity;
 use skiagraph_scene::{Indexed, IndexedError, Mesh};
 use std::{error::Error, sync::mpsc};
 
@@ -36,6 +37,14 @@ pub enum GpuMeshError {
     /// A buffer lacks the usage `COPY_SRC`.
     #[error("the buffer of {0} cannot be read: it needs the usage COPY_SRC")]
     Usage(
+        /// Content of the buffer: `vertices` or `indices`.
+        &'static str,
+    ),
+    /// A buffer is of another device, or the device is lost.
+    #[error(
+        "the buffer of {0} is of another device than the one that is to read it, or that is lost"
+    )]
+    OtherDevice(
         /// Content of the buffer: `vertices` or `indices`.
         &'static str,
     ),
@@ -119,6 +128,9 @@ pub(crate) fn read(
     let (buffer, offset, size) = (slice.buffer(), slice.offset(), slice.size());
     if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
         return Err(GpuMeshError::Usage(what));
+    }
+    if !DeviceIdentity::new(device).has_buffer(buffer) {
+        return Err(GpuMeshError::OtherDevice(what));
     }
     let copied = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
     let is_aligned = offset.is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);

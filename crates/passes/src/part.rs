@@ -31,6 +31,8 @@ pub(crate) struct HostPart {
     pub bounds: [Vec3; 2],
     /// Bounds of its positions in the scene.
     pub placed: [Vec3; 2],
+    /// True if its buffer is on another device than the scene's, so that it is not read.
+    pub is_elsewhere: bool,
 }
 
 impl HostPart {
@@ -44,6 +46,7 @@ impl HostPart {
             mesh: mesh.clone(),
             bounds,
             placed: placed(bounds, map)?,
+            is_elsewhere: false,
         })
     }
 }

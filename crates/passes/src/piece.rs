@@ -86,6 +86,14 @@ impl Piece {
         }
     }
 
+    /// That part, to be changed.
+    pub fn host_mut(&mut self) -> Option<&mut HostPart> {
+        match &mut self.content {
+            Content::Part(part) => part.host.as_deref_mut(),
+            _ => None,
+        }
+    }
+
     /// Number of the last change of its positions or its tree.
     pub fn changed(&self) -> u64 {
         self.moved.max(self.built)

@@ -7,7 +7,7 @@ use crate::{
     error::Error,
     eye::Eye,
     geometry::{Change, Geometry, nodes_to_walk},
-    hierarchies::Tree,
+    hierarchies::{Tree, all},
     host_buffers::{Bound, HostMesh, HostWrite, Kernels, Written},
     lights,
     names::*,
@@ -18,7 +18,7 @@ use crate::{
 use glam::{DAffine3, Vec3, Vec4};
 #[cfg(feature = "embree")]
 use skiagraph_gpu::CpuWork;
-use skiagraph_gpu::{Provider, ProviderError};
+use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
 use skiagraph_graph::{Describe, Plan, Provided, ProvidedBinding};
 use skiagraph_scene::{
     BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, Sheets,
@@ -59,7 +59,8 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// | `light_areas` | array of [`LightAreaUniform`]; `light_areas[2]` alone is a uniform |
 ///
 /// Resources that are built stay, and are shared by all graphs that are executed with the same
-/// provider. A provider therefore belongs to the device that it was first used with. Executors that
+/// provider. A provider therefore belongs to the device that it was first used with, until it
+/// [moves](Self::move_to) to another one. Executors that
 /// are created after a camera, light or mesh was set use it at once. Others use it after their next
 /// [`refresh`](skiagraph_gpu::Executor::refresh), which rebuilds those resources that depend on the
 /// change and that a pass of the plan reads.
@@ -86,6 +87,8 @@ pub struct SceneProvider {
     sheets: Arc<Sheets>,
     pub(crate) buffers: Buffers,
     structures: Structures,
+    /// The device that all of them are on, once there is one.
+    device: Option<DeviceIdentity>,
     #[cfg(feature = "embree")]
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
     pub(crate) geometry: Geometry,
@@ -110,6 +113,7 @@ impl SceneProvider {
             scene,
             buffers: Buffers::default(),
             structures: Structures::default(),
+            device: None,
             #[cfg(feature = "embree")]
             embree: None,
             geometry: Geometry::whole(),
@@ -154,6 +158,39 @@ impl SceneProvider {
         self.submit_built(device, queue)
     }
 
+    /// Moves the provider to another device, such as one that is opened after the first was lost.
+    /// The scene, parts with their handles and places, lights, camera and versions stay; all
+    /// resources are built again, on the new device, when executors there first need them.
+    /// Executors on the device before get [`ExecuteError::OtherDevice`] from their next
+    /// [`refresh`](skiagraph_gpu::Executor::refresh). Moving to the device that the provider is on
+    /// changes nothing.
+    ///
+    /// Vertices of [host parts](Self::add_host_part) are in buffers of the device before: until
+    /// [`set_host_mesh`](Self::set_host_mesh) gives them others, or they are removed, what is made
+    /// of them fails with [`Error::HostVertices`], which lists these parts.
+    ///
+    /// [`ExecuteError::OtherDevice`]: skiagraph_gpu::ExecuteError::OtherDevice
+    pub fn move_to(&mut self, device: &wgpu::Device) {
+        if self.device.as_ref().is_some_and(|known| known.is(device)) {
+            return;
+        }
+        let work = self.buffers.work;
+        (self.buffers, self.structures, self.kernels) = Default::default();
+        self.buffers.work = work;
+        self.geometry.move_to(device);
+        self.device = Some(DeviceIdentity::new(device));
+    }
+
+    /// Checks that all is on `device`, which the first call decides.
+    fn check_device(&mut self, device: &wgpu::Device) -> Result<(), Error> {
+        match &self.device {
+            Some(known) if known.is(device) => {}
+            Some(_) => return Err(Error::OtherDevice("the provider")),
+            None => self.move_to(device),
+        }
+        Ok(())
+    }
+
     /// Lists the resources that this provider has built: an entry for each, in the order of their
     /// first build. An entry describes the last build of its resource.
     pub fn built(&self) -> &[Built] {
@@ -173,7 +210,7 @@ impl SceneProvider {
 
     /// The buffer of that name with what is in it now.
     fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
-        let is_parted = self.geometry.is_parted();
+        let is_parted = self.geometry.is_in_parts();
         self.buffers.lay_over(self.versions.shape, is_parted);
         self.buffers.keeps_gaps = self.geometry.a_host_part().is_some();
         let version = self.version(name);
@@ -257,10 +294,8 @@ impl SceneProvider {
     ) -> Result<How, Error> {
         let (version, known) = (self.version(name), self.buffers.version(name));
         let (known, mesh) = (known.unwrap_or_default(), &self.scene.mesh);
-        let changed = match name {
-            POSITIONS => self.geometry.positions_since(known, mesh),
-            _ => self.geometry.normals_since(known, mesh),
-        };
+        let list = (name, items.len());
+        let changed = self.geometry.moved_since(known, list, mesh);
         let append = |range: Range<usize>, to: &mut Vec<Vec4>| {
             to.extend(items[range].iter().map(|item| item.extend(w)));
         };
@@ -307,6 +342,7 @@ impl SceneProvider {
         writes: Vec<HostWrite>,
         on: On,
     ) -> Result<Bound, Error> {
+        self.geometry.check_host_parts()?;
         let primitives;
         let [positions, indices] = match name {
             POSITIONS => [buffer, buffer].map(Clone::clone),
@@ -413,7 +449,7 @@ impl SceneProvider {
         // As in the other hierarchy, leaves are joined where there are too many nodes to bind; the
         // last item is the centre.
         let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64 - 1;
-        if self.geometry.is_parted() {
+        if self.geometry.is_in_parts() {
             // An eighth of the scene's size nearer or farther, boxes are as tight.
             let space = (space, light.max_distance / 16.0);
             return self.upload_light_space_of_parts(space, most as usize, on);
@@ -437,7 +473,6 @@ impl SceneProvider {
         let buffers = &mut self.buffers;
         let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
         let known = names.map(|name| buffers.take_up(name, of.since));
-        let all = |count: usize| std::iter::once(0..count).collect::<Vec<_>>();
         let [nodes, primitives] = of.changed;
         let nodes = if known[0] { nodes } else { all(of.nodes.len()) };
         buffers.patch_list(names[0], &of.nodes, &nodes, version, on)?;
@@ -783,18 +818,46 @@ impl SceneProvider {
     /// [`HostMesh`], which must hold all its vertices ([`HostMesh::with_bounds`]), and
     /// [`scene`](Self::scene) has the part's positions at rest.
     ///
-    /// The host keeps the buffer, and calls [`rewrite_part`](Self::rewrite_part) after each write
-    /// to the part's vertices. While the mesh has such a part, all that needs every position on the
-    /// CPU fails with [`Error::OnDevice`]: the hierarchies of the engines `LightSpace` and `Embree`
-    /// at the next refresh, and [`deform`](Self::deform).
+    /// The host keeps the buffer, or hands over [another](Self::set_host_mesh), and calls
+    /// [`rewrite_part`](Self::rewrite_part) after each write to the part's vertices. While the mesh
+    /// has such a part, all that needs every position on the CPU fails with [`Error::OnDevice`]:
+    /// the hierarchies of the engines `LightSpace` and `Embree` at the next refresh, and
+    /// [`deform`](Self::deform).
     ///
     /// # Errors
-    /// As [`add_part`](Self::add_part).
+    /// As [`add_part`](Self::add_part), and [`Error::OtherDevice`] if the mesh is on another device
+    /// than the provider's resources.
     pub fn add_host_part(&mut self, mesh: &HostMesh, map: &DAffine3) -> Result<PartId, Error> {
+        self.check_mesh(mesh)?;
         let (part, change) = self.geometry.add_host(mesh, map, &mut self.scene)?;
         self.put_sheets(&mesh.movable().rest, self.geometry.part(part)?.at.triangle);
         self.note_change(change);
         Ok(part)
+    }
+
+    /// Gives all parts of a host's mesh another buffer, after the provider has
+    /// [moved](Self::move_to) to another device or the first buffer was destroyed. `mesh` is made
+    /// of theirs by [`HostMesh::with_vertices`]. Their handles, places and stated bounds stay. The
+    /// next [`refresh`](skiagraph_gpu::Executor::refresh) reads the vertices, which must be in the
+    /// buffer, or their upload submitted, before. Returns the number of these parts.
+    ///
+    /// # Errors
+    /// [`Error::OtherDevice`] if the mesh is on another device than the provider's resources.
+    pub fn set_host_mesh(&mut self, mesh: &HostMesh) -> Result<usize, Error> {
+        self.check_mesh(mesh)?;
+        let (parts, change) = self.geometry.set_host_mesh(mesh);
+        self.note_change(change);
+        Ok(parts)
+    }
+
+    /// Checks that a host's mesh is on the provider's device, if there is one yet.
+    fn check_mesh(&self, mesh: &HostMesh) -> Result<(), Error> {
+        match &self.device {
+            Some(known) if !mesh.is_on(known.device()) => {
+                Err(Error::OtherDevice("the host's mesh"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Notes that the host has rewritten the vertices of a part in its buffer (skinning, morphing).
@@ -828,6 +891,8 @@ impl SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<(), Error> {
+        self.check_device(device)?;
+        self.geometry.check_host_parts()?;
         let writes = self.geometry.host_writes(None).into_iter();
         let writes = HostWrite::sorted(writes.map(|(_, write)| write).collect());
         if writes.is_empty() {
@@ -945,6 +1010,10 @@ impl Provider for SceneProvider {
         true
     }
 
+    fn device(&self) -> Option<&DeviceIdentity> {
+        self.device.as_ref()
+    }
+
     fn missing(&self, name: &str) -> Option<String> {
         let is_of_shape = is_of_shape(name) || lights::describe(name, self.lights()).is_some();
         (self.geometry.is_unplaced() && is_of_shape).then(|| {
@@ -960,7 +1029,8 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        let buffer = self.buffer(name, On { device, queue });
+        let checked = self.check_device(device);
+        let buffer = checked.and_then(|()| self.buffer(name, On { device, queue }));
         buffer.map_err(ProviderError::from_error)
     }
 
@@ -983,6 +1053,7 @@ impl Provider for SceneProvider {
         if name != TLAS {
             return Err(why(unknown(name)));
         }
+        self.check_device(device).map_err(why)?;
         let on = On { device, queue };
         let vertices = self.buffer(POSITIONS, on).map_err(why)?;
         let indices = self.buffer(INDICES, on).map_err(why)?;

@@ -3,6 +3,7 @@
 
 pub mod bench;
 pub mod brute;
+pub mod devices;
 pub mod graphs;
 pub mod map_fit;
 pub mod meshes;

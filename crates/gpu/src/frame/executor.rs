@@ -21,7 +21,7 @@ use crate::{
     device::{Gpu, partial},
     error::{ExecuteError, poll, submit, wait, with_table},
     memory::{
-        import::differs,
+        import::{differs, is_on},
         memory::{Memory, ResourceFactory, check_bound, check_relied_on},
         physical::{Physical, PingPong},
     },
@@ -29,7 +29,9 @@ use crate::{
     presence::Presence,
     provider::Provider,
 };
-use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceId, ResourceKind};
+use skiagraph_graph::{
+    Origin, Panicked, ParamValue, Plan, Resource, ResourceId, ResourceKind, caught,
+};
 use std::{
     sync::Arc,
     time::{Duration, Instant},
@@ -118,7 +120,8 @@ impl Executor {
     /// the queue of that device.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// Those of [`new`](Self::new), of which [`ExecuteError::OtherDevice`] names a queue or a
+    /// provider of another device.
     pub fn with_pipelines(
         pipelines: &Pipelines,
         queue: &wgpu::Queue,
@@ -126,7 +129,9 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
         let device = pipelines.device();
-        let presence = Presence::new(device).map_err(|error| with_table(error, &plan))?;
+        let mut presence = Presence::new(device).map_err(|error| with_table(error, &plan))?;
+        presence.check_queue(queue)?;
+        presence.check_provider(provider)?;
         check_backend(device, &plan)?;
         let mut factory = ResourceFactory {
             device,
@@ -253,8 +258,11 @@ impl Executor {
             self.frames_in_flight.recycle(frame_in_flight);
             return Err(with_table(error, self.plan()));
         }
-        // From here on nothing can fail but work of the CPU.
-        if let Err(error) = self.record(&mut frame_in_flight, encoder, gives_up) {
+        // From here on nothing can fail but work of the CPU, if the encoder is of the device. wgpu
+        // does not tell that, and panics where an instance has no thing of a number.
+        let recorded = caught(|| self.record(&mut frame_in_flight, encoder, gives_up));
+        let recorded = recorded.unwrap_or_else(|panicked| Err(in_encoder(panicked)));
+        if let Err(error) = recorded {
             // Its queries are not resolved, and what it has written stays.
             frame_in_flight.timer = None;
             let before = &frame_in_flight.before;
@@ -551,7 +559,8 @@ impl Executor {
     /// # Errors
     /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,
     /// [`ExecuteError::Import`] if the texture differs from its description,
-    /// [`ExecuteError::DeviceLost`] if the device is lost.
+    /// [`ExecuteError::OtherDevice`] if it is of another device, [`ExecuteError::DeviceLost`] if
+    /// the device is lost.
     pub fn import_texture(
         &mut self,
         name: &str,
@@ -573,8 +582,8 @@ impl Executor {
 
     /// Sets the sampler of the import `name`, which
     /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Passes with `run:
-    /// OnChange` that use it run in the next frame. wgpu does not tell how a sampler filters, so a
-    /// wrong one is refused only when a pass binds it.
+    /// OnChange` that use it run in the next frame. wgpu tells neither how a sampler filters nor
+    /// which device it is of, so a wrong one is refused only when a pass binds it.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -601,6 +610,10 @@ impl Executor {
                 why,
             });
         }
+        let is_own = is_on(&self.device, &physical);
+        let way_out = "hand over one that was made on the executor's device";
+        self.presence
+            .check_own(is_own, format!("the import `{name}`"), way_out)?;
         // One that no live pass uses waits for a plan in which one does.
         let Some(id) = self.state.live(name) else {
             self.state.memory.spare(name, physical);
@@ -654,13 +667,15 @@ impl Executor {
     /// # Errors
     /// If a resource cannot be built or its description differs from the one that the graph was
     /// planned for ([`ExecuteError::OtherThanPlanned`], for example in the number of items or the
-    /// kind of light), or the device is lost. That resource and those after it stay as they are;
-    /// the next call asks for them again. [`Plan::relies_on`] lists resources whose description
-    /// counts although no live pass binds them: if one of them differs, all stay as they are. The
-    /// way out is another plan: [`Plan::with`], with the provider set, and
+    /// kind of light), the provider's resources are on another device
+    /// ([`ExecuteError::OtherDevice`]), or the device is lost. That resource and those after it
+    /// stay as they are; the next call asks for them again. [`Plan::relies_on`] lists resources
+    /// whose description counts although no live pass binds them: if one of them differs, all stay
+    /// as they are. The way out is another plan: [`Plan::with`], with the provider set, and
     /// [`replace_graph`](Self::replace_graph).
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
         self.presence.check()?;
+        self.presence.check_provider(provider)?;
         // If it fails half way, some resources are this provider's.
         self.knows_changes &= provider.has_versions();
         let mut built = Vec::new();
@@ -887,6 +902,7 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
         self.presence.check()?;
+        self.presence.check_provider(provider)?;
         check_backend(&self.device, &plan)?;
         let mut factory = ResourceFactory {
             device: &self.device,
@@ -1094,6 +1110,16 @@ impl Executor {
             Ok(report) => Ok(Some(report)),
         }
     }
+}
+
+/// The error of a panic while the host's encoder is written to.
+fn in_encoder(panicked: Panicked) -> ExecuteError {
+    let name = "the encoder".to_owned();
+    if panicked.message.starts_with("Cannot get non-existent") {
+        let way_out = "make it by the executor's device";
+        return ExecuteError::OtherDevice { name, way_out };
+    }
+    ExecuteError::Panicked { name, panicked }
 }
 
 /// Refuses a plan whose graph is not proven on the device's backend.

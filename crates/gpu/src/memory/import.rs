@@ -1,7 +1,24 @@
-//! Checks the host's imports against their declarations.
+//! Checks the host's imports against their declarations, and which device they are on.
 
 use super::{allocation::dimension, physical::Physical};
+use crate::identity::{has_buffer, hears};
 use skiagraph_graph::Import;
+
+/// Returns true if the memory of a resource is on a device. wgpu does not tell that of samplers and
+/// acceleration structures, which count as such.
+pub(crate) fn is_on(device: &wgpu::Device, physical: &Physical) -> bool {
+    match physical {
+        Physical::Texture(texture) => {
+            let beyond = wgpu::TextureViewDescriptor {
+                base_mip_level: u32::MAX,
+                ..wgpu::TextureViewDescriptor::default()
+            };
+            hears(device, || drop(texture.create_view(&beyond)))
+        }
+        Physical::Buffer(buffer) => has_buffer(device, buffer),
+        Physical::Sampler(_) | Physical::AccelerationStructure(_) | Physical::CpuWork(_) => true,
+    }
+}
 
 /// Says how a texture, buffer or sampler differs from its description as an import; `None` if it
 /// matches. It may have more usages than described.

@@ -2,11 +2,13 @@
 
 use super::{
     allocation::{GpuAllocation, Known},
+    import::is_on,
     physical::{Physical, PingPong, Work},
 };
 use crate::{
     buffer,
     error::{ExecuteError, scoped},
+    presence::Presence,
     provider::{Provider, ProviderError},
 };
 use skiagraph_graph::{
@@ -324,6 +326,12 @@ impl Memory {
             why,
         };
         let built = built.map_err(refused)?;
+        // One that knows its device was asked before.
+        if provider.device().is_none() && !is_on(device, &built) {
+            let name = format!("the provided resource `{}`", resource.name);
+            let way_out = "have the provider build it on the device that it is given";
+            return Presence::new(device)?.check_own(false, name, way_out);
+        }
         if !is_copyable(&built) && is_read_as_before(id, plan) {
             return Err(refused(
                 "it is read as it was in the frame before, so it must be made with \

@@ -36,6 +36,7 @@ mod keep;
 mod lost;
 mod memory;
 mod on_cpu;
+mod other_device;
 mod pipelines;
 mod provided;
 mod readback;

@@ -2,6 +2,7 @@
 
 use super::{error::HostMeshError, kernel_module::KernelModule};
 use crate::buffers::refused;
+use skiagraph_gpu::DeviceIdentity;
 use std::sync::Arc;
 
 /// Normals of a module that has none: triangles get those of their planes.
@@ -24,6 +25,7 @@ const NO_NORMALS: &str = "fn decode_normal(first: u32) -> vec3<f32> { return vec
 pub struct HostDecoder {
     pub(super) made: Arc<KernelModule>,
     pub(super) has_normals: bool,
+    pub(super) device: DeviceIdentity,
 }
 
 impl HostDecoder {
@@ -62,6 +64,7 @@ impl HostDecoder {
         Ok(Self {
             made: Arc::new(made),
             has_normals,
+            device: DeviceIdentity::new(device),
         })
     }
 }

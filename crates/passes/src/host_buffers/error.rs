@@ -11,6 +11,27 @@ pub enum HostMeshError {
     /// The buffer lacks the usage `STORAGE`.
     #[error("the buffer of the vertices cannot be bound: it needs the usage STORAGE")]
     Usage,
+    /// The buffer or decoder of the vertices is of another device, or the device is lost.
+    #[error(
+        "the {0} of the vertices is of another device than the one that was given, or that is \
+         lost: make it on the device that the scene is drawn on"
+    )]
+    OtherDevice(
+        /// Thing that is of another device: `buffer` or `decoder`.
+        &'static str,
+    ),
+    /// Vertices in another buffer are fewer or more than those of the mesh, or lack its normals.
+    #[error(
+        "the mesh has {} vertices with normals: {}, but given were {} with normals: {}; give as \
+         many, in the same order",
+        mesh.0, mesh.1, given.0, given.1
+    )]
+    OtherVertices {
+        /// Number of the mesh's vertices, and true if they have normals.
+        mesh: (u32, bool),
+        /// Number of the vertices that were given, and true if they have normals.
+        given: (u32, bool),
+    },
     /// An offset or the stride is not divisible by 4.
     #[error(
         "the {what} of the vertices, {bytes} bytes, is not divisible by 4: pad them to words of \

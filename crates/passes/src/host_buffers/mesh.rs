@@ -6,6 +6,7 @@ use crate::{
     parts::Room,
 };
 use glam::Vec3;
+use skiagraph_gpu::DeviceIdentity;
 use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, TwoLevelBvh};
 use std::{
     collections::HashMap,
@@ -34,7 +35,8 @@ pub enum HostIndices<'a> {
 ///
 /// The host hands over the vertices at rest once, while loading, in the format that they have in
 /// the buffer. The mesh is welded from them, and its hierarchy is built, which any thread may do.
-/// What is on the CPU from then on is the welded mesh at rest and its hierarchy.
+/// What is on the CPU from then on is the welded mesh at rest, its hierarchy, and the numbers of
+/// the vertices that it came from.
 ///
 /// Its triangles have no materials: they are opaque and single-sided. Masked and double-sided ones
 /// come by [`SceneProvider::add_part`](crate::SceneProvider::add_part).
@@ -47,13 +49,24 @@ pub struct HostMesh {
 #[derive(Debug)]
 pub(super) struct Own {
     pub vertices: HostVertices,
+    pub rest: Arc<Rest>,
+    device: DeviceIdentity,
+    pub sources: wgpu::Buffer,
+    pub normal_sources: wgpu::Buffer,
+    levels: OnceLock<wgpu::Buffer>,
+}
+
+/// The part of a mesh that is on the CPU, whichever buffer its vertices are in.
+#[derive(Debug)]
+pub(super) struct Rest {
     /// The only part of it.
     pub movable: Arc<Movable>,
     tree: Bvh,
     order: Arc<[u32]>,
-    pub sources: wgpu::Buffer,
-    pub normal_sources: wgpu::Buffer,
-    levels: OnceLock<wgpu::Buffer>,
+    /// The vertex of each position.
+    sources: Vec<u32>,
+    /// The vertex of each normal, and a triangle that has it.
+    normal_sources: Vec<[u32; 2]>,
 }
 
 impl HostMesh {
@@ -72,7 +85,7 @@ impl HostMesh {
         rest: &[u8],
         indices: HostIndices<'_>,
     ) -> Result<Self, HostMeshError> {
-        vertices.check()?;
+        let known = checked(device, &vertices)?;
         if vertices.count == 0 {
             return Err(HostMeshError::Empty);
         }
@@ -121,25 +134,45 @@ impl HostMesh {
         binds("the normals", 16 * mesh.normals.len() as u64)?;
         let welded = Welded::new(&mesh, &positions, indices);
         let movable = Movable::joined(&[&mesh]);
-        let [sources, normal_sources] = [
-            bytemuck::cast_slice(&welded.sources(&movable.rest)).to_vec(),
-            bytemuck::cast_slice(&welded.normal_sources(&movable.rest, indices, has_normals))
-                .to_vec(),
-        ]
-        .map(|content: Vec<u8>| storage(device, "host.sources", &content));
         let tree = Bvh::build(&movable.rest);
-        let own = Own {
+        let rest = Rest {
             order: tree.order().into(),
             tree,
+            sources: welded.sources(&movable.rest),
+            normal_sources: welded.normal_sources(&movable.rest, indices, has_normals),
             movable: Arc::new(movable),
-            sources,
-            normal_sources,
-            vertices,
-            levels: OnceLock::new(),
         };
         Ok(Self {
-            own: Arc::new(own),
+            own: Arc::new(Own::new(device, (vertices, known), Arc::new(rest))),
             bounds: [low, high],
+        })
+    }
+
+    /// Returns the same mesh with its vertices in another buffer, such as one of another device
+    /// after the first was lost. They are as many, in the same order, and at rest where they were;
+    /// buffer, offset, stride and formats may be others. Nothing is decoded, welded or built again.
+    /// [`SceneProvider::set_host_mesh`](crate::SceneProvider::set_host_mesh) gives it to the parts
+    /// of this mesh.
+    ///
+    /// # Errors
+    /// [`HostMeshError::OtherVertices`] for another number of vertices, or if only one of both has
+    /// normals; [`HostMeshError::OtherDevice`] for a buffer or decoder of another device than
+    /// `device`; those of [`new`](Self::new) for a layout that cannot be read.
+    pub fn with_vertices(
+        &self,
+        device: &wgpu::Device,
+        vertices: HostVertices,
+    ) -> Result<Self, HostMeshError> {
+        let known = checked(device, &vertices)?;
+        let kind = |of: &HostVertices| (of.count, of.has_normals());
+        let [mesh, given] = [kind(&self.own.vertices), kind(&vertices)];
+        if given != mesh {
+            return Err(HostMeshError::OtherVertices { mesh, given });
+        }
+        let own = Own::new(device, (vertices, known), Arc::clone(&self.own.rest));
+        Ok(Self {
+            own: Arc::new(own),
+            bounds: self.bounds,
         })
     }
 
@@ -149,7 +182,7 @@ impl HostMesh {
     /// # Errors
     /// [`HostMeshError::Bounds`] if a vertex at rest lies outside, or a corner is not finite.
     pub fn with_bounds(mut self, [low, high]: [Vec3; 2]) -> Result<Self, HostMeshError> {
-        let rest = &self.own.movable.rest;
+        let rest = &self.own.rest.movable.rest;
         let is_within = |at: Vec3| at.cmpge(low).all() && at.cmple(high).all();
         let is_finite = low.is_finite() && high.is_finite();
         let beyond = rest
@@ -175,18 +208,24 @@ impl HostMesh {
     /// Returns the room that so many parts of this mesh need in a scene
     /// ([`SceneProvider::reserve`](crate::SceneProvider::reserve)).
     pub fn room(&self, parts: usize) -> Room {
-        Room::of(&self.own.movable.rest, parts)
+        Room::of(&self.own.rest.movable.rest, parts)
     }
 
     /// The mesh at rest, as a part.
     pub(crate) fn movable(&self) -> &Arc<Movable> {
-        &self.own.movable
+        &self.own.rest.movable
+    }
+
+    /// True if its buffers are of a device.
+    pub(crate) fn is_on(&self, device: &wgpu::Device) -> bool {
+        self.own.device.is(device)
     }
 
     /// Adds its tree to a hierarchy, for triangles from `first` on.
     pub(crate) fn add_to(&self, tree: &mut TwoLevelBvh, piece: usize, first: usize) {
-        let own = (&self.own.tree, &self.own.order);
-        tree.add_tree(piece, own, &self.own.movable.rest, first as u32);
+        let rest = &self.own.rest;
+        let own = (&rest.tree, &rest.order);
+        tree.add_tree(piece, own, &rest.movable.rest, first as u32);
     }
 
     /// The levels of its own tree, or of the one that a piece has in its stead.
@@ -200,12 +239,47 @@ impl HostMesh {
             let content = packed(&tree.levels_of(piece));
             storage(device, "host.levels", bytemuck::cast_slice(&content))
         };
-        if Arc::ptr_eq(tree.order_of(piece), &self.own.order) {
+        if Arc::ptr_eq(tree.order_of(piece), &self.own.rest.order) {
             self.own.levels.get_or_init(packed).clone()
         } else {
             packed()
         }
     }
+}
+
+impl Own {
+    fn new(
+        device: &wgpu::Device,
+        (vertices, known): (HostVertices, DeviceIdentity),
+        rest: Arc<Rest>,
+    ) -> Self {
+        let sources = |content: &[u8]| storage(device, "host.sources", content);
+        Self {
+            sources: sources(bytemuck::cast_slice(&rest.sources)),
+            normal_sources: sources(bytemuck::cast_slice(&rest.normal_sources)),
+            device: known,
+            vertices,
+            rest,
+            levels: OnceLock::new(),
+        }
+    }
+}
+
+/// Checks that vertices can be read as they are described, on that device.
+fn checked(
+    device: &wgpu::Device,
+    vertices: &HostVertices,
+) -> Result<DeviceIdentity, HostMeshError> {
+    vertices.check()?;
+    let known = DeviceIdentity::new(device);
+    if !known.has_buffer(&vertices.buffer) {
+        return Err(HostMeshError::OtherDevice("buffer"));
+    }
+    let mut decoder = vertices.decoder.iter();
+    if decoder.any(|decoder| !decoder.device.is(device)) {
+        return Err(HostMeshError::OtherDevice("decoder"));
+    }
+    Ok(known)
 }
 
 /// Gives each triangle a normal of its own, since those in one plane at rest may part.

@@ -174,7 +174,7 @@ impl Kernels {
         parts: &[HostWrite],
         device: &wgpu::Device,
     ) -> Result<Bound, Error> {
-        let batch = |(first, parts): (usize, &[HostWrite])| {
+        let mut batch = |(first, parts): (usize, &[HostWrite])| {
             let mesh = &parts[0].mesh;
             let pipeline = self.pipeline(written, mesh, device);
             let (group, uploaded) = bind(&pipeline, written, (first, parts), device)?;
@@ -185,8 +185,10 @@ impl Kernels {
                 uploaded,
             })
         };
-        let bound = refused(device, || batches(parts).map(batch).collect());
-        let batches: Result<Vec<_>, Error> = bound.map_err(Error::HostVertices)?;
+        let mut batch = |(first, parts): (usize, &[HostWrite])| {
+            refused(device, || batch((first, parts))).map_err(|why| unread(parts, why))?
+        };
+        let batches: Result<Vec<_>, Error> = batches(parts).map(&mut batch).collect();
         Ok(Bound(batches?))
     }
 
@@ -205,7 +207,7 @@ impl Kernels {
         let mut encoder = on.device.create_command_encoder(&Default::default());
         bound.record(&mut encoder);
         let submitted = refused(on.device, || on.queue.submit([encoder.finish()]));
-        submitted.map_err(Error::HostVertices)?;
+        submitted.map_err(|why| unread(parts, why))?;
         let found = host::read("bounds check", beyond.slice(..), on.device, on.queue)?;
         let found: Vec<u32> = bytemuck::pod_collect_to_vec(&found);
         let mut found = parts.iter().zip(found);
@@ -239,6 +241,12 @@ impl Kernels {
     }
 }
 
+/// The error of parts whose vertices cannot be read.
+fn unread(parts: &[HostWrite], why: String) -> Error {
+    let parts = parts.iter().map(|part| part.id).collect();
+    Error::HostVertices { parts, why }
+}
+
 /// Runs of parts that one dispatch writes, each with the number of its first part.
 fn batches(parts: &[HostWrite]) -> impl Iterator<Item = (usize, &[HostWrite])> {
     let is_alike = |a: &HostWrite, b: &HostWrite| {
@@ -256,7 +264,7 @@ fn batches(parts: &[HostWrite]) -> impl Iterator<Item = (usize, &[HostWrite])> {
 
 /// Workgroups for each part.
 fn groups(written: Written, mesh: &HostMesh) -> u32 {
-    let rest = &mesh.own.movable.rest;
+    let rest = &mesh.movable().rest;
     let items = match written {
         Written::Positions { .. } | Written::Beyond { .. } => rest.positions.len(),
         Written::Normals { .. } => rest.normals.len(),
@@ -272,7 +280,7 @@ fn bind(
     (begins, parts): (usize, &[HostWrite]),
     device: &wgpu::Device,
 ) -> Result<(wgpu::BindGroup, u64), Error> {
-    let mesh = &parts[0].mesh.own;
+    let (rest, mesh) = (&parts[0].mesh.movable().rest, &parts[0].mesh.own);
     let vertices = &mesh.vertices;
     let alignment = u64::from(device.limits().min_storage_buffer_offset_alignment);
     let offset = vertices.offset - vertices.offset % alignment;
@@ -283,7 +291,6 @@ fn bind(
         let name = "the vertices of a host's mesh".to_owned();
         return Err(Error::TooLarge { name, bytes, limit });
     }
-    let rest = &mesh.movable.rest;
     let numbers = [rest.positions.len(), rest.normals.len()];
     let record = MeshRecord::new(vertices, first, numbers.map(|number| number as u32));
     let records = (begins..).zip(parts);

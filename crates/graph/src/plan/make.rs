@@ -173,6 +173,7 @@ fn schedule(
     let sequence = sequence(&order_of_live(view, &live), &live);
     let mut lifetimes = lifetimes(view, &sequence);
     unsized_buffers(&lifetimes, view, reports);
+    undrawn(&lifetimes, view, reports);
     // Conditions must agree for any choice of outputs.
     let all: Vec<PassId> = view.ids().map(|(id, _)| id).collect();
     conditions(view, &all, reports);
@@ -284,8 +285,8 @@ impl Outcome {
         }
     }
 
-    /// Keeps only the missing features: on a device that cannot run the graph, other mistakes do
-    /// not matter.
+    /// Keeps only the missing features and unmet needs: where the graph cannot run, other mistakes
+    /// do not matter.
     fn lacking(reports: Reports, plan_inputs: PlanInputs) -> Self {
         let mut outcome = Self::failed(reports, plan_inputs);
         outcome.found.retain(is_lacking);
@@ -295,7 +296,7 @@ impl Outcome {
 
 fn is_lacking(found: &Diagnostic) -> bool {
     use crate::diagnostics::{code::Code, diagnostic::Severity};
-    found.code == Code::Feature && found.severity == Severity::Error
+    matches!(found.code, Code::Feature | Code::Need) && found.severity == Severity::Error
 }
 
 fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {
@@ -444,6 +445,25 @@ fn unsized_buffers(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Rep
         {
             let name = Located::new(resource.name.clone(), declared.clone());
             reports.report(OutputError::UnsizedBuffer(name));
+        }
+    }
+}
+
+/// Reports multisampled textures that no pass draws to, which no device makes: a shader may ask for
+/// the size of one that it does not read.
+fn undrawn(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Reports) {
+    for (id, lifetime) in lifetimes {
+        let resource = view.resource(*id);
+        if let ResourceKind::Texture(texture) = &resource.kind
+            && texture.samples > 1
+            && resource.origin != Origin::Host
+            && !lifetime
+                .textures
+                .contains(wgt::TextureUsages::RENDER_ATTACHMENT)
+            && let Some(declared) = &resource.declared
+        {
+            let name = Located::new(resource.name.clone(), declared.clone());
+            reports.report(OutputError::Undrawn(name));
         }
     }
 }

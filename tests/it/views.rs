@@ -398,6 +398,12 @@ fn a_view_has_a_size_and_a_light_that_shines() {
     view.set_camera(&camera(1, 0.0));
     view.refresh(&mut executor, &mut provider).unwrap();
     assert_eq!(executor.plan().viewport(), SIZES[1]);
+    // A minimised window has no pixels: its view is passed over.
+    for size in [[0, 0], [0, 8], [8, 0]] {
+        view.set_size(size);
+        view.refresh(&mut executor, &mut provider).unwrap();
+        assert_eq!(executor.plan().viewport(), SIZES[1]);
+    }
     let nowhere = DirectionalLight::new(DVec3::ZERO);
     let error = view.set_light(nowhere).unwrap_err();
     assert!(matches!(error, Error::Light(_)), "{error}");

@@ -69,7 +69,7 @@ impl Graph {
     /// All mistakes found while planning: those in a document or shader with their place in it,
     /// those of the request, such as an unknown param or output, without one. Planning stops early,
     /// with these mistakes alone, if the viewport or a param is wrong, the device lacks a feature
-    /// in `requires`, or `proven_on` lacks the backend.
+    /// in `requires`, a condition in `needs` does not hold, or `proven_on` lacks the backend.
     pub fn plan(&self, request: &PlanRequest<'_>) -> Result<Plan, Diagnostics> {
         Plan::new(&self.0, request)
     }

@@ -325,6 +325,23 @@ impl SubresourceRange {
         (*self != Self::WHOLE).then(|| self.layers.clone())
     }
 
+    /// Returns the reference by which documents name this part of the texture `name`.
+    pub(crate) fn reference(&self, name: &str, texture: &Texture) -> String {
+        let range = |range: &Range<u32>| match range.len() {
+            1 => format!("[{}]", range.start),
+            _ => format!("[{}..{}]", range.start, range.end),
+        };
+        let whole = texture.whole();
+        let mut reference = name.to_owned();
+        if self.layers != whole.layers {
+            reference += &range(&self.layers);
+        }
+        if self.mips != whole.mips {
+            reference += &format!(".mip{}", range(&self.mips));
+        }
+        reference
+    }
+
     /// Returns the same mips and layers in another aspect.
     pub(crate) fn of_aspect(&self, aspect: wgt::TextureAspect) -> Self {
         Self {
@@ -332,6 +349,14 @@ impl SubresourceRange {
             ..self.clone()
         }
     }
+}
+
+/// Returns the name by which the document of the pass `pass` knows a resource, from the full names
+/// of both.
+pub(crate) fn name_within<'n>(pass: &str, name: &'n str) -> &'n str {
+    let within = pass.rsplit_once('.').map_or("", |(within, _)| within);
+    let own = name.strip_prefix(within);
+    own.and_then(|own| own.strip_prefix('.')).unwrap_or(name)
 }
 
 /// A resource of a plan, and the part of it that is meant, such as the part that a pass reads or an

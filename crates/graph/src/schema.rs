@@ -85,7 +85,11 @@ written!(Load, "Load", generator => {
         "description": "Operation on an attachment before the first draw.",
         "oneOf": [
             { "const": "Load", "description": "Keeps the content." },
-            object("Keeps the content under a condition, and clears else.", load_if, &["LoadIf"]),
+            object(
+                "Keeps the content under a condition, and clears else; not with an `area`.",
+                load_if,
+                &["LoadIf"],
+            ),
             object("One value for all channels, or four.", clear, &["Clear"]),
         ],
     })
@@ -204,6 +208,7 @@ impl Kinds<'_> {
         match name {
             "format" => json!({ "const": FORMAT }),
             "requires" => self.list::<String>(),
+            "needs" => self.list::<Expr>(),
             "params" => {
                 let fields = self.schema::<ParamFields>();
                 let params = PARAM_TYPES.map(|tag| (tag.to_owned(), fields.clone()));

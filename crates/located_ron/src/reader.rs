@@ -170,11 +170,9 @@ pub struct Field {
 }
 
 impl Node {
-    /// Returns the node of the whole text of `file`, without a byte order mark at its start.
+    /// Returns the node of the whole text of `file`.
     pub fn root(file: &SourceFile) -> Self {
-        // Some editors begin UTF-8 with a byte order mark.
-        let start = file.text.len() - file.text.trim_start_matches('\u{feff}').len();
-        file.span(start..file.text.len())
+        file.span(0..file.text.len())
     }
 
     /// Returns the place of the first line of the node's text, for diagnostics about a node of many
@@ -570,6 +568,66 @@ pub fn field_twice(field: &Located<String>) -> Diagnostic {
     Diagnostic::error(Code::DuplicateName, what).at(field, "the second one")
 }
 
+/// The bracket that a text does not close: its place, and the place of a closing bracket of another
+/// kind that stands instead; `None` of that at the end of the text.
+fn unclosed(text: &str) -> Option<(usize, Option<usize>)> {
+    let mut open: Vec<(usize, char)> = Vec::new();
+    let mut at = 0;
+    while let Some(sign) = text[at..].chars().next() {
+        let rest = &text[at..];
+        let closes = match sign {
+            '(' => ')',
+            '[' => ']',
+            _ => '}',
+        };
+        at += match sign {
+            '"' => {
+                let mut is_escaped = false;
+                let is_end = |c: char| {
+                    let is_end = c == '"' && !is_escaped;
+                    is_escaped = c == '\\' && !is_escaped;
+                    is_end
+                };
+                rest[1..].find(is_end)? + 2
+            }
+            '/' if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
+            '/' if rest.starts_with("/*") => rest.find("*/")? + 2,
+            '(' | '[' | '{' => {
+                open.push((at, closes));
+                1
+            }
+            ')' | ']' | '}' => match open.pop()? {
+                (_, expected) if expected == sign => 1,
+                (opened, _) => return Some((opened, Some(at))),
+            },
+            _ => sign.len_utf8(),
+        };
+    }
+    open.pop().map(|(opened, _)| (opened, None))
+}
+
+/// A syntax error of a file in which a bracket is not closed; `None` if all are.
+fn open_bracket(file: &SourceFile) -> Option<Diagnostic> {
+    let (opened, closed) = unclosed(&file.text)?;
+    let bracket = &file.text[opened..=opened];
+    let closing = match bracket {
+        "(" => ")",
+        "[" => "]",
+        _ => "}",
+    };
+    let what = format!("`{bracket}` is not closed");
+    let place = |at: usize| file.span(at..at + 1);
+    Some(
+        Diagnostic::error(Code::Syntax, what)
+            .at(place(opened), "opened here")
+            .at_any(
+                closed.map(place),
+                format!("here `{closing}` is missing, or above"),
+            )
+            .help(format!("close it with `{closing}`")),
+    )
+}
+
 /// A ron error in our words.
 fn explain(error: &ron::Error, span: Span) -> Diagnostic {
     use ron::Error as R;
@@ -586,9 +644,11 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
             return field_twice(&Located::new(field.to_string(), span));
         }
         R::Eof => {
-            return syntax("the text ends too early".to_owned())
-                .at(span, "something is not closed")
-                .help("check that every bracket and quote is closed");
+            return open_bracket(&span.file).unwrap_or_else(|| {
+                syntax("the text ends too early".to_owned())
+                    .at(span, "something is not closed")
+                    .help("check that every bracket and quote is closed")
+            });
         }
         R::ExceededRecursionLimit => {
             return syntax("values are nested too deep".to_owned())
@@ -613,7 +673,11 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         R::ExpectedBoolean => "`true` or `false`",
         R::ExpectedInteger | R::ExpectedFloat => "a number",
         R::InvalidValueForType { expected, .. } => expected,
-        other => return syntax(lower_first(&other.to_string())).at(span, "here"),
+        other => {
+            let unclosed = open_bracket(&span.file);
+            return unclosed
+                .unwrap_or_else(|| syntax(lower_first(&other.to_string())).at(span, "here"));
+        }
     };
     syntax(format!("{what} is needed")).at(span, "here")
 }

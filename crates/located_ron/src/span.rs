@@ -16,17 +16,21 @@ pub struct SourceFile(Arc<SourceText>);
 pub struct SourceText {
     /// Path of the file, as it was given to [`SourceFile::new`]; it need not exist on disk.
     pub name: Arc<str>,
-    /// Whole text of the source file.
+    /// Text of the source file, without a byte order mark at its start.
     pub text: Arc<str>,
 }
 
 impl SourceFile {
-    /// Creates a source file from its path, `name`, and its text; nothing is read from disk.
+    /// Creates a source file from its path, `name`, and its text, of which a byte order mark at the
+    /// start is left out; nothing is read from disk.
     pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
-        Self(Arc::new(SourceText {
-            name: name.into(),
-            text: text.into(),
-        }))
+        let (name, text) = (name.into(), text.into());
+        // Some editors begin UTF-8 with a byte order mark.
+        let text = match text.trim_start_matches('\u{feff}') {
+            rest if rest.len() < text.len() => rest.into(),
+            _ => text,
+        };
+        Self(Arc::new(SourceText { name, text }))
     }
 
     /// Returns the place of the byte range `range` of this file's text. The range is not checked.

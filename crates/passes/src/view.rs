@@ -107,7 +107,8 @@ impl SceneView {
     /// Brings an executor up to date with the scene as this view sees it:
     /// [resizes](Executor::resize) it if the size of the view is another one, and
     /// [refreshes](Executor::refresh) it. Call it before [`encode`](Executor::encode); frames that
-    /// are already encoded keep their content.
+    /// are already encoded keep their content. A view without pixels, as a minimised window has,
+    /// leaves the executor as it is: a frame for it need not be encoded.
     ///
     /// # Errors
     /// Those of [`Executor::resize`] and [`Executor::refresh`].
@@ -116,6 +117,9 @@ impl SceneView {
         executor: &mut Executor,
         provider: &mut SceneProvider,
     ) -> Result<(), ExecuteError> {
+        if self.size.contains(&0) {
+            return Ok(());
+        }
         let provider = self.apply(provider);
         if executor.plan().viewport() != self.size {
             executor.resize(self.size, provider)?;

@@ -2,7 +2,7 @@
 
 use crate::args::{
     shared::{MethodArgs, SceneArgs},
-    values::{frames, gate, texels},
+    values::{self, LightArgument, frames, gate, texels},
 };
 use clap::{ArgAction, Args, ValueEnum};
 use skiagraph_compare::foreign::factor::Reading;
@@ -540,6 +540,20 @@ pub struct CheckArgs {
     /// Graphs (.ron), or presets by name.
     #[arg(value_name = "FILE.ron", required = true)]
     pub graphs: Vec<String>,
+    /// Viewport size in pixels to plan for. Without it: 64x64, or 1920x1080 where a document needs
+    /// more.
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Scene to plan for, as of `run`, seen in its first view. Without it: a triangle under 1 to 3
+    /// lights.
+    #[arg(long, value_name = "SCENE")]
+    pub scene: Option<String>,
+    /// Light to plan for: a light of the scene, or without --scene directional, spot or point.
+    /// Three numbers are the direction of a sun. Without it: the scene's first light, or each kind
+    /// that a graph takes.
+    #[arg(long, value_name = "NAME|X,Y,Z", value_parser = values::light,
+          allow_hyphen_values = true)]
+    pub light: Option<LightArgument>,
     /// Format of the diagnostics: text on standard error, or json on standard output.
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
     pub format: CheckFormat,

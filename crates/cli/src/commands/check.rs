@@ -1,8 +1,10 @@
 //! `skiagraph check`: prints every diagnostic of graphs, without a GPU.
 
 use crate::args::commands::{CheckArgs, CheckFormat};
-use crate::args::shared::GpuArgs;
+use crate::args::shared::{GpuArgs, SceneArgs};
+use crate::args::values::LightArgument;
 use crate::error::CliError;
+use crate::scene_selection::SceneSelection;
 use crate::terminal::console::{print, report};
 use crate::terminal::{Terminal, interrupt, stop};
 use skiagraph_compare::files::json::to_text;
@@ -10,13 +12,17 @@ use skiagraph_compare::files::watch::{self, Watch};
 use skiagraph_compare::graphs::faults::{GraphFaults, warn};
 use skiagraph_compare::graphs::idle_params;
 use skiagraph_compare::graphs::light_kinds;
-use skiagraph_compare::graphs::planning::{self, Capabilities};
+use skiagraph_compare::graphs::planning::{self, Capabilities, Checked, Trial};
 use skiagraph_compare::graphs::preset;
 use skiagraph_compare::measuring::device;
 use skiagraph_compare::records::check::{CheckReport, FileReport};
 use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
-use skiagraph_passes::{names::LIGHT, registry};
-use std::{sync::mpsc, time::Duration};
+use skiagraph_passes::{names::LIGHT, registry, uniforms::LIGHT_KINDS};
+use skiagraph_scene::DirectionalLight;
+use std::{
+    sync::{Arc, mpsc},
+    time::Duration,
+};
 
 /// Time until Ctrl-C is noticed at the latest.
 const LISTENING: Duration = Duration::from_millis(100);
@@ -70,12 +76,11 @@ fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     } else {
         None
     };
+    let trial = trial(args, adapter.as_ref())?;
     let mut found = Vec::new();
     for (argument, path) in args.graphs.iter().zip(paths) {
         let checked = match path {
-            Ok(path) => {
-                planning::check(&path, &registry, &sources, adapter.as_ref()).map_err(Fault::Graph)
-            }
+            Ok(path) => planning::check(&path, &registry, &sources, &trial).map_err(Fault::Graph),
             Err(error) => Err(Fault::Missing(error.to_string())),
         };
         found.push((argument.as_str(), checked));
@@ -84,6 +89,42 @@ fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         CheckFormat::Text => text(&found),
         CheckFormat::Json => json(&found),
     }
+}
+
+/// Returns the viewport, scene and light that the arguments name, or their stand-ins.
+fn trial<'a>(args: &CheckArgs, adapter: Option<&'a Capabilities>) -> Result<Trial<'a>, CliError> {
+    let mut trial = Trial {
+        adapter,
+        viewport: args.size.map(|size| size.0),
+        ..Trial::default()
+    };
+    match (&args.scene, &args.light) {
+        (Some(scene), light) => {
+            let scene = SceneArgs {
+                scenes: vec![scene.clone()],
+                light: light.clone(),
+                ..SceneArgs::default()
+            };
+            let SceneSelection { scene, views, .. } = SceneSelection::load(&scene)?;
+            trial.scene = Some((Arc::new(scene), views));
+        }
+        (None, Some(LightArgument::Direction(direction))) => {
+            trial.light = Some(DirectionalLight::new(*direction).into());
+        }
+        (None, Some(LightArgument::Name(kind))) => {
+            trial.light = planning::of_each_kind()
+                .into_iter()
+                .find(|it| it.word() == kind);
+            if trial.light.is_none() {
+                return Err(CliError::Usage(format!(
+                    "--light {kind} is a light of a scene: name it with --scene, or a kind: {}",
+                    LIGHT_KINDS.join(", ")
+                )));
+            }
+        }
+        (None, None) => {}
+    }
+    Ok(trial)
 }
 
 /// Opens the adapter that the arguments name, and returns its abilities for these graphs.
@@ -106,7 +147,7 @@ enum Fault {
 }
 
 /// The arguments in their order, and what came of them.
-type Found<'a> = (&'a str, Result<(Graph, Plan), Fault>);
+type Found<'a> = (&'a str, Result<Checked, Fault>);
 
 fn text(found: &[Found]) -> Result<(), CliError> {
     let mut faults = GraphFaults::default();
@@ -114,13 +155,19 @@ fn text(found: &[Found]) -> Result<(), CliError> {
     let mut missing = Vec::new();
     for (argument, checked) in found {
         match checked {
-            Ok((graph, plan)) => {
+            Ok(Checked {
+                graph,
+                plan,
+                planned_for,
+            }) => {
                 warn(&Terminal, graph, plan.warnings());
                 let passes = plan.passes().len();
                 let noun = if passes == 1 { "pass" } else { "passes" };
                 let refused = refused_lights(graph, plan);
                 let idle = idle_params::under_other_lights(graph);
-                fine += &format!("{argument}: fine, {passes} {noun}{refused}{idle}\n");
+                fine += &format!(
+                    "{argument}: fine, {passes} {noun} for {planned_for}{refused}{idle}\n"
+                );
             }
             Err(Fault::Graph(diagnostics)) => faults.add(argument, diagnostics),
             Err(Fault::Missing(message)) => missing.push(message.as_str()),
@@ -149,7 +196,7 @@ fn refused_lights(graph: &Graph, plan: &Plan) -> String {
 
 fn json(found: &[Found]) -> Result<(), CliError> {
     let of = |(argument, checked): &Found| match checked {
-        Ok((graph, plan)) => {
+        Ok(Checked { graph, plan, .. }) => {
             let warnings = graph.warnings().iter().chain(plan.warnings());
             FileReport::new(argument, Some(plan.passes().len()), warnings)
         }

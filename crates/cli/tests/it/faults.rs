@@ -120,7 +120,10 @@ fn check_warns_of_what_not_every_adapter_can_and_asks_one_that_is_named() {
     let (code, stdout, stderr) = run(folder.path(), "check wide.ron");
     assert_eq!(
         (code, &*stdout),
-        (0, "wide.ron: fine, 2 passes\n"),
+        (
+            0,
+            "wide.ron: fine, 2 passes for 64×64 pixels, a small scene and one light\n"
+        ),
         "{stderr}"
     );
     assert!(

@@ -7,6 +7,7 @@ mod support;
 mod adapter;
 mod backends;
 mod cells;
+mod check;
 mod command_line;
 mod endless_files;
 mod faults;

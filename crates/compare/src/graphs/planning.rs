@@ -1,12 +1,13 @@
 //! Plans graphs for an adapter, with a scene or with a placeholder for one.
 //!
 //! ```
-//! use skiagraph_compare::graphs::planning;
+//! use skiagraph_compare::graphs::planning::{Trial, check};
 //! use skiagraph_passes::{EmbeddedSources, registry};
 //!
-//! let (graph, plan) = planning::check("pipelines/nsm.ron", &registry(), &EmbeddedSources, None)?;
-//! println!("{}: {} passes", graph.path(), plan.passes().len());
-//! assert!(planning::check("pipelines/none.ron", &registry(), &EmbeddedSources, None).is_err());
+//! let trial = Trial::default();
+//! let nsm = check("pipelines/nsm.ron", &registry(), &EmbeddedSources, &trial)?;
+//! assert_eq!(nsm.planned_for, "64×64 pixels, a small scene and one light");
+//! assert!(check("pipelines/none.ron", &registry(), &EmbeddedSources, &trial).is_err());
 //! # Ok::<(), skiagraph_graph::Diagnostics>(())
 //! ```
 
@@ -17,7 +18,8 @@ use skiagraph_gpu::{
     device::{Gpu, partial},
 };
 use skiagraph_graph::{
-    Code, Diagnostics, Graph, PartialBackend, Plan, PlanRequest, Registry, Sources,
+    Code, Diagnostic, Diagnostics, Graph, PartialBackend, Plan, PlanRequest, Registry, Sources,
+    Span,
 };
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{
@@ -78,65 +80,244 @@ impl Capabilities {
     }
 }
 
-const VIEWPORT: [u32; 2] = [64, 64];
+/// Viewport, scene and adapter that a graph is checked for, in place of those of the host that will
+/// run it. Stand-ins are tried for fields that are `None`: a viewport of 64×64 pixels, a scene of
+/// one triangle with one light of each kind that the graph takes, then with 2 and 3, and any
+/// adapter. A document whose section `needs` asks for more gets 1920×1080 pixels and a million
+/// triangles.
+#[derive(Clone, Default)]
+pub struct Trial<'a> {
+    /// Adapter on which the graph must run; with `None`, needs beyond wgpu's default limits and
+    /// features are only warnings.
+    pub adapter: Option<&'a Capabilities>,
+    /// Width and height of the viewport in pixels.
+    pub viewport: Option<[u32; 2]>,
+    /// Scene, and at least one view of it, each under its light.
+    pub scene: Option<(Arc<Scene>, Vec<View>)>,
+    /// Light of the stand-in for a scene.
+    pub light: Option<LightKind>,
+}
 
-/// Checks the graph at `path` without a scene, under each kind of light that it takes. Returns the
-/// graph, and its plan under the first of them. With an `adapter` the graph must run on it. With
-/// `None`, needs beyond wgpu's default limits and features are only warnings.
+/// A graph without faults.
+pub struct Checked {
+    /// The checked graph.
+    pub graph: Graph,
+    /// Plan of the graph for the first viewport, scene and light that it was checked for.
+    pub plan: Plan,
+    /// Everything that the graph was planned for, in words: "64×64 pixels, a small scene and 1 to 3
+    /// lights".
+    pub planned_for: String,
+}
+
+/// Viewports of the stand-ins for a host, and triangles of their scenes.
+const HOSTS: [([u32; 2], usize); 2] = [([64, 64], 1), ([1920, 1080], 1 << 20)];
+
+/// Most lights of a stand-in for a scene.
+const MOST_LIGHTS: usize = 3;
+
+/// Viewport, scene and lights of one plan.
+type Host = ([u32; 2], SceneProvider);
+
+impl Trial<'_> {
+    /// The hosts that a graph is planned for, in turn. Without a scene there is one for each of the
+    /// `lights`, first with that light alone, then with more.
+    fn hosts(&self, (viewport, triangles): ([u32; 2], usize), lights: &[LightKind]) -> Vec<Host> {
+        let viewport = self.viewport.unwrap_or(viewport);
+        if let Some((scene, views)) = &self.scene {
+            let seen_in = |view: &View| {
+                let mut provider = SceneProvider::new(Arc::clone(scene));
+                provider.set_view(view, viewport);
+                (viewport, provider)
+            };
+            return views.iter().map(seen_in).collect();
+        }
+        let described = described(viewport, triangles);
+        let counts = 1..=MOST_LIGHTS;
+        let with = |count| (0..lights.len()).map(move |first| (first, count));
+        let with = counts.flat_map(with);
+        with.map(|(first, count)| (viewport, lit(&described, &lights[first..], count)))
+            .collect()
+    }
+
+    /// Names everything that a graph is planned for, with the numbers of lights that were tried.
+    fn words(&self, viewport: [u32; 2], counts: &[usize]) -> String {
+        let size = pixels(viewport);
+        match (&self.scene, counts) {
+            (Some((scene, _)), _) => format!("{size} and the scene {}", scene.name),
+            (None, [first, .., last]) => {
+                format!("{size}, a small scene and {first} to {last} lights")
+            }
+            (None, _) => format!("{size}, a small scene and {}", count_of(counts[0])),
+        }
+    }
+}
+
+/// Checks the graph at `path` for everything in `trial`. Other numbers of lights than one are tried
+/// if the graph asks for the list of lights.
 ///
 /// # Errors
-/// All faults that were found.
+/// All faults that were found. The message of a fault that another viewport, scene or number of
+/// lights would not have begins with what it was found for: "for one light: …".
 pub fn check(
     path: &str,
     registry: &Registry,
     sources: &dyn Sources,
-    adapter: Option<&Capabilities>,
-) -> Result<(Graph, Plan), Diagnostics> {
+    trial: &Trial<'_>,
+) -> Result<Checked, Diagnostics> {
+    let check = |(viewport, provider): &Host| {
+        let request = match trial.adapter {
+            Some(adapter) => adapter.clone().request(*viewport, provider),
+            None => PlanRequest::new(*viewport, provider).with_any_adapter(true),
+        };
+        Graph::check(path, registry, sources, &request)
+    };
     // A faulty document does not tell which lights it takes: then a light that is refused is passed
     // over, unless nothing else is wrong with it.
-    let lights = match Graph::load(path, registry, sources) {
-        Ok(graph) => stand_ins(&graph),
-        Err(_) => of_each_kind().to_vec(),
+    let graph = Graph::load(path, registry, sources).ok();
+    let lights = match (trial.light, &graph) {
+        (Some(light), _) => vec![light],
+        (None, Some(graph)) => stand_ins(graph),
+        (None, None) => of_each_kind().to_vec(),
     };
-    let mut provider = described(VIEWPORT);
-    let (mut checked, mut refused) = (None, None);
-    for light in lights {
-        provider.set_light(light);
-        match check_under(&provider, path, registry, sources, adapter) {
-            Ok(found) => {
-                checked.get_or_insert(found);
+    // Under a light that it refuses, other faults of a graph may follow from that.
+    let refuses = |kind: &str| {
+        let graph = graph
+            .as_ref()
+            .filter(|graph| !light_kinds::takes(graph, kind))?;
+        let takes = light_kinds::split(graph)[0].join(", ");
+        let what = format!("`{}` takes no {kind} light", graph.path());
+        Some(Diagnostic::error(Code::Light, what).help(format!("it takes: {takes}")))
+    };
+    let (mut checked, mut counts): (Option<(Graph, Plan)>, Vec<usize>) = (None, Vec::new());
+    let (mut refused, mut unmet) = (None, None);
+    for host in HOSTS {
+        for host in trial.hosts(host, &lights) {
+            let count = host.1.lights().len();
+            // One kind of light will do for the numbers of lights that are tried besides.
+            let is_more = trial.scene.is_none() && count > 1;
+            let is_known = |(_, plan): &(Graph, Plan)| {
+                is_more && (!asks_for_lights(plan) || counts.last() == Some(&count))
+            };
+            if checked.as_ref().is_some_and(is_known) {
+                continue;
             }
-            Err(found) if found.iter().any(|it| it.code == Code::Light) => {
-                refused.get_or_insert(found);
+            match check(&host) {
+                Ok(found) => {
+                    checked.get_or_insert(found);
+                    counts.push(count);
+                    counts.dedup();
+                }
+                Err(found) if has(&found, Code::Light) => {
+                    refused.get_or_insert(found);
+                }
+                Err(found) if has(&found, Code::Need) => {
+                    unmet.get_or_insert(found);
+                }
+                Err(found) => {
+                    let refused = refuses(host.1.light().word());
+                    return Err(refused
+                        .map_or_else(|| for_which(found, trial, &host, check), Diagnostics::from));
+                }
             }
-            Err(found) => return Err(found),
+        }
+        match (checked, refused) {
+            (_, Some(refused)) => return Err(refused),
+            (Some((graph, plan)), None) => {
+                let planned_for = trial.words(plan.viewport(), &counts);
+                return Ok(Checked {
+                    graph,
+                    plan,
+                    planned_for,
+                });
+            }
+            (None, None) => (checked, refused) = (None, None),
         }
     }
-    match (checked, refused) {
-        (_, Some(refused)) => Err(refused),
-        (Some(checked), None) => Ok(checked),
-        // Every document takes some light.
-        (None, None) => check_under(&provider, path, registry, sources, adapter),
+    Err(unmet.unwrap_or_else(|| Diagnostic::error(Code::Output, "no view to check it in").into()))
+}
+
+/// True if a document's `lights` or `needs` refuse what it was planned for.
+fn has(found: &Diagnostics, code: Code) -> bool {
+    found.iter().any(|fault| fault.code == code)
+}
+
+/// True if a plan depends on the list of lights.
+fn asks_for_lights(plan: &Plan) -> bool {
+    let asked = plan.relies_on().keys().map(String::as_str);
+    let mut names = plan.provided().into_iter().chain(asked);
+    names.any(|name| name.starts_with("lights") || name.starts_with("light_areas"))
+}
+
+/// Begins the message of each fault that does not hold for every host with the part of `host`, a
+/// stand-in, on which it depends.
+fn for_which(
+    found: Diagnostics,
+    trial: &Trial<'_>,
+    (viewport, provider): &Host,
+    check: impl Fn(&Host) -> Result<(Graph, Plan), Diagnostics>,
+) -> Diagnostics {
+    let [_, (larger, triangles)] = HOSTS;
+    let lights = provider.lights();
+    let count = if lights.len() == 1 { MOST_LIGHTS } else { 1 };
+    let large = lit(&described(*viewport, triangles), lights, lights.len());
+    let more = lit(provider, lights, count);
+    let (is_sized, has_scene) = (trial.viewport.is_some(), trial.scene.is_some());
+    let sized = (is_sized, pixels(*viewport), "viewport.width >= 1024");
+    let small = (
+        has_scene,
+        "a small scene".to_owned(),
+        "scene.indices.count >= 1000000",
+    );
+    let few = (has_scene, count_of(lights.len()), "lights.count >= 2");
+    let others = [
+        (sized, (larger, provider.clone())),
+        (small, (*viewport, large)),
+        (few, (*viewport, more)),
+    ];
+    let mut list: Vec<Diagnostic> = found.iter().cloned().collect();
+    let assumed = others.into_iter().filter(|((is_given, ..), _)| !is_given);
+    for ((_, words, need), host) in assumed {
+        let there = match check(&host) {
+            Err(found) if has(&found, Code::Need) || has(&found, Code::Light) => continue,
+            Err(found) => found.iter().map(key).collect(),
+            Ok(_) => Vec::new(),
+        };
+        for fault in list.iter_mut().filter(|fault| !there.contains(&key(fault))) {
+            let named = Diagnostic {
+                message: format!("for {words}: {}", fault.message),
+                ..fault.clone()
+            };
+            *fault = named.help(format!(
+                "`check` plans for others with --size, --scene and --light; if the document asks \
+                 for more, it says so: `needs: [\"{need}\"]`"
+            ));
+        }
+    }
+    Diagnostics::new(list)
+}
+
+/// Kind and place of a fault, whose message may tell sizes.
+fn key(fault: &Diagnostic) -> (Code, Option<Span>) {
+    let first = fault.labels.first();
+    (fault.code, first.map(|label| label.span.clone()))
+}
+
+/// A size in words.
+fn pixels([width, height]: [u32; 2]) -> String {
+    format!("{width}×{height} pixels")
+}
+
+/// A number of lights in words.
+fn count_of(lights: usize) -> String {
+    match lights {
+        1 => "one light".to_owned(),
+        _ => format!("{lights} lights"),
     }
 }
 
-/// The same under one light.
-fn check_under(
-    provider: &SceneProvider,
-    path: &str,
-    registry: &Registry,
-    sources: &dyn Sources,
-    adapter: Option<&Capabilities>,
-) -> Result<(Graph, Plan), Diagnostics> {
-    let request = match adapter {
-        Some(adapter) => adapter.clone().request(VIEWPORT, provider),
-        None => PlanRequest::new(VIEWPORT, provider).with_any_adapter(true),
-    };
-    Graph::check(path, registry, sources, &request)
-}
-
-/// A light of each kind, in the order of [`LIGHT_KINDS`](skiagraph_passes::uniforms::LIGHT_KINDS).
-fn of_each_kind() -> [LightKind; 3] {
+/// Returns an example light of each kind, in the order of
+/// [`LIGHT_KINDS`](skiagraph_passes::uniforms::LIGHT_KINDS).
+pub fn of_each_kind() -> [LightKind; 3] {
     let (position, radius) = (DVec3::Z, 0.0);
     [
         DirectionalLight::new(DVec3::NEG_Z).into(),
@@ -165,17 +346,31 @@ pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
 
 /// Returns a provider of scene resources for planning without a scene, for a viewport in pixels. It
 /// describes every resource that a scene can have, under the first kind of light (directional,
-/// spot, point) that the graph takes.
+/// spot, point) that the graph takes, with as many lights, 3 at most, as the graph needs.
 pub fn placeholder(viewport: [u32; 2], graph: &Graph) -> SceneProvider {
-    let mut provider = described(viewport);
-    if let Some(light) = stand_ins(graph).first() {
-        provider.set_light(*light);
+    let (described, lights) = (described(viewport, 1), stand_ins(graph));
+    let with = |count| lit(&described, &lights, count);
+    let is_enough = |provider: &SceneProvider| {
+        let plan = graph.plan(&PlanRequest::new(viewport, provider));
+        !plan.is_err_and(|found| has(&found, Code::Need))
+    };
+    let enough = (1..=MOST_LIGHTS).map(with).find(is_enough);
+    enough.unwrap_or_else(|| with(1))
+}
+
+/// Returns the same scene under `count` lights, of the kinds in `lights` in turn.
+fn lit(described: &SceneProvider, lights: &[LightKind], count: usize) -> SceneProvider {
+    let mut provider = described.clone();
+    let lights: Vec<LightKind> = lights.iter().cycle().take(count).copied().collect();
+    // Lights of a kind that there is are no mistake.
+    if provider.set_lights(&lights).is_ok() {
+        provider.set_light(lights[0]);
     }
     provider
 }
 
-/// Describes all that a scene can give, of the least scene that has it.
-fn described(viewport: [u32; 2]) -> SceneProvider {
+/// Describes all that a scene can give, of the least scene that has it and so many triangles.
+fn described(viewport: [u32; 2], triangles: usize) -> SceneProvider {
     let view = View {
         name: "main".into(),
         eye: DVec3::ZERO,
@@ -190,9 +385,9 @@ fn described(viewport: [u32; 2]) -> SceneProvider {
         positions: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
             .map(|[x, y]| Vec3::new(x, y, -1.0))
             .into(),
-        triangles: vec![[0, 1, 2]],
+        triangles: vec![[0, 1, 2]; triangles],
         normals: vec![Vec3::Z],
-        normal_indices: vec![[0, 0, 0]],
+        normal_indices: vec![[0, 0, 0]; triangles],
         ..Mesh::default()
     };
     let scene = Scene {

@@ -17,7 +17,7 @@ use crate::files::picture_sources::PictureSources;
 use crate::graphs::argument::Assignment;
 use crate::graphs::argument::MethodArgument;
 use crate::graphs::faults::{GraphFaults, warn};
-use crate::graphs::planning;
+use crate::graphs::planning::{self, Trial};
 use crate::sink::Sink;
 use crate::wording::unknown;
 use itertools::Itertools;
@@ -232,7 +232,7 @@ pub fn load_all(
             })),
             // Faults that only planning finds are shown in the same go.
             (Err(diagnostics), path) => {
-                let all = planning::check(&path, &registry(), sources, None).err();
+                let all = planning::check(&path, &registry(), sources, &Trial::default()).err();
                 faults.add(argument, &all.unwrap_or(diagnostics));
             }
         }

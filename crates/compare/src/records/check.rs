@@ -3,12 +3,12 @@
 //!
 //! ```
 //! use skiagraph_compare::records::check::{CheckReport, FileReport};
-//! use skiagraph_compare::{files::json, graphs::planning};
+//! use skiagraph_compare::{files::json, graphs::planning::{Trial, check}};
 //! use skiagraph_passes::{EmbeddedSources, registry};
 //!
 //! let path = "pipelines/none.ron";
-//! let file = match planning::check(path, &registry(), &EmbeddedSources, None) {
-//!     Ok((graph, plan)) => FileReport::new(path, Some(plan.passes().len()), graph.warnings()),
+//! let file = match check(path, &registry(), &EmbeddedSources, &Trial::default()) {
+//!     Ok(it) => FileReport::new(path, Some(it.plan.passes().len()), it.graph.warnings()),
 //!     Err(wrong) => FileReport::new(path, None, wrong.iter()),
 //! };
 //! let text = json::to_text(&CheckReport::new(vec![file]));

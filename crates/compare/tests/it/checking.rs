@@ -4,20 +4,21 @@ use crate::support::{LIT, NOWHERE, sources};
 use serde_json::Value;
 use skiagraph_compare::{
     graphs::{
-        planning::{self, Capabilities, placeholder},
+        planning::{self, Capabilities, Checked, Trial, placeholder, stand_ins},
         preset,
     },
     records::check::{CheckReport, FileReport},
     sink::Silent,
 };
+use skiagraph_graph::Graph;
 use skiagraph_passes::{EmbeddedSources, registry};
 use std::{fs, path::Path};
 
 /// The report on documents of a folder.
 fn report(folder: &Path, paths: &[&str]) -> Value {
     let sources = sources(folder);
-    let of = |path: &&str| match planning::check(path, &registry(), &sources, None) {
-        Ok((graph, plan)) => {
+    let of = |path: &&str| match planning::check(path, &registry(), &sources, &Trial::default()) {
+        Ok(Checked { graph, plan, .. }) => {
             let warnings = graph.warnings().iter().chain(plan.warnings());
             FileReport::new(path, Some(plan.passes().len()), warnings)
         }
@@ -118,5 +119,24 @@ fn a_graph_that_does_not_fit_is_refused_with_a_memory_table() {
         "all together 40.00 GiB",
     ] {
         assert!(words.contains(part), "no `{part}` in {text}");
+    }
+}
+
+/// Every preset plans from one pixel on, and for pictures much wider than high, under each light
+/// that it takes.
+#[test]
+fn every_preset_plans_for_few_pixels() {
+    for preset in skiagraph_passes::presets() {
+        let graph = Graph::load(&preset.path, &registry(), &EmbeddedSources).unwrap();
+        for viewport in [[1, 1], [7, 7], [7, 9], [63, 1], [1, 63], [30_000, 2]] {
+            let mut provider = placeholder(viewport, &graph);
+            for light in stand_ins(&graph) {
+                provider.set_light(light);
+                let able = Capabilities::greatest();
+                let plan = graph.plan(&able.request(viewport, &provider));
+                let wrong = plan.err().map(|wrong| wrong.to_string());
+                assert_eq!(wrong, None, "{} at {viewport:?}, {light:?}", preset.name);
+            }
+        }
     }
 }

@@ -26,6 +26,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
         extended: [vec![base.file.name.clone()], base.extended].concat(),
         description: own.description.or(base.description),
         requires: [base.requires, own.requires].concat(),
+        needs: [base.needs, own.needs].concat(),
         narrow: narrower(base.narrow, own.narrow, reports),
         imports: [base.imports, own.imports].concat(),
         inputs,

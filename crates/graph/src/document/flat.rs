@@ -17,6 +17,7 @@ pub(crate) fn flat(document: &RawDocument) -> String {
         flat.line(1, &format!("description: {},", node.text()), &[node]);
     }
     flat.list("requires", &document.requires, Flat::node);
+    flat.list("needs", &document.needs, Flat::node);
     flat.list("params", &document.params, Flat::item);
     flat.map(1, "set", &document.set);
     flat.map(1, "narrow", &document.narrow);

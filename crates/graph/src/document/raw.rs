@@ -33,6 +33,7 @@ pub(crate) struct RawDocument {
     pub description: Option<Node>,
     pub extends: Option<Node>,
     pub requires: Vec<Node>,
+    pub needs: Vec<Node>,
     pub params: Vec<RawItem>,
     pub values: RawMap,
     /// Narrowed choices, in the order in which they apply: those of extended documents first.
@@ -121,13 +122,17 @@ pub(crate) fn stem(path: &str) -> &str {
 }
 
 /// All sections of a document: each name, with a sentence about its content.
-pub(crate) const SECTIONS: [(&str, &str); 16] = [
+pub(crate) const SECTIONS: [(&str, &str); 17] = [
     ("format", "The version of the language, 3."),
     ("extends", "Another document, of which this one is an edit."),
     ("description", "A sentence, shown by `skiagraph presets`."),
     (
         "requires",
         "Features of the device, by wgpu's names, without which the graph does not run.",
+    ),
+    (
+        "needs",
+        "Conditions on the viewport, the scene and its lights that must hold for a plan.",
     ),
     ("params", "Values from outside."),
     (
@@ -190,6 +195,7 @@ pub(crate) fn split(
         description: sections.nodes.remove("description"),
         extends: sections.nodes.remove("extends"),
         requires: sections.list("requires"),
+        needs: sections.list("needs"),
         params,
         values: sections.map("values"),
         narrow: sections.map("narrow"),

@@ -33,6 +33,7 @@ pub(crate) fn document(raw: RawDocument, registry: &Registry, reports: &mut Repo
     let mut document = Document {
         description: one_line(&description),
         requires: read_list(&raw.requires, feature, reports),
+        needs: read_list(&raw.needs, Node::parse, reports),
         invalid_params: raw.invalid_params,
         incomplete: raw.incomplete,
         extended: raw.extended,

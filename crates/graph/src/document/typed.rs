@@ -28,6 +28,8 @@ pub(crate) struct Document {
     pub extended: Vec<Arc<str>>,
     pub description: String,
     pub requires: Vec<(Located<String>, wgt::Features)>,
+    /// Conditions on the viewport, the scene and its lights that must hold for a plan.
+    pub needs: Vec<Expr>,
     /// Params that the document declares itself ([`declared`](Self::declared) of them), then the
     /// params that it exposes from its includes, each in the order of the document.
     pub params: Vec<Param>,
@@ -377,6 +379,7 @@ impl Document {
             )
             .chain(self.defaults.iter().map(|(_, value)| value))
             .chain(self.values.iter().map(|(_, value)| value))
+            .chain(&self.needs)
             .chain(self.imports.iter().filter_map(|of| of.condition.as_ref()))
             .chain(self.outputs.iter().filter_map(|of| of.condition.as_ref()));
         exprs.for_each(|expr| expr.visit(each));

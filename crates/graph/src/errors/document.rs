@@ -109,7 +109,10 @@ mistakes! {
     ClearInArea { clear: Span, area: Span } =>
         Syntax("clearing knows no area")
         .at(clear, "this would clear the whole target").at(area, "and this is a part of it")
-        .help("leave `load` out here, and put a `Clear` above this pass");
+        .help(
+            "leave `load` out here, which keeps what is there, and put a `Clear` above this pass, \
+             with an `if` where a condition decides",
+        );
 
     Data(place: Span) =>
         Syntax("a list of items is needed here")

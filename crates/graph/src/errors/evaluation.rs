@@ -4,6 +4,7 @@ use super::language::attributes;
 use crate::{
     language::{
         name::Name,
+        syntax::Attribute,
         value::{Scalar, Value},
     },
     source::span::{Located, Span},
@@ -15,12 +16,15 @@ mistakes! {
 
     Type(span: Span, expected: &'static str, found: Value) =>
         Expression("{expected} is needed here, not {}", found.describe())
-        .at(span, format!("this is {found}"))
+        .at(&span, format!("this is {found}"))
         .help_any(match found {
             Value::Scalar(Scalar::Number(number))
                 if number.abs() < 1e9 && expected.contains("whole") =>
             {
-                Some("`floor(…)` and `ceil(…)` make a whole number of it")
+                Some("`floor(…)` and `ceil(…)` make a whole number of it".to_owned())
+            }
+            Value::Scalar(_) if expected.contains("false") => {
+                Some(format!("compare it: `{} > 0`", operand(&span)))
             }
             _ => None,
         });
@@ -29,8 +33,16 @@ mistakes! {
         Expression("{} numbers do not go with {}", lengths[0], lengths[1])
         .at(span, "here").help("name parts of the longer one, as `x.width` and `x.height`");
 
-    Negative(place: Span, number: i64) =>
-        Expression("{number} is less than nothing").at(place, "here");
+    /// A number below 0; `least` is the least one that has a use here.
+    Negative { place: Span, number: i64, least: u32 } =>
+        Expression("{}", match place.text() {
+            text if text == number.to_string() => format!("{number} is below 0"),
+            text => format!("`{text}` is {number}, below 0"),
+        })
+        .at(&place, "sizes, counts and indices are 0 at least")
+        .help_any((place.text().parse::<i64>().is_err()).then(|| {
+            format!("keep it above: `max({}, {least})`", place.text())
+        }));
 
     Large(place: Span, number: u64) =>
         Expression("{number} is more than 32 bits hold").at(place, "here");
@@ -55,6 +67,10 @@ mistakes! {
             "a Choice of these words may stand here, all of its words being among them: {}",
             expected.join(", ")
         ));
+
+    UnknownAttribute { span: Span, of: String, name: String } =>
+        Expression("`{of}` has no attribute `{name}`")
+        .at(span, "").suggest(&name, Attribute::ALL.iter().map(|(name, _)| *name));
 
     NoAttribute(span: Span, of: String) =>
         Expression("{of} has no such attribute")
@@ -111,14 +127,39 @@ mistakes! {
         UnknownParam("{what}").at(span, "").suggest(&word, known);
 }
 
+/// The text of an expression as one side of a comparison.
+fn operand(span: &Span) -> String {
+    let text = span.text();
+    if text.contains(['?', '|', '&', '=', '<', '>']) {
+        format!("({text})")
+    } else {
+        text.to_owned()
+    }
+}
+
 fn names(ring: &[Located<String>]) -> Vec<&str> {
     ring.iter().map(|name| name.as_str()).collect()
 }
 
 impl EvaluationError {
     /// Creates the error for the name of an expression that is not a param. `is_material` is true
-    /// if a material is called so.
-    pub fn param(name: &str, span: &Span, is_material: bool, known: Vec<String>) -> Self {
+    /// of a name that a material has.
+    pub fn param(
+        name: &str,
+        span: &Span,
+        is_material: impl Fn(&str) -> bool,
+        known: Vec<String>,
+    ) -> Self {
+        if let Some((of, attribute)) = name.rsplit_once('.')
+            && (of == "viewport" || is_material(of))
+        {
+            return Self::UnknownAttribute {
+                span: span.clone(),
+                of: of.to_owned(),
+                name: attribute.to_owned(),
+            };
+        }
+        let is_material = is_material(name);
         Self::Unknown {
             span: span.clone(),
             what: if is_material {

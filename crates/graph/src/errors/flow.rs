@@ -1,6 +1,10 @@
 //! Mistakes in the order of passes.
 
-use crate::source::span::{Located, Span};
+use super::link::read_previous;
+use crate::{
+    resource::name_within,
+    source::span::{Located, Span},
+};
 
 mistakes! {
     /// A mistake in the order of passes: a read before the write, a cycle, or different run
@@ -27,39 +31,57 @@ mistakes! {
         name: String,
         pass: Located<String>,
         read: Span,
-        /// True if the pass writes the material, too.
-        changes: bool,
+        /// If the pass writes the material, too: a reference to what it reads, and the entry that
+        /// clears it. `None` if it only reads.
+        clear: Option<[String; 2]>,
         /// True if a pass above has written a part of the material.
         partly: bool,
     } =>
         ReadBeforeWrite(
-            "pass `{pass}` {} `{name}` that no pass has written", verb(changes, partly)
+            "pass `{pass}` {} `{name}` that no pass has written",
+            verb(clear.is_some(), partly)
         )
         .at(read, "read here").at(pass, "by this pass")
-        .help(if changes {
-            format!(
-                "put `Clear(name: \"clear\", target: \"{name}\")` above it, if it starts anew in \
-                 each frame; if it goes on from the frame before, give it `keep: true`, or bind \
-                 `\"{name}.previous\"` and read that; say `overwrites: [\"{name}\"]`, if the pass \
-                 itself writes all that it reads"
-            )
-        } else {
-            "let a pass above write it, or name another material".to_owned()
+        .help(match clear {
+            Some([target, clear]) => format!(
+                "put `{clear}` above it, if it starts anew in each frame; if it goes on from the \
+                 frame before, give `{name}` `keep: true`, or bind \
+                 `\"{target}.previous\"` and read that; say `overwrites: [\"{target}\"]`, if the \
+                 pass itself writes all that it reads"
+            ),
+            None => "let a pass above write it, or name another material".to_owned(),
         });
+
+    /// A pass that writes nothing that anything else in its document names.
+    Unneeded { pass: Located<String>, written: Vec<String> } =>
+        Unused("nothing needs the pass `{pass}`")
+        .at(pass, match &written[..] {
+            [] => "it writes nothing".to_owned(),
+            written => format!("nothing else names `{}`", written.join("`, `")),
+        })
+        .help(
+            "name what it writes among the `outputs`, let a pass that is needed read it, or take \
+             the pass out",
+        );
 
     Cycle { name: String, pass: Located<String>, writer: Located<String>, path: Vec<String> } =>
         Cycle("passes need each other's results: {} → {pass}", path.join(" → "))
         .at(&pass, format!("reads `{name}`"))
         .at(writer, format!("writes `{name}`, and needs what `{pass}` made"))
-        .help("break the cycle: write a second material, or move the read into a pass below");
+        .help(format!(
+            "break the cycle: write a second material, move the read into a pass below, or read \
+             what the frame before left, `\"{}.previous\"`",
+            name_within(&pass, &name)
+        ));
 
     WrittenBelow { name: String, pass: Located<String>, read: Span, writer: Located<String> } =>
         ReadBeforeWrite("pass `{pass}` reads `{name}` before it is written")
-        .at(read, "read here").at(&pass, "by this pass").at(&writer, "written only here, below")
+        .at(&read, "read here").at(&pass, "by this pass").at(&writer, "written only here, below")
         .help(format!(
             "move `{writer}` above `{pass}`: the file reads as a sequential program; give `{name}` \
              `keep: true` to read here what the frame before left"
-        ));
+        ))
+        .help(read_previous(name_within(&pass, &name), &read));
 
     NeverWritten { name: String, pass: Located<String>, read: Span } =>
         ReadBeforeWrite("pass `{pass}` reads `{name}` of the frame before, but no pass writes it")

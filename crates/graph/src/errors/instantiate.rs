@@ -167,6 +167,11 @@ mistakes! {
         Size("the graph has more than {most} {what}")
         .at(at, "counted up to here").help("repeat or include less");
 
+    Need { document: String, need: Located<String>, here: String } =>
+        Need("`{document}` needs `{need}`")
+        .at(need, format!("here it is {here}"))
+        .help("plan it for another viewport, scene or number of lights, which `needs` asks for");
+
     Feature { document: String, feature: Located<String> } =>
         Feature("`{document}` cannot run without the feature `{feature}`")
         .at(feature, "the device does not have this feature")

@@ -6,6 +6,13 @@ mistakes! {
     /// A buffer whose size or layout does not fit.
     LayoutError:
 
+    /// One name of a member at two offsets, of layouts that agree otherwise.
+    Swapped { name: String, member: String, offsets: [usize; 2], spans: [Span; 2] } =>
+        LayoutMismatch("`{member}` stands at two places in the items of `{name}`")
+        .at(&spans[1], format!("here it is at byte {}", offsets[1]))
+        .at(&spans[0], format!("here it is at byte {}", offsets[0]))
+        .help("declare the item type once, in a shared module that both import");
+
     Disagreement { name: String, layouts: [String; 2], spans: [Span; 2] } =>
         LayoutMismatch("two shaders see `{name}` with different layouts")
         .at(&spans[1], format!("here it is {}", layouts[1]))

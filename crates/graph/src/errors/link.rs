@@ -1,8 +1,9 @@
 //! Passes whose shaders, attachments, copies or dispatches do not fit.
 
 use crate::{
+    language::value::Value,
     param::Param,
-    scalar_class::ScalarClass,
+    scalar_class::{ScalarClass, ShaderType},
     source::span::{Located, Span},
 };
 use wgt::TextureFormat;
@@ -54,10 +55,19 @@ mistakes! {
              does without: `if: \"has(EXPERIMENTAL_RAY_QUERY)\"`",
         );
 
-    Feedback { pass: String, name: String, reader: Span, reads: bool, writer: Span } =>
+    Feedback {
+        pass: String,
+        name: String,
+        reader: Span,
+        reads: bool,
+        writer: Span,
+        /// Name in the document, if the material has a version of the frame before.
+        previous: Option<String>,
+    } =>
         FeedbackLoop("pass `{pass}` uses `{name}` twice at once, and writes it")
-        .at(reader, if reads { "read here" } else { "written here" }).at(writer, "written here")
-        .help("read a copy, or a part that this pass does not write");
+        .at(&reader, if reads { "read here" } else { "written here" }).at(writer, "written here")
+        .help("read a copy, or a part that this pass does not write")
+        .help_any(previous.map(|name| read_previous(&name, &reader)));
 
     Overwrites { pass: String, name: Located<String> } =>
         ResourceKind("pass `{pass}` does not write `{name}`").at(name, "said to be overwritten");
@@ -144,8 +154,14 @@ mistakes! {
              `{constant}`"
         ));
 
-    SetValue { name: String, expected: String, found: String, span: Span } =>
-        ParamValue("`{name}` takes {expected}").at(span, format!("this is {found}"));
+    /// A value for a member of `params` or an override, of the type `expected`; `None` for `bool`.
+    SetValue { name: String, expected: Option<ShaderType>, found: Value, span: Span } =>
+        ParamValue("`{name}` takes {}", expected.map_or("true or false".into(), ShaderType::words))
+        .at(&span, format!("this is {found}"))
+        .help(match expected {
+            Some(expected) => expected.way_out(found.scalars(), span.text()),
+            None => "write `true` or `false`, or a comparison in quotes".to_owned(),
+        });
 
     UnknownMember {
         member: String,
@@ -161,7 +177,7 @@ mistakes! {
             Some(ty) => format!(
                 "declare it, `params: [{ty}(name: \"{member}\", default: …)]`, or `set` it"
             ),
-            None => format!("`set` it: `set: {{\"{member}\": …}}`"),
+            None => in_a_buffer(&member),
         });
 
     IndexMember(place: Span) =>
@@ -170,15 +186,32 @@ mistakes! {
 
     MemberIsNoVector { member: String, span: Span } =>
         LayoutMismatch("`params.{member}` cannot be set: it is neither a number nor a vector")
-        .at(span, "in this uniform");
+        .at(span, "in this uniform").help(in_a_buffer(&member));
 
     MemberType {
-        param: Box<Param>, member: String, scalar: ScalarClass, width: u32, span: Span,
+        param: Box<Param>,
+        /// Member of `params`, `params.threshold`, or an override.
+        member: String,
+        /// Type of the param in a shader.
+        needed: ShaderType,
+        /// Type of the member; `None` if it is neither a number nor a vector.
+        found: Option<ShaderType>,
+        span: Span,
     } =>
         LayoutMismatch(
-            "param `{}` is {width} × {scalar} in a shader, `params.{member}` is not", param.name
+            "`{member}` is {} in the shader, but the param `{}` needs {needed} there",
+            found.map_or("neither a number nor a vector".to_owned(), |found| found.to_string()),
+            param.name
         )
-        .at(span, "in this uniform").at(&param.name, format!("declared {} here", param.ty));
+        .at(span, "declared here").at(&param.name, format!("declared {} here", param.ty))
+        .help_any(match member.strip_prefix("params.") {
+            Some(member) => Some(format!("write `{member}: {needed}` in the shader")),
+            None if needed.width == 1 => Some(format!("write `override {member}: {needed}`")),
+            None => None,
+        })
+        .help_any(found.and_then(ShaderType::param).map(|ty| {
+            format!("or declare the param so: `{ty}(name: \"{}\", …)`", param.name)
+        }));
 
     NoArguments { name: Located<String>, found: &'static str } =>
         ResourceKind("`{name}` cannot hold indirect arguments")
@@ -275,6 +308,11 @@ mistakes! {
         FormatMismatch("the fragment shader writes nothing to `{name}`")
         .at(name, format!("this target has location {location}"))
         .at(entry, format!("no output @location({location}) here"));
+
+    NoTarget { pass: Located<String>, location: u32, entry: Span } =>
+        Unused("pass `{pass}` has no target for @location({location}) of its fragment shader")
+        .at(pass, "what it writes there is lost").at(entry, "written by this")
+        .help("add a texture to `color`, or take the output out of the shader");
 
     FragmentOutput {
         name: Located<String>, format: TextureFormat, expected: String, needed: u32,
@@ -418,6 +456,25 @@ mistakes! {
 
     Grows =>
         ResourceKind("its layers become more, a cube has six").help("declare a texture_2d_array");
+}
+
+/// Help for a read of a material that may have meant the frame before; `read` is its place.
+pub(super) fn read_previous(name: &str, read: &Span) -> String {
+    let reads = if read.file.name.ends_with(".wgsl") {
+        format!("bind: {{\"{}\": \"{name}.previous\"}}", read.text())
+    } else {
+        format!("\"{name}.previous\"")
+    };
+    format!("if what the frame before left is meant, say so: `{reads}`")
+}
+
+/// Help for a member of `params` that no param can be.
+fn in_a_buffer(member: &str) -> String {
+    format!(
+        "`params` holds numbers and vectors; an array, or the rows of a matrix, are a buffer, \
+         `Buffer(name: \"{member}\", data: […])`, and in the shader \
+         `var<storage, read> {member}: array<…>;`"
+    )
 }
 
 fn extent([width, height, layers, mips]: [usize; 4]) -> String {

@@ -60,12 +60,18 @@ mistakes! {
         ));
 
     NoViewport(place: Span) =>
-        Size("the viewport has no pixels").at(place, "");
+        Size("the viewport has no pixels")
+        .at(place, "").help("leave out frames of a view without pixels, as of a minimised window");
 
     UnsizedBuffer(name: Located<String>) =>
         Size("the size of `{name}` is not known: no shader sees it")
         .at(name, "")
         .help("let a pass bind it: the size of its items comes from the shader's type");
+
+    Undrawn(name: Located<String>) =>
+        ReadBeforeWrite("no pass draws to the multisampled texture `{name}`")
+        .at(name, "bound, but never drawn to")
+        .help("let a pass draw to it above, or leave `samples` out");
 
     ImportUsage { name: Located<String>, pass: Located<String>, lacking: String } =>
         Import("the import `{name}` was not made for what pass `{pass}` does")

@@ -165,13 +165,24 @@ pub(crate) fn whole_number(expr: &Expr, env: &mut dyn Environment) -> Evaluated<
 /// Evaluates an expression that must be an integer of at least 0.
 pub(crate) fn count(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u64> {
     let whole = whole_number(expr, env)?;
-    let negative = || EvaluationError::Negative(expr.span.clone(), whole);
-    u64::try_from(whole).map_err(|_| env.report(negative()))
+    not_negative(expr, whole, 0, env)
+}
+
+fn not_negative(expr: &Expr, number: i64, least: u32, env: &mut dyn Environment) -> Evaluated<u64> {
+    let place = expr.span.clone();
+    u64::try_from(number).map_err(|_| {
+        env.report(EvaluationError::Negative {
+            place,
+            number,
+            least,
+        })
+    })
 }
 
 /// Evaluates an expression that must be an integer from 0 to `u32::MAX`.
 pub(crate) fn count32(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u32> {
-    let count = count(expr, env)?;
+    let whole = whole_number(expr, env)?;
+    let count = not_negative(expr, whole, 1, env)?;
     let large = || EvaluationError::Large(expr.span.clone(), count);
     u32::try_from(count).map_err(|_| env.report(large()))
 }
@@ -184,17 +195,17 @@ pub(crate) fn edges(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Vec<u64
         Value::List(list) if list.len() < 4 => list,
         other => return Err(wrong(expr, "a size", &other, env)),
     };
-    let mut edges = Vec::new();
-    for edge in list {
-        edges.push(match edge {
-            Scalar::Whole(whole @ 0..) => whole.unsigned_abs(),
-            Scalar::Whole(whole) => {
-                return Err(env.report(EvaluationError::Negative(expr.span.clone(), whole)));
-            }
-            other => return Err(wrong(expr, "a whole number", &Value::Scalar(other), env)),
-        });
-    }
-    Ok(edges)
+    let edge = |(index, edge)| {
+        let part = match &expr.kind {
+            ExprKind::Tuple(parts) => parts.get(index).unwrap_or(expr),
+            _ => expr,
+        };
+        match edge {
+            Scalar::Whole(whole) => not_negative(part, whole, 1, env),
+            other => Err(wrong(part, "a whole number", &Value::Scalar(other), env)),
+        }
+    };
+    list.into_iter().enumerate().map(edge).collect()
 }
 
 fn binary(

@@ -5,8 +5,9 @@ use super::view::{GraphView, Subresources};
 use crate::{
     diagnostics::reports::Reports,
     errors::flow::OrderError,
+    kinds::step::Step,
     link::pass::{Access, LinkedPass, PassId},
-    resource::{Origin, ResourceId, ResourceKind, Target},
+    resource::{Origin, ResourceId, ResourceKind, Target, name_within},
 };
 use petgraph::{
     graph::{DiGraph, NodeIndex},
@@ -190,9 +191,9 @@ fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) 
     let Some((writer, below)) = below.filter(|_| !itself) else {
         return OrderError::Unwritten {
             name,
+            clear: itself.then(|| clear_above(pass, access, view)),
             pass: pass_name,
             read,
-            changes: itself,
             partly: view.passes[..reader.0].iter().any(writes),
         };
     };
@@ -223,5 +224,48 @@ fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) 
             read,
             writer: below.name.clone(),
         },
+    }
+}
+
+/// Returns the `Clear` that a document can put above a pass, for what an access of the pass
+/// changes: the reference to it, and the whole entry.
+fn clear_above(pass: &LinkedPass, access: &Access, view: GraphView<'_>) -> [String; 2] {
+    let resource = view.resource(access.resource);
+    let name = name_within(&pass.name, &resource.name);
+    let (target, value) = match &resource.kind {
+        ResourceKind::Texture(texture) => {
+            let part = access.part.reference(name, texture);
+            (part, cleared_depth(pass, access, texture.format))
+        }
+        _ => (name.to_owned(), ""),
+    };
+    let word: String = name
+        .chars()
+        .filter(|c| c.is_alphanumeric() || *c == '_')
+        .collect();
+    let word = ["clear", "reset", "begin"].map(|verb| format!("{verb}_{word}"));
+    let is_free = |word: &&String| !view.passes.iter().any(|pass| pass.name.ends_with(*word));
+    let word = word.iter().find(is_free).unwrap_or(&word[0]);
+    let clear = format!("Clear(name: \"{word}\", target: \"{target}\"{value})");
+    [target, clear]
+}
+
+/// Returns the field `value` of a `Clear` after which every depth passes the test of a pass once;
+/// empty for a format without depth.
+fn cleared_depth(pass: &LinkedPass, access: &Access, format: wgt::TextureFormat) -> &'static str {
+    let depth = match pass.steps.get(access.step) {
+        Some(Step::Draw(draw)) => draw.depth.as_ref(),
+        _ => None,
+    };
+    let compare = depth.map(|depth| depth.compare);
+    let is_reversed = matches!(
+        compare,
+        Some(wgt::CompareFunction::Greater | wgt::CompareFunction::GreaterEqual)
+    );
+    match (format.has_depth_aspect(), format.has_stencil_aspect()) {
+        (false, _) => "",
+        (true, _) if is_reversed => ", value: 0",
+        (true, false) => ", value: 1",
+        (true, true) => ", value: (1, 0)",
     }
 }

@@ -202,8 +202,27 @@ impl<'a> Builder<'a> {
             };
             self.symbols.scopes.declare(scope, &name.value, symbol);
         }
+        self.needs(document, scope);
         self.replace_modules(document, scope);
         self.entries(&document.entries, context);
+    }
+
+    /// Reports the conditions that a document needs and that do not hold.
+    fn needs(&mut self, document: &Document, scope: ScopeId) {
+        for need in &document.needs {
+            let mut at = self.symbols.at(scope.begin(), None);
+            // One without a value was reported.
+            if self.plan_inputs.is_there(Some(need), &mut at) == Ok(false) {
+                let here = need.canonical(&mut |leaf| {
+                    eval::value(leaf, &mut at).map_or_else(|_| "…".into(), |it| it.to_string())
+                });
+                self.symbols.reports.report(InterfaceError::Need {
+                    document: document.file.name.to_string(),
+                    need: Located::new(need.text().to_owned(), need.span.clone()),
+                    here,
+                });
+            }
+        }
     }
 
     /// Finds the modules that stand in for others in a document's shaders.

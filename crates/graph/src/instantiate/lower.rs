@@ -55,7 +55,6 @@ pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
             let shaders = &symbols.graph.shaders;
             shaders.get(&instance.document, shader, &instance.replaced)
         });
-        let shader = shader.cloned();
         let mut environment = symbols.at(flat.position, shader);
         let mut lowering = Lowering::new(
             &entry.name,

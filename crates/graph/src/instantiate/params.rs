@@ -144,7 +144,7 @@ impl Environment for ParamsAlone<'_> {
             Some(value) => value,
             None => {
                 let known = self.reports.known(self.params.names());
-                Err(self.report(EvaluationError::param(name, span, false, known)))
+                Err(self.report(EvaluationError::param(name, span, |_| false, known)))
             }
         }
     }

@@ -867,11 +867,12 @@ impl Environment for At<'_, '_> {
         if let Some(reported) = instance.document.invalid_params {
             return Err(reported);
         }
-        let is_material = self
-            .symbols
-            .scopes
-            .find(self.position.scope, name)
-            .is_some();
+        let scope = self.position.scope;
+        let is_material = |name: &str| {
+            let own = self.symbols.scopes.find(scope, name);
+            own.is_some_and(|symbol| matches!(symbol, Symbol::Target(_)))
+                || self.symbols.request.provider.describe(name).is_some()
+        };
         let values = instance
             .document
             .values
@@ -881,7 +882,8 @@ impl Environment for At<'_, '_> {
             .symbols
             .reports
             .known(instance.params.names().chain(values));
-        Err(self.report(EvaluationError::param(name, span, is_material, known)))
+        let error = EvaluationError::param(name, span, is_material, known);
+        Err(self.report(error))
     }
 
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {

@@ -14,7 +14,7 @@ use serde::Deserialize;
 pub(super) struct Clear {
     /// The texture or buffer, or a part of one.
     target: Reference,
-    /// One value for all channels; four; a depth and a stencil.
+    /// One value for all channels; four; a depth and a stencil. 0 without it, of a depth, too.
     #[serde(default)]
     value: Option<Expr>,
 }

@@ -290,29 +290,28 @@ fn clear(
     area: Option<&Expr>,
     pass: &mut Lowering<'_>,
 ) -> Option<[f64; 4]> {
-    let load = match load {
-        Some(Load::KeepIf(condition)) if pass.boolean(condition) => Some(&Load::Keep),
-        Some(Load::KeepIf(_)) => None,
-        load => load,
-    };
     let values = match (load, area) {
-        (Some(Load::Keep | Load::KeepIf(_)), _) | (None, Some(_)) => return None,
-        (None, None) => return Some([default; 4]),
+        (Some(Load::Keep), _) | (None, Some(_)) => return None,
+        (Some(Load::KeepIf(condition)), None) if pass.boolean(condition) => return None,
+        (None | Some(Load::KeepIf(_)), None) => return Some([default; 4]),
         (Some(Load::Clear(values)), None) => values,
-        (Some(Load::Clear(values)), Some(area)) => {
-            let mistake = DocumentError::ClearInArea {
-                clear: values[0].span.clone(),
-                area: area.span.clone(),
-            };
-            pass.report(mistake);
-            return None;
-        }
+        (Some(Load::Clear(values)), Some(area)) => return refused(&values[0], area, pass),
+        (Some(Load::KeepIf(condition)), Some(area)) => return refused(condition, area, pass),
     };
     let values: Vec<f64> = values.iter().map(|value| pass.number(value)).collect();
     // One value fills all channels.
     Some(std::array::from_fn(|channel| {
         values[channel.min(values.len() - 1)]
     }))
+}
+
+/// Reports a `load` that would clear more than the area of a draw.
+fn refused(clear: &Expr, area: &Expr, pass: &mut Lowering<'_>) -> Option<[f64; 4]> {
+    pass.report(DocumentError::ClearInArea {
+        clear: clear.span.clone(),
+        area: area.span.clone(),
+    });
+    None
 }
 
 pub(super) fn colors(

@@ -142,6 +142,18 @@ fn colors(
         }
         colors.push(linked);
     }
+    let targets = draw.colors.len() as u32;
+    if let Some((outputs, span)) = outputs.as_ref().filter(|_| draw.canvas.is_none()) {
+        let mut locations = outputs.iter().map(|output| output.location);
+        if let Some(location) = locations.find(|location| *location >= targets) {
+            let (pass, entry) = (scope.pass.clone(), span.clone());
+            scope.reports().warn(LinkError::NoTarget {
+                pass,
+                location,
+                entry,
+            });
+        }
+    }
     let most = limits.max_color_attachment_bytes_per_sample;
     if bytes_per_sample > most {
         scope.unsupported(LinkError::BytesPerPixel {

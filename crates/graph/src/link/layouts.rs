@@ -4,7 +4,11 @@ use crate::{
     errors::layout::LayoutError,
     instantiate::symbols::SymbolTable,
     resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange},
-    shader::{class::Class, items::Item, reflect::Global},
+    shader::{
+        class::Class,
+        items::{Field, Item},
+        reflect::Global,
+    },
     source::span::{Located, Span},
 };
 use std::{collections::BTreeMap, sync::Arc};
@@ -106,8 +110,11 @@ impl Layouts {
                 buffers.insert(id, buffer.clone());
             }
             if let Some(error) = disagreement(&resource.name, seen) {
+                let has_size = matches!(error, LayoutError::Swapped { .. });
                 errors.push(error);
-                continue;
+                if !has_size {
+                    continue;
+                }
             }
             match (&resource.kind, resource.origin) {
                 (ResourceKind::Provided(provided), Origin::Host) => {
@@ -364,18 +371,63 @@ fn fits(view: &Seen, provided: crate::provider::Provided) -> bool {
     }
 }
 
-/// Returns the error for two shaders that declare the same buffer differently; `None` if all agree.
+/// Returns the mistake of two shaders that declare one buffer differently; `None` if all agree.
 fn disagreement(name: &str, seen: &[Seen]) -> Option<LayoutError> {
     let mut whole = seen
         .iter()
         .filter(|view| view.part == SubresourceRange::WHOLE);
     let first = whole.next()?;
-    let other = whole.find(|view| view.layout != first.layout)?;
-    Some(LayoutError::Disagreement {
-        name: name.to_owned(),
-        layouts: [first.layout.clone(), other.layout.clone()],
-        spans: [first.span.clone(), other.span.clone()],
+    for other in whole {
+        let (name, spans) = (name.to_owned(), [first.span.clone(), other.span.clone()]);
+        if other.layout != first.layout {
+            return Some(LayoutError::Disagreement {
+                name,
+                layouts: [first.shown(), other.shown()],
+                spans,
+            });
+        }
+        if let Some((member, offsets)) = swapped(first.item.as_ref()?, other.item.as_ref()?) {
+            return Some(LayoutError::Swapped {
+                name,
+                member,
+                offsets,
+                spans,
+            });
+        }
+    }
+    None
+}
+
+/// Returns the first name that two items have at different offsets, with both.
+fn swapped(first: &Item, other: &Item) -> Option<(String, [usize; 2])> {
+    first.fields.iter().find_map(|field| {
+        let mut named = other.fields.iter().filter(|it| it.name == field.name);
+        let other = named.find(|it| it.offset != field.offset)?;
+        Some((field.name.clone(), [field.offset, other.offset]))
     })
+}
+
+impl Seen {
+    /// The layout for a message: the names of its members with their types and offsets, if they are
+    /// few.
+    fn shown(&self) -> String {
+        const FEW: usize = 8;
+        match &self.item {
+            Some(Item { stride, fields }) if (2..=FEW).contains(&fields.len()) => {
+                let shown = |field: &Field| {
+                    format!(
+                        "{} ({} at byte {})",
+                        field.name,
+                        field.scalar.as_str(),
+                        field.offset
+                    )
+                };
+                let fields: Vec<String> = fields.iter().map(shown).collect();
+                format!("{}; {stride} bytes each", fields.join(", "))
+            }
+            _ => self.layout.clone(),
+        }
+    }
 }
 
 /// Returns the bytes of the items in `data`, in the layout of the shader that sees them.

@@ -91,6 +91,7 @@ pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
                 // The report suffices: nothing here depends on the result.
                 let _ = symbols.reports.unsupported(error);
             }
+            error @ LayoutError::Swapped { .. } => symbols.reports.warn(error),
             error => drop(symbols.reports.report(error)),
         }
     }
@@ -171,7 +172,9 @@ fn overwrites(
         let target = scope.resolve(reference)?;
         let mut is_written = false;
         for access in &mut pass.accesses {
-            if access.writes && access.resource == target.id && access.part == target.part {
+            // Depth and stencil of one texture are attached apart.
+            let part = access.part.of_aspect(target.part.aspect);
+            if access.writes && access.resource == target.id && part == target.part {
                 is_written = true;
                 access.fully_overwrites = true;
                 // The pass reads only what it has written itself.

@@ -8,9 +8,9 @@ use crate::{
     diagnostics::reports::Reported,
     errors::link::LinkError,
     kinds::step::Program,
-    language::value::{Scalar, Value},
+    language::value::{Scalar, Value, Word},
     param::{Param, ParamValue},
-    scalar_class::ScalarClass,
+    scalar_class::{ScalarClass, ShaderType},
     shader::{
         class::Member,
         reflect::{Global, Shader},
@@ -35,8 +35,8 @@ fn bits(class: ScalarClass, scalar: Scalar) -> Option<u32> {
 }
 
 /// Returns a param's value as the words of a uniform.
-pub(crate) fn words(param: &Param, value: &ParamValue) -> (ScalarClass, Vec<u32>) {
-    match value {
+pub(crate) fn words(param: &Param, value: &ParamValue) -> (ShaderType, Vec<u32>) {
+    let (class, words) = match value {
         ParamValue::F32(value) => (ScalarClass::Float, vec![value.to_bits()]),
         ParamValue::I32(value) => (ScalarClass::Sint, vec![value.cast_unsigned()]),
         ParamValue::Vec(values) => {
@@ -44,18 +44,9 @@ pub(crate) fn words(param: &Param, value: &ParamValue) -> (ScalarClass, Vec<u32>
             (ScalarClass::Float, words.collect())
         }
         other => (ScalarClass::Uint, vec![param.as_u32(other).unwrap_or(0)]),
-    }
-}
-
-/// Returns the type of params whose values a member of this type holds.
-fn param_of((class, width): (ScalarClass, u32)) -> Option<String> {
-    Some(match (class, width) {
-        (ScalarClass::Float, 1) => "F32".to_owned(),
-        (ScalarClass::Float, _) => format!("Vec{width}"),
-        (ScalarClass::Uint, 1) => "U32".to_owned(),
-        (ScalarClass::Sint, 1) => "I32".to_owned(),
-        _ => return None,
-    })
+    };
+    let width = words.len() as u32;
+    (ShaderType { class, width }, words)
 }
 
 /// Returns the values of overridable constants: from the pass kind, or else found by name.
@@ -105,18 +96,18 @@ fn number(
     span: &Span,
     scope: &PassScope<'_>,
 ) -> Result<Option<f64>, LinkError> {
-    let (value, found, position) = match asked {
+    let (value, position) = match asked {
         Asked::Index(index) => return Ok(Some(f64::from(*index))),
-        Asked::Param(param, value, _) => (param.value(value), value.to_string(), span),
-        Asked::Value(value, span) => (value.clone(), value.to_string(), span),
+        Asked::Param(param, value, _) => (param.value(value), span),
+        Asked::Value(value, span) => (value.clone(), span),
     };
     let class = shader.override_class(name);
     let number = match (&value, asked, class) {
         (Value::Bool(value), _, None | Some(ScalarClass::Uint)) => {
             Some(f64::from(u8::from(*value)))
         }
-        (Value::Word(_), Asked::Value(..), Some(ScalarClass::Uint)) => {
-            Some(f64::from(word(name, &value, position, shader, scope)?))
+        (Value::Word(value), Asked::Value(..), Some(ScalarClass::Uint)) => {
+            Some(f64::from(word(name, value, position, shader, scope)?))
         }
         (Value::Word(_), Asked::Param(param, value, _), Some(ScalarClass::Uint)) => {
             param.as_u32(value).map(f64::from)
@@ -127,12 +118,21 @@ fn number(
     if number.is_some() {
         return Ok(number);
     }
-    let expected = class.map_or("true or false".to_owned(), |class| class.to_string());
-    Err(LinkError::SetValue {
-        name: name.to_owned(),
-        expected,
-        found,
-        span: position.clone(),
+    let expected = class.map(|class| ShaderType { class, width: 1 });
+    Err(match asked {
+        Asked::Param(param, value, _) if expected.is_some() => LinkError::MemberType {
+            param: param.clone(),
+            member: name.to_owned(),
+            needed: words(param, value).0,
+            found: expected,
+            span: span.clone(),
+        },
+        _ => LinkError::SetValue {
+            name: name.to_owned(),
+            expected,
+            found: value,
+            span: position.clone(),
+        },
     })
 }
 
@@ -140,14 +140,11 @@ fn number(
 /// the shader's constant.
 fn word(
     name: &str,
-    value: &Value,
+    word: &Word,
     span: &Span,
     shader: &Shader,
     scope: &PassScope<'_>,
 ) -> Result<u32, LinkError> {
-    let Value::Word(word) = value else {
-        return Err(wrong_value(name, "a word", value, span));
-    };
     let words = scope.words(name);
     let among = words.and_then(|words| words.iter().position(|known| *known == word.word));
     if let Some(number) = among.and_then(|number| u32::try_from(number).ok()) {
@@ -164,15 +161,6 @@ fn word(
             constant,
             span: span.clone(),
         }),
-    }
-}
-
-fn wrong_value(name: &str, expected: &str, found: &Value, span: &Span) -> LinkError {
-    LinkError::SetValue {
-        name: name.to_owned(),
-        expected: expected.to_owned(),
-        found: found.to_string(),
-        span: span.clone(),
     }
 }
 
@@ -226,7 +214,7 @@ fn member_words(
             member: member.name.clone(),
             span: global.span.clone(),
             known,
-            ty: member.vector.and_then(param_of),
+            ty: member.vector.and_then(ShaderType::param),
         }));
     };
     let (param, value, root) = match asked {
@@ -236,22 +224,24 @@ fn member_words(
         }
         Asked::Index(index) => {
             return match member.vector {
-                Some((ScalarClass::Uint, 1)) => Ok((vec![index], None)),
+                Some(ShaderType {
+                    class: ScalarClass::Uint,
+                    width: 1,
+                }) => Ok((vec![index], None)),
                 _ => Err(scope.report(LinkError::IndexMember(global.span.clone()))),
             };
         }
         Asked::Param(param, value, root) => (param, value, root),
     };
-    let (scalar, words) = words(&param, &value);
-    let expected = (scalar, words.len() as u32);
-    if member.vector == Some(expected) {
+    let (needed, words) = words(&param, &value);
+    if member.vector == Some(needed) {
         return Ok((words, root));
     }
     Err(scope.report(LinkError::MemberType {
         param,
-        member: member.name.clone(),
-        scalar: expected.0,
-        width: expected.1,
+        member: format!("params.{}", member.name),
+        needed,
+        found: member.vector,
         span: global.span.clone(),
     }))
 }
@@ -264,7 +254,7 @@ fn set_member(
     span: &Span,
     scope: &mut PassScope<'_>,
 ) -> Reported<Vec<u32>> {
-    let Some((class, width)) = member.vector else {
+    let Some(expected) = member.vector else {
         return Err(scope.report(LinkError::MemberIsNoVector {
             member: member.name.clone(),
             span: global.span.clone(),
@@ -274,7 +264,7 @@ fn set_member(
         Value::Scalar(scalar) => vec![*scalar],
         Value::List(list) => list.clone(),
         Value::Bool(value) => vec![Scalar::Whole(i64::from(*value))],
-        Value::Word(_) => {
+        Value::Word(value) => {
             let program = Program {
                 shader: scope.own_shader.clone(),
                 ..Program::default()
@@ -285,12 +275,17 @@ fn set_member(
         }
         Value::Format(_) => Vec::new(),
     };
-    let words: Option<Vec<u32>> = list.iter().map(|scalar| bits(class, *scalar)).collect();
-    match words.filter(|words| words.len() == width as usize) {
+    let words: Option<Vec<u32>> = list
+        .iter()
+        .map(|scalar| bits(expected.class, *scalar))
+        .collect();
+    match words.filter(|words| words.len() == expected.width as usize) {
         Some(words) => Ok(words),
-        None => {
-            let expected = format!("{width} × {class}");
-            Err(scope.report(wrong_value(&member.name, &expected, value, span)))
-        }
+        None => Err(scope.report(LinkError::SetValue {
+            name: member.name.clone(),
+            expected: Some(expected),
+            found: value.clone(),
+            span: span.clone(),
+        })),
     }
 }

@@ -19,7 +19,13 @@ pub(super) fn link(
     depth_only: bool,
     scope: &mut PassScope<'_>,
 ) -> Reported<LinkedProgram> {
-    let shader = scope.shader(program)?;
+    let shader = match scope.shader(program) {
+        Ok(shader) => shader,
+        Err(reported) => {
+            declared(program, scope);
+            return Err(reported);
+        }
+    };
     let named = program.shader.as_ref().unwrap_or(&scope.pass);
     let wanted = named.span.clone();
     let mut entries = Vec::new();
@@ -57,6 +63,29 @@ pub(super) fn link(
     counts(&linked.bindings, scope)?;
     let checked = device::footprints(&linked, scope);
     wrong.or(checked.err()).map_or(Ok(linked), Err)
+}
+
+/// Checks the types of the globals of a shader that is not valid: functions that use a global of
+/// the wrong type are not valid for that reason alone.
+fn declared(program: &Program, scope: &mut PassScope<'_>) {
+    let Some(shader) = scope.declarations(program) else {
+        return;
+    };
+    let globals = shader.globals(&[]);
+    let linked = LinkedProgram {
+        shader,
+        entries: Vec::new(),
+        constants: Vec::new(),
+        bindings: Vec::new(),
+    };
+    for global in &globals {
+        let mut bound = program.bind.iter();
+        let is_bound = bound.any(|(name, _)| name.value == global.name);
+        if is_bound || global.name == "params" || scope.is_known(&global.name) {
+            // The pass is wrong anyway.
+            let _ = bindings::bind(global, program, &linked, scope);
+        }
+    }
 }
 
 /// Checks that the entry binds only globals of its own shader. (A kind with several shaders

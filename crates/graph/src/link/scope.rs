@@ -228,7 +228,7 @@ impl<'a> PassScope<'a> {
         };
         let shaders = &self.symbols.graph.shaders;
         match shaders.get(&instance.document, &shader, &instance.replaced) {
-            Some(shader) => shader.clone(),
+            Some(shader) => shader,
             // A kind names another one for other values.
             None => Err(shaders.incomplete.unwrap_or_else(|| {
                 self.symbols
@@ -236,6 +236,27 @@ impl<'a> PassScope<'a> {
                     .report(LinkError::ShaderNotLoaded(name.clone()))
             })),
         }
+    }
+
+    /// Returns the declarations of a program's shader that is not valid; `None` of a valid one.
+    pub fn declarations(&self, program: &Program) -> Option<Arc<Shader>> {
+        let instance = self.symbols.scopes.document(self.position.scope);
+        let shaders = &self.symbols.graph.shaders;
+        shaders.declarations(
+            &instance.document,
+            &program.shader_use()?,
+            &instance.replaced,
+        )
+    }
+
+    /// True if a global means something here that a pass does not bind itself.
+    pub fn is_known(&mut self, global: &str) -> bool {
+        let mut said = self.inherited_bind.iter();
+        said.any(|said| said.name.value == global)
+            || self
+                .symbols
+                .find_global(global, self.position.scope)
+                .is_some()
     }
 
     /// Returns the target of a shader's global that the pass itself does not bind: bound by a group

@@ -11,6 +11,7 @@ use crate::{
     errors::link::LinkError,
     instantiate::flat::Run,
     kinds::step::{Names, Step},
+    resource::{Origin, name_within},
     source::span::Located,
 };
 
@@ -72,9 +73,14 @@ fn feedback(first: usize, scope: &mut PassScope<'_>) -> Reported<()> {
                 } else {
                     (a, b)
                 };
+                let resource = scope.get(a.resource);
+                let has_previous =
+                    !reader.writes && !resource.keep && resource.origin == Origin::Own;
+                let previous = name_within(&scope.pass, &resource.name).to_owned();
                 wrong.push(LinkError::Feedback {
                     pass: scope.pass.value.clone(),
-                    name: scope.get(a.resource).name.clone(),
+                    previous: has_previous.then_some(previous),
+                    name: resource.name.clone(),
                     reader: reader.span.clone(),
                     reads: !reader.writes,
                     writer: writer.span.clone(),

@@ -1,24 +1,33 @@
 //! Finds all mistakes of a graph, for all values that decide which entries exist.
 
 use super::{
-    make::{Outcome, plan_all},
+    make::{Outcome, Planned, plan_all},
     plan::Plan,
 };
 use crate::{
-    compose::loaded::Loaded,
+    compose::{loaded::Loaded, used::Used},
     diagnostics::{
         code::Code,
         diagnostic::{Diagnostic, Severity},
         list::Diagnostics,
         reports::Reports,
     },
-    document::{materials::InputKind, typed::Document},
+    document::{
+        materials::InputKind,
+        raw::Invalid,
+        typed::{Document, Entry, What},
+    },
+    errors::flow::OrderError,
     instantiate::{flat::PlanInputs, params::claims},
     param::{Param, ParamType, ParamValue},
     provider::Import,
     request::PlanRequest,
+    source::span::{Located, Span},
 };
-use std::{collections::BTreeMap, sync::Arc};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 /// Formats that are tried for an input that takes any format; the shader's declaration decides
 /// which fits.
@@ -58,13 +67,41 @@ pub(crate) fn check(
             errors.extend(reports.into_list());
         }
     }
+    errors.retain(|error| !follows(error, &outcome.found));
     errors.extend(outcome.found);
     match outcome.plan {
-        Some(plan) if errors.is_empty() => Ok(Plan(plan)),
+        Some(mut plan) if errors.is_empty() => {
+            let idle = unneeded(graph, &plan);
+            plan.warnings.extend(idle);
+            Ok(Plan(plan))
+        }
         // A misspelt name leaves the item that it meant unused: warnings wait until the errors are
         // gone.
         _ => Err(graph.diagnostics(errors)),
     }
+}
+
+/// True if a shader is not valid since a global in the same file has a type that does not fit what
+/// is bound to it: a fault of types in a function, which mostly tells nothing of the cause.
+fn follows(error: &Diagnostic, found: &[Diagnostic]) -> bool {
+    let is_of_types = error.code == Code::Shader
+        && !["expected ", "no definition", "invalid field"]
+            .iter()
+            .any(|begin| {
+                error
+                    .message
+                    .contains(&format!("does not compile: {begin}"))
+            });
+    let file = |it: &Diagnostic| it.labels.first().map(|label| label.span.file.name.clone());
+    let is_cause = |other: &Diagnostic| {
+        let codes = [
+            Code::FormatMismatch,
+            Code::ResourceKind,
+            Code::LayoutMismatch,
+        ];
+        codes.contains(&other.code) && file(other) == file(error)
+    };
+    is_of_types && found.iter().any(is_cause)
 }
 
 /// Plans with stand-ins for the imports that the request lacks: resources as the document asks for
@@ -162,6 +199,50 @@ fn sweep(
     found
 }
 
+/// Returns warnings about passes of the document itself that write nothing that another entry or an
+/// output of it names. Passes of included documents may well make more than is used here.
+fn unneeded(graph: &Loaded, plan: &Planned) -> Vec<Diagnostic> {
+    let document = &graph.document;
+    let live: BTreeSet<usize> = plan.schedule.passes.iter().map(|id| id.index()).collect();
+    let mut reports = Reports::default();
+    let mut told: Vec<&Span> = Vec::new();
+    for (index, pass) in plan.passes.iter().enumerate() {
+        let place = &pass.name.span;
+        if live.contains(&index) || place.file != document.file || told.contains(&place) {
+            continue;
+        }
+        let mut others = Document::clone(document);
+        remove(&mut others.entries, place);
+        let used = Used::new(&others, &graph.shaders).materials;
+        let written = pass.accesses.iter().filter(|access| access.writes);
+        let written = written.map(|access| &*plan.resources[access.resource.index()].name);
+        let written: BTreeSet<&str> = written.collect();
+        let is_used = |name: &&str| {
+            let name = name.split(['.', '[']).next().unwrap_or_default();
+            used.contains(name) || used.contains(&format!("{name}_previous"))
+        };
+        if !written.iter().any(is_used) {
+            told.push(place);
+            let name = pass.name.split('[').next().unwrap_or_default();
+            reports.warn(OrderError::Unneeded {
+                pass: Located::new(name.to_owned(), place.clone()),
+                written: written.into_iter().map(str::to_owned).collect(),
+            });
+        }
+    }
+    reports.into_list()
+}
+
+/// Removes the entry whose name stands at `place`.
+fn remove(entries: &mut Vec<Result<Entry, Invalid>>, place: &Span) {
+    entries.retain(|entry| !matches!(entry, Ok(entry) if entry.name.span == *place));
+    for entry in entries.iter_mut().flatten() {
+        if let What::Group(inner) = &mut entry.what {
+            remove(inner, place);
+        }
+    }
+}
+
 /// Returns the mistakes that a changed request causes; `condition` describes the change. Mistakes
 /// of limits, memory, features and lights are left out.
 fn wrong_with(graph: &Arc<Loaded>, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
@@ -175,7 +256,7 @@ fn wrong_with(graph: &Arc<Loaded>, request: &PlanRequest<'_>, condition: &str) -
     let errors = errors.filter(|found| {
         !matches!(
             found.code,
-            Code::Limit | Code::Size | Code::Memory | Code::Feature | Code::Light
+            Code::Limit | Code::Size | Code::Memory | Code::Feature | Code::Light | Code::Need
         )
     });
     errors

@@ -172,7 +172,7 @@ fn schedule(
     let live = live(view, &readable, &order);
     let sequence = sequence(&order_of_live(view, &live), &live);
     let mut lifetimes = lifetimes(view, &sequence);
-    unsized_buffers(&lifetimes, view, reports);
+    unmade(&lifetimes, view, reports);
     // Conditions must agree for any choice of outputs.
     let all: Vec<PassId> = view.ids().map(|(id, _)| id).collect();
     conditions(view, &all, reports);
@@ -284,8 +284,8 @@ impl Outcome {
         }
     }
 
-    /// Keeps only the missing features: on a device that cannot run the graph, other mistakes do
-    /// not matter.
+    /// Keeps only the missing features and unmet needs: where the graph cannot run, other mistakes
+    /// do not matter.
     fn lacking(reports: Reports, plan_inputs: PlanInputs) -> Self {
         let mut outcome = Self::failed(reports, plan_inputs);
         outcome.found.retain(is_lacking);
@@ -295,7 +295,7 @@ impl Outcome {
 
 fn is_lacking(found: &Diagnostic) -> bool {
     use crate::diagnostics::{code::Code, diagnostic::Severity};
-    found.code == Code::Feature && found.severity == Severity::Error
+    matches!(found.code, Code::Feature | Code::Need) && found.severity == Severity::Error
 }
 
 fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {
@@ -435,15 +435,28 @@ fn fillable(kind: &ResourceKind, lifetime: &mut Lifetime) {
     }
 }
 
-/// Reports buffers without a size: those that are only cleared or copied, so that no shader
-/// declares their items.
-fn unsized_buffers(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Reports) {
-    for resource in lifetimes.keys().map(|id| view.resource(*id)) {
-        if let ResourceKind::Buffer(Buffer { bytes: 0, .. }) = resource.kind
-            && let Some(declared) = &resource.declared
-        {
-            let name = Located::new(resource.name.clone(), declared.clone());
-            reports.report(OutputError::UnsizedBuffer(name));
+/// Reports resources that no device makes: buffers without a size, which are only cleared or
+/// copied, so that no shader declares their items; and multisampled textures that no pass draws to:
+/// a shader may ask for the size of one that it does not read.
+fn unmade(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Reports) {
+    for (id, lifetime) in lifetimes {
+        let resource = view.resource(*id);
+        let Some(declared) = resource.declared.clone() else {
+            continue;
+        };
+        let is_drawn = lifetime
+            .textures
+            .contains(wgt::TextureUsages::RENDER_ATTACHMENT);
+        let is_own = resource.origin != Origin::Host;
+        let name = Located::new(resource.name.clone(), declared);
+        match &resource.kind {
+            ResourceKind::Buffer(Buffer { bytes: 0, .. }) => {
+                reports.report(OutputError::UnsizedBuffer(name));
+            }
+            ResourceKind::Texture(texture) if texture.samples > 1 && is_own && !is_drawn => {
+                reports.report(OutputError::Undrawn(name));
+            }
+            _ => {}
         }
     }
 }

@@ -63,6 +63,23 @@ pub(super) fn blamed_range(text: &str, panics: &dyn Fn(&str) -> bool) -> Option<
     Some(body.start + before + space..body.start + end)
 }
 
+/// Returns the text with spaces in the place of its functions, so that all places stay.
+pub(super) fn without_functions(text: &str) -> String {
+    let mut rest = text.to_owned();
+    for declaration in declarations(text).iter().filter(|it| it.body.is_some()) {
+        let blank = |c: char| {
+            if c == '\n' {
+                "\n".to_owned()
+            } else {
+                " ".repeat(c.len_utf8())
+            }
+        };
+        let blank: String = text[declaration.range.clone()].chars().map(blank).collect();
+        rest.replace_range(declaration.range.clone(), &blank);
+    }
+    rest
+}
+
 /// The declarations, each behind those that it names; directives first.
 fn in_order_of_need(declarations: &[Declaration<'_>]) -> Vec<usize> {
     let all = || declarations.iter().enumerate();

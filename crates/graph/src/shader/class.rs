@@ -1,7 +1,7 @@
 //! Class of a resource global: a uniform, a storage buffer, a texture, a sampler, each with its
 //! layout.
 
-use crate::scalar_class::ScalarClass;
+use crate::scalar_class::{ScalarClass, ShaderType};
 use naga::{AddressSpace, Handle, ImageClass, TypeInner, proc::Layouter};
 
 /// Type of a resource global of a shader, with the layout that a resource must have to be bound to
@@ -60,23 +60,19 @@ pub(crate) struct Member {
     pub name: String,
     /// Offset in bytes of the member from the start of the struct.
     pub offset: u64,
-    /// Scalar class and number of components (1 for a scalar) of the member's type; `None` for
-    /// matrices, arrays and structs.
-    pub vector: Option<(ScalarClass, u32)>,
+    /// Type of the member; `None` for matrices, arrays and structs.
+    pub vector: Option<ShaderType>,
 }
 
-/// Returns scalar class and number of components of a scalar or vector type; `None` for other
-/// types.
-pub(super) fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<(ScalarClass, u32)> {
-    match module.types[ty].inner {
-        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => {
-            Some((ScalarClass::from_kind(scalar.kind)?, 1))
-        }
-        TypeInner::Vector { size, scalar } => {
-            Some((ScalarClass::from_kind(scalar.kind)?, size as u32))
-        }
-        _ => None,
-    }
+/// Returns the type of a scalar or vector; `None` for other types.
+pub(super) fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<ShaderType> {
+    let (scalar, width) = match module.types[ty].inner {
+        TypeInner::Scalar(scalar) | TypeInner::Atomic(scalar) => (scalar, 1),
+        TypeInner::Vector { size, scalar } => (scalar, size as u32),
+        _ => return None,
+    };
+    let class = ScalarClass::from_kind(scalar.kind)?;
+    Some(ShaderType { class, width })
 }
 
 pub(super) fn class_of(

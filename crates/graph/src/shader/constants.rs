@@ -63,6 +63,7 @@ impl ChoiceConstants {
             let text = format!("\nconst {name}: u32 = {}u;\n", constant.number);
             source.push(&text, &constant.param.span);
         }
+        source.constants = self.0.keys().cloned().collect();
         declared.into_iter().map(|(name, _)| name).collect()
     }
 

@@ -4,7 +4,7 @@
 //!
 //! Names stay as written, so that errors, captures and bindings use the author's names.
 
-use super::text::{BREAKS, Comments};
+use super::text::{BREAKS, Comments, declares};
 use crate::{
     diagnostics::{diagnostic::Diagnostic, suggest::likeness},
     errors::shader::ImportError,
@@ -38,6 +38,8 @@ pub(crate) struct Expanded {
     pieces: Vec<(usize, SourceFile, usize)>,
     /// All `#import` lines of the shader and its modules, in the order in which they were read.
     pub imports: Vec<ImportLine>,
+    /// Names of the constants that the document's `Choice` params have in its shaders.
+    pub constants: Vec<String>,
 }
 
 /// An `#import` line of a shader, or of a module that it imports.
@@ -137,10 +139,33 @@ impl<'a> ShaderFiles<'a> {
             file: file.clone(),
             pieces: Vec::new(),
             imports: Vec::new(),
+            constants: Vec::new(),
         };
         let mut seen = vec![file.name.to_string()];
         self.append(&file, replaced, &mut expanded, &mut seen, 0)?;
         Ok(expanded)
+    }
+
+    /// Returns the path by which the shader `importer` can import a module that declares `name`;
+    /// `None` if there is none, beside it or in the folders `shared`.
+    pub fn declaring(&mut self, name: &str, importer: &str) -> Option<String> {
+        for folder in ["shared/", ""] {
+            for beside in import_candidates(importer, folder) {
+                let beside = beside.trim_end_matches('/');
+                for file in self.sources.list(beside) {
+                    let path = format!("{beside}/{file}");
+                    let path = path.trim_start_matches('/').to_owned();
+                    if !file.ends_with(".wgsl") || path == importer {
+                        continue;
+                    }
+                    let module = self.find(&[path]).ok().flatten();
+                    if module.is_some_and(|module| declares(&module.text, name)) {
+                        return Some(format!("{folder}{file}"));
+                    }
+                }
+            }
+        }
+        None
     }
 
     /// Returns the file of a module that a document names in `imports`.

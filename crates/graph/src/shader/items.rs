@@ -26,6 +26,15 @@ pub enum ItemScalar {
 }
 
 impl ItemScalar {
+    /// Returns the name of the type in WGSL.
+    pub(crate) fn as_str(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::I32 => "i32",
+            Self::U32 => "u32",
+        }
+    }
+
     /// Returns the bits of `number` as this type; `None` if the type cannot hold it.
     pub(crate) fn bits(self, number: f64) -> Option<u32> {
         let whole = number.fract() == 0.0;

@@ -235,7 +235,7 @@ impl Shader {
     }
 
     /// Returns the resource globals that any of `entries` uses, in declaration order, with their
-    /// use by these entry points together.
+    /// use by these entry points together; without entries all globals.
     pub(crate) fn globals(&self, entries: &[usize]) -> Vec<Global> {
         let mut globals = Vec::with_capacity(self.module.global_variables.len());
         for (handle, variable) in self.module.global_variables.iter() {
@@ -250,7 +250,7 @@ impl Shader {
                     stages |= stages_of(self.module.entry_points[entry].stage);
                 }
             }
-            if usage.is_empty() {
+            if usage.is_empty() && !entries.is_empty() {
                 continue;
             }
             let class = class_of(&self.module, &self.layouter, variable);

@@ -1,14 +1,16 @@
 //! The shaders of all documents, each compiled with the modules that its document has it import.
 
 use super::{
+    blame::without_functions,
     constants::ChoiceConstants,
     expand::{Expanded, Replaced, ShaderFiles},
     reflect::Shader,
+    wgsl_errors::unknown_name,
 };
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reports},
     document::typed::Document,
-    errors::shader::ImportError,
+    errors::shader::{ImportError, ShaderError},
     kinds::step::ShaderUse,
     source::{
         paths::folder_of,
@@ -38,7 +40,15 @@ pub(crate) struct Shaders {
 type ShaderKey = (Arc<str>, String, String);
 
 /// A shader with the modules that stand in for others.
-type Variant = (Replaced, Result<Arc<Shader>, ErrorGuaranteed>);
+type Variant = (Replaced, Result<Arc<Shader>, Invalid>);
+
+/// A shader that is not valid, which was reported.
+#[derive(Clone, Debug)]
+pub(crate) struct Invalid {
+    pub reported: ErrorGuaranteed,
+    /// The shader without its functions; `None` if it is not valid even so.
+    pub declarations: Option<Arc<Shader>>,
+}
 
 impl Shaders {
     fn key(document: &Document, name: &Located<String>) -> ShaderKey {
@@ -53,7 +63,29 @@ impl Shaders {
         document: &Document,
         shader: &ShaderUse,
         around: &Replaced,
-    ) -> Option<&Result<Arc<Shader>, ErrorGuaranteed>> {
+    ) -> Option<Result<Arc<Shader>, ErrorGuaranteed>> {
+        let shader = self.variant(document, shader, around)?.clone();
+        Some(shader.map_err(|invalid| invalid.reported))
+    }
+
+    /// Returns the declarations of a shader that is not valid, without its functions; `None` if the
+    /// shader is valid, was not read, or not even its declarations are valid.
+    pub fn declarations(
+        &self,
+        document: &Document,
+        shader: &ShaderUse,
+        around: &Replaced,
+    ) -> Option<Arc<Shader>> {
+        let invalid = self.variant(document, shader, around)?.as_ref().err()?;
+        invalid.declarations.clone()
+    }
+
+    fn variant(
+        &self,
+        document: &Document,
+        shader: &ShaderUse,
+        around: &Replaced,
+    ) -> Option<&Result<Arc<Shader>, Invalid>> {
         let replaced = self.with_own(around, shader);
         let mut variants = self.shaders.get(&Self::key(document, &shader.name))?.iter();
         let found = variants.find(|(known, _)| *known == replaced);
@@ -128,7 +160,7 @@ pub(crate) struct Loader<'a> {
     files: ShaderFiles<'a>,
     shaders: Shaders,
     /// A shader that several documents use is one, unless their words make two of it.
-    parsed: HashMap<String, Result<Arc<Shader>, ErrorGuaranteed>>,
+    parsed: HashMap<String, Result<Arc<Shader>, Invalid>>,
     /// Documents with the rules around them whose shaders are read.
     seen: HashSet<(Arc<str>, Vec<Rule>)>,
     clashed: HashSet<Arc<str>>,
@@ -224,8 +256,13 @@ impl Loader<'_> {
             return;
         }
         let source = self.files.expand(&shader.name, &replaced);
-        let source = self.reports.check(source);
-        let read = source.and_then(|source| self.parse(source, constants));
+        let read = match self.reports.check(source) {
+            Ok(source) => self.parse(source, constants),
+            Err(reported) => Err(Invalid {
+                reported,
+                declarations: None,
+            }),
+        };
         let variants = self.shaders.shaders.entry(key).or_default();
         variants.push((replaced, read));
     }
@@ -234,15 +271,27 @@ impl Loader<'_> {
         &mut self,
         mut source: Expanded,
         constants: &ChoiceConstants,
-    ) -> Result<Arc<Shader>, ErrorGuaranteed> {
+    ) -> Result<Arc<Shader>, Invalid> {
         let declared = constants.append(&mut source);
         let text = format!("{}\n{}", source.file.name, source.text);
-        let reports = &mut *self.reports;
-        let read = || reports.check(Shader::new(source).map(Arc::new));
+        let (reports, files) = (&mut *self.reports, &mut self.files);
+        let read = || {
+            Shader::new(source.clone()).map(Arc::new).map_err(|error| {
+                let reported = reports.report(with_import(error, &source, files));
+                source.text = without_functions(&source.text);
+                Invalid {
+                    reported,
+                    declarations: Shader::new(source).ok().map(Arc::new),
+                }
+            })
+        };
         let shader = self.parsed.entry(text).or_insert_with(read);
         let shader = shader.clone()?;
         match constants.disagreement(&shader, &declared) {
-            Some(clash) => Err(self.reports.report(clash)),
+            Some(clash) => Err(Invalid {
+                reported: self.reports.report(clash),
+                declarations: None,
+            }),
             None => Ok(shader),
         }
     }
@@ -281,6 +330,20 @@ impl Loader<'_> {
             }
         }
     }
+}
+
+/// Names the module that declares a name which a shader does not know.
+fn with_import(error: ShaderError, source: &Expanded, files: &mut ShaderFiles<'_>) -> ShaderError {
+    let ShaderError::Naga(file, what, places, notes) = error else {
+        return error;
+    };
+    let module = unknown_name(&what).and_then(|name| files.declaring(name, &source.file.name));
+    let notes = module.map_or(notes, |path| {
+        vec![format!(
+            "`{path}` declares it: write `#import \"{path}\"` above"
+        )]
+    });
+    ShaderError::Naga(file, what, places, notes)
 }
 
 /// The functions of a module, by name: parameters and result without spaces, and the place.

@@ -130,6 +130,19 @@ pub(super) fn words<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = us
         })
 }
 
+/// Keywords before a name that is declared at module scope.
+pub(super) const DECLARES: [&str; 6] = ["fn", "const", "override", "struct", "alias", "var"];
+
+/// True if a text declares `name` at module scope, and no entry points: it is a module to import.
+pub(super) fn declares(text: &str, name: &str) -> bool {
+    let is_entry = |(word, before, _): (&str, &str, _)| {
+        before == "@" && matches!(word, "compute" | "vertex" | "fragment")
+    };
+    let mut words = identifiers(text);
+    words.any(|(word, before, outside)| outside && word == name && DECLARES.contains(&before))
+        && !identifiers(text).any(is_entry)
+}
+
 /// Iterates over the words of a text outside of comments: the word; the token before it (`var` also
 /// where a `<…>` stands between); and true if the word stands at module scope.
 pub(super) fn identifiers(text: &str) -> impl Iterator<Item = (&str, &str, bool)> {

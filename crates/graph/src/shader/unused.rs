@@ -3,7 +3,7 @@
 use super::{
     expand::{Expanded, ImportLine},
     reflect::Shader,
-    text::identifiers,
+    text::{DECLARES, identifiers},
     wgsl_errors::functions,
 };
 use crate::source::span::{Located, SourceFile};
@@ -32,10 +32,9 @@ impl<'t> Words<'t> {
     fn new(text: &'t str) -> Self {
         let mut words = Self::default();
         for (word, before, is_outside) in identifiers(text) {
-            let declares = ["fn", "const", "override", "struct", "alias", "var"];
             if before == "@" && matches!(word, "compute" | "vertex" | "fragment") {
                 words.has_entry_point = true;
-            } else if is_outside && declares.contains(&before) {
+            } else if is_outside && DECLARES.contains(&before) {
                 words.declared.insert(word);
             } else {
                 words.mentioned.insert(word);

@@ -64,10 +64,10 @@ impl Varyings {
                 _,
             ) => {
                 let vector = vector(module, ty);
-                self.locations.extend(vector.map(|(scalar, width)| Varying {
+                self.locations.extend(vector.map(|ty| Varying {
                     location,
-                    scalar,
-                    width,
+                    scalar: ty.class,
+                    width: ty.width,
                     interpolation,
                     sampling,
                 }));

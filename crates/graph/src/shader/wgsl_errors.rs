@@ -75,20 +75,33 @@ pub(super) fn parse_error(error: &naga::front::wgsl::ParseError, source: &Expand
         places.push((source.file.span(0..0), String::new()));
     }
     let notes = error.notes().map(str::to_owned);
-    let notes = notes.chain(meant(error.message(), &source.text)).collect();
+    let notes = notes.chain(meant(error.message(), source)).collect();
     let what = format!("does not compile: {}", error.message());
     ShaderError::Naga(blamed(&places, source), what, places, notes)
 }
 
 /// Suggests a field or name in place of an unknown one.
-fn meant(message: &str, text: &str) -> Option<String> {
-    let word = message.split('`').nth(1)?;
-    let declared = Declared::new(text);
-    match message.split('`').next()? {
-        "invalid field accessor " => suggestion(word, declared.fields),
-        "no definition in scope for identifier: " => likeness(word, declared.names),
+fn meant(message: &str, source: &Expanded) -> Option<String> {
+    let declared = Declared::new(&source.text);
+    if let Some(word) = unknown_name(message) {
+        let constants = source.constants.iter().map(String::as_str);
+        return likeness(word, declared.names.into_iter().chain(constants));
+    }
+    match message.split('`').collect::<Vec<_>>()[..] {
+        ["invalid field accessor ", word, ..] => suggestion(word, declared.fields),
         _ => None,
     }
+}
+
+/// Returns the name that a message of naga's calls unknown.
+pub(super) fn unknown_name(message: &str) -> Option<&str> {
+    let (_, rest) = [
+        "no definition in scope for identifier: `",
+        "unknown type: `",
+    ]
+    .iter()
+    .find_map(|begin| message.split_once(begin))?;
+    rest.split('`').next()
 }
 
 /// naga's words without its numbers of types and expressions: `type [2]` becomes the type's name,
@@ -131,7 +144,41 @@ fn in_full(error: &dyn std::error::Error, module: &naga::Module) -> String {
         cause = inner.source();
     }
     // Only structs have names.
-    without_handles(&what, module).replace("Type '' is", "a type is")
+    plain_types(without_handles(&what, module)).replace("Type '' is", "a type is")
+}
+
+/// Writes types as WGSL does that naga prints as its own structs.
+fn plain_types(mut what: String) -> String {
+    const SIZES: [(&str, u32); 3] = [("Bi", 2), ("Tri", 3), ("Quad", 4)];
+    let kinds = [("Float", "f"), ("Sint", "i"), ("Uint", "u")];
+    let sized =
+        [16, 32, 64].map(|bits| kinds.map(|(kind, of)| (kind, bits, format!("{of}{bits}"))));
+    let others = [
+        ("Bool", 8, "bool".to_owned()),
+        ("AbstractInt", 64, "a whole number".to_owned()),
+        ("AbstractFloat", 64, "a number".to_owned()),
+    ];
+    for (kind, bits, name) in sized.into_iter().flatten().chain(others) {
+        let scalar = format!("Scalar {{ kind: {kind}, width: {} }}", bits / 8);
+        for (size, rows) in SIZES {
+            let vector = format!("Vector {{ size: {size}, scalar: {scalar} }}");
+            what = what.replace(&vector, &format!("vec{rows}<{name}>"));
+            for (columns, count) in SIZES {
+                let matrix =
+                    format!("Matrix {{ columns: {columns}, rows: {size}, scalar: {scalar} }}");
+                what = what.replace(&matrix, &format!("mat{count}x{rows}<{name}>"));
+            }
+        }
+        what = what
+            .replace(&format!("Scalar({scalar})"), &name)
+            .replace(&scalar, &name);
+    }
+    // naga tells numbers of expressions, which are left out, and their types.
+    while let Some((before, rest)) = what.split_once("(of type ") {
+        let (ty, after) = rest.split_once(')').unwrap_or((rest, ""));
+        what = format!("{before}`{ty}`{after}");
+    }
+    what
 }
 
 /// Rewords an error that naga tells by its own numbers and flags.

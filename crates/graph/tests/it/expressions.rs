@@ -187,7 +187,7 @@ const MISTAKES: &[(&str, Code, &str, &str)] = {
             "larger than",
             "(9223372036854775807 + 1)",
         ),
-        ("1 - 2", Expression, "-1 is less than nothing", "1 - 2"),
+        ("1 - 2", Expression, "`1 - 2` is -1, below 0", "1 - 2"),
         (
             "1 + scale",
             Expression,

@@ -268,7 +268,10 @@ fn sizes_without_end() {
         (texture(r#""viewport.size / 0""#), "this divides by zero"),
         (texture(r#""viewport.size % 0""#), "this divides by zero"),
         (texture(r#""viewport.size * 0""#), "a texture of no texels"),
-        (texture(r#""-viewport.size""#), "-64 is less than nothing"),
+        (
+            texture(r#""-viewport.size""#),
+            "`-viewport.size` is -64, below 0",
+        ),
         (texture("NaN"), "`NaN` has no value"),
         (texture("inf"), "a size is needed here"),
         (texture("-inf"), "a whole number is needed"),

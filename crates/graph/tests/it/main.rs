@@ -33,4 +33,5 @@ mod reached;
 mod robustness;
 mod sources;
 mod uniforms;
+mod ways_out;
 mod wgsl;

@@ -2,7 +2,7 @@
 //! deep nesting, requests for unknown things.
 
 use crate::broken::{folder, request};
-use crate::support::{Files, Triangle, load, names, plan, right, wrong};
+use crate::support::{Files, Triangle, checked, load, names, plan, right, wrong};
 use skiagraph_graph::{
     Capture, Diagnostics, FolderSources, Graph, Import, ParamValue, PlanRequest, Registry,
 };
@@ -296,4 +296,46 @@ fn comments_and_a_byte_order_mark_are_no_mistakes() {
         &files,
         &request(),
     ));
+}
+
+/// Editors begin any text with a byte order mark: documents that are included or extended, shaders,
+/// and modules, those that stand in for others as well.
+#[test]
+fn byte_order_marks_are_passed_over_in_every_file() {
+    let files = Files::graph(
+        r#"extends: "base.ron",
+        imports: [(of: "two.wgsl", is: "three.wgsl")],
+        passes: [Include(graph: "inner.ron", after: "fill")], outputs: ["image", "inner"]"#,
+    )
+    .document(
+        "base.ron",
+        r#"materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "fill", color: ["image"])], outputs: ["image"]"#,
+    )
+    .document(
+        "inner.ron",
+        r#"materials: [Texture(name: "inner", format: R32Float)],
+        passes: [Fullscreen(name: "fill", color: ["inner"])], outputs: ["inner"]"#,
+    )
+    .with(
+        "fill.wgsl",
+        "#import \"one.wgsl\"\n#import \"two.wgsl\"
+         @fragment fn fragment() -> @location(0) f32 { return one() + two(); }",
+    )
+    .with("one.wgsl", "fn one() -> f32 { return 1.0; }")
+    .with("two.wgsl", "fn two() -> f32 { return 2.0; }")
+    .with("three.wgsl", "fn two() -> f32 { return 3.0; }");
+    let right_with = |files: &Files| {
+        let found = checked(files);
+        assert!(found.is_empty(), "{found:?}");
+    };
+    right_with(&files);
+    for path in files.texts.keys() {
+        let marked = format!("\u{feff}{}", files.texts[path]);
+        right_with(&files.clone().with(path, marked));
+    }
+    // A place is counted as an editor counts it, which does not show the mark.
+    let wrong = "\u{feff}fn one() -> f32 { return one; }";
+    let found = checked(&files.with("one.wgsl", wrong));
+    assert_eq!(found[0].labels[0].span.to_string(), "one.wgsl:1:4");
 }

@@ -13,6 +13,8 @@ const BY_HAND: &[(&str, &str)] = &[
     ("ComposeError::SameName", "duplicate_pass"),
     ("EvaluationError::Words", "param_cull"),
     ("EvaluationError::Unknown", "unknown_param"),
+    ("EvaluationError::Negative", "negative_size"),
+    ("InterfaceError::Need", "needs_unmet"),
     ("InterfaceError::UnwrittenOutput", "include_unwritten"),
     ("OutputError::UnwrittenOutput", "output_unwritten"),
     ("ShaderError::Naga", "unparsable"),

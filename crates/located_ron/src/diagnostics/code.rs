@@ -170,8 +170,11 @@ codes! {
     Light = "light",
         "Run it under a light of a kind that it takes; if its passes know others, say so in \
          `lights`.";
-    /// A material or param that nothing uses, or a `bind` or `set` that neither the shader nor the
-    /// included document asks for.
+    /// A condition in `needs` that the viewport, the scene or its lights do not meet.
+    Need = "need",
+        "Plan for a viewport, a scene and lights that meet it: `--size`, `--scene`, `--light`.";
+    /// A material, param or pass that nothing uses, a `bind` or `set` that neither the shader nor
+    /// the included document asks for, or an output of a shader without a target.
     Unused = "unused",
         "Check the spelling, or take it out.";
     /// A document without outputs, or an output asked for that is not declared.

@@ -13,13 +13,14 @@ fn frame(view: &View) -> [DVec3; 3] {
     [camera.right, camera.up, camera.forward]
 }
 
-/// Turns a direction about `up` by `yaw` and towards `up` by `pitch`, radians.
-fn turned(direction: DVec3, up: DVec3, yaw: f64, pitch: f64) -> DVec3 {
-    let up = up.normalize_or(DVec3::Y);
+/// Turns a direction about the view's up by `yaw` and towards it by `pitch`, radians.
+fn turned(direction: DVec3, view: &View, yaw: f64, pitch: f64) -> DVec3 {
+    let up = view.up.normalize_or(DVec3::Y);
     let direction = DQuat::from_axis_angle(up, yaw) * direction.normalize_or(DVec3::NEG_Z);
-    let right = direction
-        .cross(up)
-        .normalize_or(up.any_orthonormal_vector());
+    let [right, ..] = frame(&View {
+        direction,
+        ..view.clone()
+    });
     let height = direction.dot(up).clamp(-1.0, 1.0).asin();
     let steepest = STEEPEST_DEGREES.to_radians();
     // A view that is steeper from the start may stay so, and not become more so.
@@ -31,7 +32,7 @@ fn turned(direction: DVec3, up: DVec3, yaw: f64, pitch: f64) -> DVec3 {
 /// Turns the camera in place: to the left by `yaw` about the view's up direction, and up by
 /// `pitch`. Angles are radians.
 pub fn look(view: &mut View, yaw: f64, pitch: f64) {
-    view.direction = turned(view.direction, view.up, yaw, pitch);
+    view.direction = turned(view.direction, view, yaw, pitch);
 }
 
 /// Moves the camera around the point that lies `distance` (scene units) in front of the eye, and
@@ -54,7 +55,7 @@ pub fn fly(view: &mut View, by: DVec3) {
 /// Turns the direction of a directional or spot light, or moves a point light around `centre`: by
 /// `yaw` about the view's up direction, and towards it by `pitch`. Angles are radians.
 pub fn turn_light(light: &mut LightKind, view: &View, yaw: f64, pitch: f64, centre: DVec3) {
-    let turn = |direction| turned(direction, view.up, yaw, pitch);
+    let turn = |direction| turned(direction, view, yaw, pitch);
     match light {
         LightKind::Directional(light) => light.direction = turn(light.direction),
         LightKind::Spot(light) => light.direction = turn(light.direction),
@@ -109,6 +110,19 @@ mod tests {
         view.direction = DVec3::new(1e-4, 1.0, 0.0);
         look(&mut view, 0.0, 1.0);
         view.check().unwrap();
+    }
+
+    #[test]
+    fn a_view_straight_down_is_turned_up_again() {
+        let mut view = view();
+        view.direction = DVec3::NEG_Y;
+        look(&mut view, 0.0, 0.4);
+        // Towards what was the top of the picture.
+        let expected = DVec3::new(0.0, -0.4f64.cos(), -0.4f64.sin());
+        assert!(view.direction.distance(expected) < 1e-9, "{view:?}");
+        let mut sun = LightKind::from(DirectionalLight::new(DVec3::NEG_Y));
+        turn_light(&mut sun, &view, 0.5, 0.1, DVec3::ZERO);
+        sun.check().unwrap();
     }
 
     #[test]

@@ -50,8 +50,8 @@ pub fn orbit(view: &mut View, yaw: f64, pitch: f64, distance: f64) {
 }
 
 /// Returns the length that an eye moves in one unit of time, in scene units: the smallest side of
-/// the scene's box between its low and high corner, but at least a twentieth of the largest, and the
-/// distance of the eye to the box. That is slow in the streets of a town and fast towards it.
+/// the scene's box between its low and high corner, but at least a twentieth of the largest, and
+/// the distance of the eye to the box. That is slow in the streets of a town and fast towards it.
 pub fn pace(eye: DVec3, (min, max): (DVec3, DVec3)) -> f64 {
     let size = max - min;
     let side = size.min_element().max(0.05 * size.max_element());

@@ -331,7 +331,7 @@ impl Viewer {
         }
     }
 
-    /// Returns the low and high corner of the scene's bounding box; the unit cube's without a scene.
+    /// Returns the low and high corner of the scene's box; the unit cube's without a scene.
     fn bounds(&self) -> (DVec3, DVec3) {
         let scene = self.loaded.as_ref().map(|loaded| &loaded.scene);
         let bounds = scene.and_then(|scene| scene.mesh.bounds());

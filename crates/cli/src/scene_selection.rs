@@ -23,6 +23,9 @@ pub struct SceneSelection {
     pub scene: Scene,
     /// The selected views.
     pub views: Vec<View>,
+    /// Further views that were chosen for a mesh file without cameras, where no view is named: it
+    /// is not sure that the first is the one that is meant.
+    pub further: Vec<View>,
     /// Camera paths from the animations of a mesh file; empty for other scenes, whose files list
     /// them.
     pub paths: Vec<CameraPath>,
@@ -81,6 +84,12 @@ impl SceneSelection {
             ));
         }
         let views = own.views(args.view.as_deref(), &options.camera, options.sun)?;
+        let mut further = Vec::new();
+        if own.chosen.view && args.view.is_none() {
+            further = own
+                .views(Some("all"), &options.camera, options.sun)?
+                .split_off(1);
+        }
         let standing = views.first();
         let (paths, failed) = standing.map_or_else(Default::default, |view| own.paths(view));
         for text in failed {
@@ -102,13 +111,15 @@ impl SceneSelection {
             };
             write(path, file, &views)?;
         }
-        let views = under_lights(&own.scene, views, args.light_name())?;
+        let under_lights = |views| under_lights(&own.scene, views, args.light_name());
+        let (views, further) = (under_lights(views)?, under_lights(further)?);
         if let Some(text) = from_below(&views, options.sun) {
             note(&text);
         }
         Ok(Self {
             scene: own.scene,
             views,
+            further,
             paths,
         })
     }

@@ -15,7 +15,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::default_view::default_view;
+use crate::default_view::{Place, ViewRequest, default_views};
 use crate::error::CompareError;
 use crate::own_camera::OwnCamera;
 use crate::wording::unknown;
@@ -24,11 +24,11 @@ use itertools::Itertools;
 use skiagraph_scene::gltf::Clip;
 use skiagraph_scene::{
     CameraPath, DirectionalLight, Ground, ImportReport, Light, Mesh, MeshFile, MeshFileOptions,
-    PointLight, Scene, SceneError, SceneFile, View, add_ground, has_ground,
+    Scene, SceneError, SceneFile, View, add_ground, has_ground,
 };
 use std::path::Path;
 
-/// The direction in which light travels over a mesh by default: a high sun, from the side.
+/// The direction in which light travels where no view is chosen: a high sun, from the side.
 const FALLBACK_LIGHT: DVec3 = DVec3::new(-0.4, -1.0, -0.55);
 
 /// Vertical field of view of a view that is chosen, degrees.
@@ -39,16 +39,17 @@ const DEFAULT_FOV: f64 = 60.0;
 pub struct MeshSceneOptions {
     /// Settings for reading the file: its polygons and materials.
     pub file: MeshFileOptions,
-    /// Camera of the view that is chosen for a file without cameras. Without an `eye`, the view is
-    /// [chosen](default_view) for `up` (y unless given) and `fov_y_degrees` (60 unless given). With
-    /// an `eye`, the view looks from there at the middle of the mesh. [`OwnScene::views`] applies
-    /// all parts of the camera: give the same one there. `up` is also up for the floor and the
-    /// ground.
+    /// Camera of the views that are chosen for a file without cameras. Without an `eye`, they are
+    /// [chosen](default_views) for `up` (y unless given), `fov_y_degrees` (60 unless given) and
+    /// `direction`. With an `eye`, the view looks from there at the middle of the mesh.
+    /// [`OwnScene::views`] applies all parts of the camera: give the same one there. `up` is also
+    /// up for the floor and the ground.
     pub camera: OwnCamera,
     /// Direction in which the light of a sun travels, world space, of any length above 0, for a
     /// file without lights; `None` chooses a sun or a lamp.
     pub sun: Option<DVec3>,
-    /// True to add a ground, a square slab, below a mesh that has no floor.
+    /// True to add a ground, a square slab, below a mesh that has no floor, and to choose views
+    /// from outside alone.
     pub ground: bool,
 }
 
@@ -59,15 +60,15 @@ impl MeshSceneOptions {
 }
 
 /// Parts of a scene that its mesh file lacked, and facts about the mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Chosen {
-    /// True if the file has no camera, so that the scene's only view was
-    /// [chosen](crate::default_view::default_view).
+    /// True if the file has no camera, so that the scene's views were [chosen](default_views).
     pub view: bool,
-    /// True if the chosen view is from inside the mesh, with surfaces all around the eye.
-    pub is_inside: bool,
+    /// Kinds of places that the chosen views look from, one for each view of the scene; empty if
+    /// the file has cameras, or the options an eye.
+    pub places: Vec<Place>,
     /// True if the file has no light: the scene's only light was chosen, or is
-    /// [`MeshSceneOptions::sun`].
+    /// [`MeshSceneOptions::sun`]. A chosen view may have a light of its own.
     pub light: bool,
     /// Size of the mesh's box along x, y and z in scene units, without an added ground; `None` for
     /// a mesh without triangles.
@@ -136,18 +137,35 @@ impl OwnScene {
             })?;
             lights.push(sun);
         }
-        if chosen.view {
-            let takes_lamp = chosen.light && options.sun.is_none();
-            let (view, lamp);
-            (view, chosen.is_inside, lamp) = choose_view(&mesh, lights.first(), options);
-            views.push(view);
-            if let Some(position) = lamp.filter(|_| takes_lamp) {
-                let radius = 0.0;
-                lights = vec![Light::only(PointLight { position, radius })];
-            }
-        }
+        let subject = mesh.triangles.len();
         if options.ground && !chosen.has_floor {
             chosen.ground = add_ground(&mut mesh, options.up());
+        }
+        if chosen.view {
+            let camera = &options.camera;
+            let is_given = !chosen.light || options.sun.is_some();
+            let light = lights.first().filter(|_| is_given);
+            let request = ViewRequest {
+                up: options.up(),
+                fov_y_degrees: camera.fov_y_degrees.unwrap_or(DEFAULT_FOV),
+                direction: camera.direction,
+                light: light.map(|light| light.kind),
+                outside: options.ground,
+                subject: Some(subject),
+            };
+            let found = match camera.eye {
+                None => default_views(&mesh, &request),
+                Some(_) => None,
+            };
+            if let Some(found) = found {
+                if chosen.light {
+                    lights = vec![Light::only(found.light)];
+                }
+                chosen.places = found.views.iter().map(|view| view.place).collect();
+                views = found.views.into_iter().map(|view| view.view).collect();
+            } else {
+                views.push(towards(&mesh, camera.eye.unwrap_or_default()));
+            }
         }
         let scene = Scene {
             name,
@@ -254,28 +272,6 @@ impl OwnScene {
             views: self.scene.views.clone(),
             paths,
         }
-    }
-}
-
-/// Chooses a view of a mesh: the view, whether it is from inside, and the place of a lamp if no
-/// light comes in there. An eye of the options looks at the middle of the mesh.
-fn choose_view(
-    mesh: &Mesh,
-    light: Option<&Light>,
-    options: &MeshSceneOptions,
-) -> (View, bool, Option<DVec3>) {
-    let camera = &options.camera;
-    let fov = camera.fov_y_degrees.unwrap_or(DEFAULT_FOV);
-    let found = match (camera.eye, light) {
-        (None, Some(light)) => default_view(mesh, &light.kind, options.up(), fov),
-        _ => None,
-    };
-    match found {
-        Some(found) => {
-            let lamp = found.is_dark.then_some(found.lamp);
-            (found.view, found.is_inside, lamp)
-        }
-        None => (towards(mesh, camera.eye.unwrap_or_default()), false, None),
     }
 }
 

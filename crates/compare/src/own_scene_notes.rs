@@ -14,6 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::default_view::Place;
 use crate::own_scene::{Chosen, MeshSceneOptions, OwnScene};
 use crate::wording::length;
 use glam::DVec3;
@@ -61,34 +62,69 @@ fn extent(size: DVec3, up: Option<DVec3>) -> String {
 
 /// Which options would choose what was chosen.
 fn choices(options: &MeshSceneOptions, scene: &Scene, chosen: &Chosen) -> Option<String> {
-    let mut said = Vec::new();
-    if let Some(view) = scene.views.first().filter(|_| chosen.view) {
-        let eye = || format!("--eye {}", three(view.eye));
-        let look = || format!("--look {}", three(view.direction.normalize()));
-        said.extend(options.camera.eye.is_none().then(eye));
-        said.extend(options.camera.direction.is_none().then(look));
+    let mut views = Vec::new();
+    if chosen.view {
+        let places = chosen.places.iter().map(Some).chain([None]);
+        views.extend(scene.views.iter().zip(places).map(|(view, place)| {
+            let eye = || format!("--eye {}", three(view.eye));
+            let look = || format!("--look {}", three(view.direction.normalize()));
+            let own = view
+                .light
+                .as_ref()
+                .and_then(|light| light.kind.directional());
+            let parts = [
+                options.camera.eye.is_none().then(eye),
+                options.camera.direction.is_none().then(look),
+                own.map(|sun| format!("--light {}", three(sun.direction))),
+            ];
+            let parts = parts.into_iter().flatten().join(" ");
+            match (place, parts.is_empty()) {
+                (_, true) => parts,
+                (None, _) => parts,
+                (Some(place), _) => format!("`{}`, {}: {parts}", view.name, why(*place)),
+            }
+        }));
+        views.retain(|view| !view.is_empty());
     }
     let light = scene.lights.first().filter(|_| chosen.light);
-    if let (Some(light), None) = (light, options.sun) {
+    let light = light.filter(|_| options.sun.is_none()).and_then(|light| {
         let sun = light.kind.directional();
         let sun = sun.map(|sun| format!("--light {}", three(sun.direction)));
-        let lamp = light.kind.position();
-        let lamp = lamp.map(|lamp| format!("and a lamp at {}, for no sun comes in", three(lamp)));
-        said.extend(sun.or(lamp));
-    }
+        let lamp = |lamp| format!("and a lamp at {}, for no sun comes in", three(lamp));
+        sun.or_else(|| light.kind.position().map(lamp))
+    });
     let lacks = match (chosen.view, chosen.light) {
-        _ if said.is_empty() => return None,
+        _ if views.is_empty() && light.is_none() => return None,
         (true, true) => "no camera and no light",
         (true, false) => "no camera",
         (false, _) => "no light",
     };
-    let inside = if chosen.is_inside {
-        ", from inside, for the mesh surrounds the camera"
-    } else {
-        ""
+    if let (Some(light), first) = (light, views.first_mut()) {
+        match first {
+            Some(first) => *first += &format!(" {light}"),
+            None => views.push(light),
+        }
+    }
+    let several = match views.len() {
+        0 | 1 => "",
+        _ => "; `compare` takes all of them, --view one",
     };
-    let said = said.join(" ");
-    Some(format!("it holds {lacks}; chosen{inside}: {said}"))
+    Some(format!(
+        "it holds {lacks}; chosen {}{several}",
+        views.join("; ")
+    ))
+}
+
+/// Why a view looks from its place.
+fn why(place: Place) -> String {
+    match place {
+        Place::Outside => "from outside".into(),
+        Place::Inside => "from inside, for there is a place to stand".into(),
+        Place::Street(height) => format!(
+            "in a street, {} units above the floor, for the mesh looks like a town",
+            length(height)
+        ),
+    }
 }
 
 /// A ground that was added, or that is missing.
@@ -101,15 +137,19 @@ fn floor(options: &MeshSceneOptions, chosen: &Chosen) -> Option<String> {
             ground.height as f32
         )),
         None if options.ground && chosen.has_floor => Some(
-            "--ground adds none, for the mesh has a floor: half of its outline from above, in the \
-             lowest twentieth"
+            "--ground adds none, for the mesh has a floor: half of its outline from above, near \
+             its lowest point"
                 .into(),
         ),
-        None if !options.ground && chosen.view && !chosen.is_inside && !chosen.has_floor => {
+        None if !options.ground && chosen.view && !chosen.has_floor && is_outside(chosen) => {
             Some("it has no floor for its shadow to fall on; --ground adds one".into())
         }
         None => None,
     }
+}
+
+fn is_outside(chosen: &Chosen) -> bool {
+    chosen.places.iter().all(|place| *place != Place::Inside)
 }
 
 /// Returns a warning if `sun`, the direction in which the light of the user's own sun travels,

@@ -22,8 +22,8 @@ pub struct View {
     /// Direction in which the camera looks, world space, of any length above 0.
     #[serde(with = "Vector")]
     pub direction: DVec3,
-    /// Direction up in the picture, world space, of any length above 0, not parallel to
-    /// `direction`.
+    /// Direction up in the picture, world space, of any length above 0. A view straight along it,
+    /// up or down, has a direction across it as its up: -z for y, y for z.
     #[serde(default = "y_axis", with = "Vector")]
     pub up: DVec3,
     /// Vertical field of view in degrees: more than 0, less than 180.
@@ -44,6 +44,10 @@ pub struct View {
 pub(crate) fn y_axis() -> DVec3 {
     DVec3::Y
 }
+
+/// Sine of the angle between direction and up below which their cross product would be mostly
+/// rounding error, so that another up is taken.
+const LEAST_SINE: f64 = 1e-9;
 
 /// Smallest allowed ratio of a view's near plane distance to its far plane distance.
 pub const LEAST_DEPTH: f64 = 1e-30;
@@ -81,7 +85,13 @@ impl View {
     /// view must pass [`check`](Self::check).
     pub fn camera(&self, viewport: [u32; 2]) -> Camera {
         let forward = self.direction.normalize();
-        let right = forward.cross(self.up).normalize();
+        let up = self.up.normalize();
+        let across = forward.cross(up);
+        let right = if across.length() < LEAST_SINE {
+            forward.cross(up.any_orthonormal_vector()).normalize()
+        } else {
+            across.normalize()
+        };
         let up = right.cross(forward);
         let half_height = (self.fov_y_degrees.to_radians() * 0.5).tan();
         let half_width = half_height * f64::from(viewport[0]) / f64::from(viewport[1]);
@@ -113,18 +123,10 @@ impl View {
         if !self.eye.is_finite() {
             return Err(format!("the eye {} is not finite", self.eye));
         }
-        let (Some(direction), Some(up)) = (self.direction.try_normalize(), self.up.try_normalize())
-        else {
+        if self.direction.try_normalize().is_none() || self.up.try_normalize().is_none() {
             return Err(format!(
                 "direction {} and up {} must be finite and longer than 0",
                 self.direction, self.up
-            ));
-        };
-        // Below this sine the right vector would be mostly rounding error.
-        if direction.cross(up).length() < 1e-9 {
-            return Err(format!(
-                "up {} is parallel to the direction {}",
-                self.up, self.direction
             ));
         }
         if !(self.fov_y_degrees > 0.0 && self.fov_y_degrees < 180.0) {
@@ -245,7 +247,11 @@ mod tests {
     use super::*;
 
     fn camera() -> Camera {
-        let view = View {
+        camera_view().camera([40, 20])
+    }
+
+    fn camera_view() -> View {
+        View {
             name: "main".into(),
             eye: DVec3::new(-83.7, 222.0, -2.9),
             direction: DVec3::new(0.81, -0.27, 0.52) * 3.0,
@@ -254,8 +260,7 @@ mod tests {
             near: 1.0,
             far: 2800.0,
             light: None,
-        };
-        view.camera([40, 20])
+        }
     }
 
     #[test]
@@ -336,6 +341,38 @@ mod tests {
             refused.contains("bring them nearer to each other"),
             "{refused}"
         );
+    }
+
+    #[test]
+    fn a_view_straight_along_its_up_has_another_up_across() {
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::new(0.3, -0.7, 0.6)];
+        let ways = axes.iter().flat_map(|&axis| [axis, -axis]);
+        let nearly = [0.0, 1e-300, 1e-13, 1e-10, 1e-8, 1e-3];
+        for (up, tilt) in ways.flat_map(|way| nearly.map(|tilt| (way, tilt))) {
+            let aside = up.normalize().any_orthonormal_vector() * tilt;
+            for direction in [5.0 * (up + aside), -(up + aside)] {
+                let view = View {
+                    direction,
+                    up,
+                    ..camera_view()
+                };
+                assert_eq!(view.check(), Ok(()), "{direction} {up}");
+                let Camera {
+                    right, up, forward, ..
+                } = view.camera([4, 3]);
+                let axes = glam::DMat3::from_cols(right, up, -forward);
+                assert!((axes.determinant() - 1.0).abs() < 1e-6, "{axes} {tilt}");
+                assert!((forward - direction.normalize()).length() < 1e-15);
+                assert!(right.dot(view.up).abs() < 1e-6, "{right}");
+            }
+        }
+        let down = View {
+            direction: DVec3::NEG_Y,
+            up: DVec3::Y,
+            ..camera_view()
+        };
+        assert_eq!(down.camera([1, 1]).up, DVec3::NEG_Z);
+        assert_eq!(down.camera([1, 1]).right, DVec3::X);
     }
 
     #[test]

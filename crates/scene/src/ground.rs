@@ -15,11 +15,15 @@ const GAP: f64 = 1e-4;
 /// Thickness of the slab, in diagonals. A slab is closed, a plane would be an open part.
 const THICKNESS: f64 = 0.01;
 
-/// Share of the mesh's height, from below, in which a floor of its own lies.
-const LOWEST: f64 = 0.05;
+/// Shares of the mesh's height, and of its lesser width where that is three heights and more, from
+/// below, in the greater of which a floor of its own lies: a town's may be hilly, or a thick slab.
+const LOWEST: [f64; 2] = [0.05, 0.1];
+const WIDE: f64 = 3.0;
 
-/// Share of the mesh's outline from above that such a floor covers.
+/// Share of the mesh's outline from above that such a floor covers, and of both its widths that it
+/// spans: the bottom within the walls of a box is none, nor is the foot of a lamp.
 const COVERED: f64 = 0.5;
+const SPANNED: f64 = 0.98;
 
 /// Height and size of a ground that [`add_ground`] added below a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,21 +63,36 @@ impl Extent {
 }
 
 /// Returns true if a mesh has a floor of its own: triangles that face `up`, lie in the lowest
-/// twentieth of the mesh's height, and cover at least half of the area of its box as seen from
-/// above. Returns false for an empty mesh or an `up` without a direction.
+/// twentieth of the mesh's height (in the lowest tenth of its lesser width, if it is three times as
+/// wide as high), cover at least half of the area of its box as seen from above, and reach its
+/// sides. Returns false for an empty mesh or an `up` without a direction.
 pub fn has_ground(mesh: &Mesh, up: DVec3) -> bool {
     let Some(Extent { axes, min, max }) = Extent::new(mesh, up) else {
         return false;
     };
     let size = max - min;
-    let below = min.y + LOWEST * size.y;
-    let covered = (0..mesh.triangles.len() as u32).map(|primitive| {
+    let width = size.x.min(size.z);
+    let is_wide = width >= WIDE * size.y;
+    let thick = LOWEST[0] * size.y;
+    let below = min.y
+        + if is_wide {
+            thick.max(LOWEST[1] * width)
+        } else {
+            thick
+        };
+    let (mut covered, mut low, mut high) = (0.0, max, min);
+    for primitive in 0..mesh.triangles.len() as u32 {
         let [a, b, c] = mesh.corners(primitive);
-        let is_low = [a, b, c].iter().all(|corner| corner.dot(axes[1]) <= below);
         let area = 0.5 * (b - a).cross(c - a).dot(axes[1]);
-        if is_low { area.max(0.0) } else { 0.0 }
-    });
-    covered.sum::<f64>() >= COVERED * size.x * size.z
+        let places = [a, b, c].map(|corner| DVec3::from(axes.map(|axis| axis.dot(corner))));
+        if area > 0.0 && places.iter().all(|place| place.y <= below) {
+            covered += area;
+            low = places.into_iter().fold(low, DVec3::min);
+            high = places.into_iter().fold(high, DVec3::max);
+        }
+    }
+    let spans = |axis: fn(DVec3) -> f64| axis(high - low) >= SPANNED * axis(size);
+    covered >= COVERED * size.x * size.z && spans(|it| it.x) && spans(|it| it.z)
 }
 
 /// Adds a square slab below the middle of a mesh, as a group of its own ([`GROUND`]). The upper

@@ -383,9 +383,18 @@ mod tests {
             |walk| walk.keys[1].direction = -DVec3::X,
             ": direction [0, 0, 0] and up [0, 1, 0] must be finite and longer than 0 (frame 5)",
         );
-        says(
-            |walk| walk.keys[1].direction = DVec3::Y,
-            ": up [0, 1, 0] is parallel to the direction [0, 1, 0] (frame 10)",
-        );
+    }
+
+    #[test]
+    fn a_path_may_look_straight_down_and_up() {
+        let keys = [DVec3::NEG_Y, DVec3::Z, DVec3::Y, DVec3::Y];
+        let keys = [0.0, 1.0, 2.0, 3.0].iter().zip(keys);
+        let keys: Vec<_> = keys.map(|(&at, way)| (at, DVec3::ZERO, way)).collect();
+        let walk = path(&keys);
+        walk.check().unwrap();
+        for view in walk.views() {
+            let camera = view.camera([2, 1]);
+            assert!(camera.right.dot(DVec3::Y).abs() < 1e-6, "{camera:?}");
+        }
     }
 }

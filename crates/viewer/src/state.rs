@@ -331,25 +331,26 @@ impl Viewer {
         }
     }
 
-    /// Returns the centre of the scene's bounding box and half its diagonal, the scene's radius, in
-    /// scene units; the origin and 1 without a scene.
-    pub fn extent(&self) -> (DVec3, f64) {
-        let bounds = self
-            .loaded
-            .as_ref()
-            .and_then(|loaded| loaded.scene.mesh.bounds());
-        bounds.map_or((DVec3::ZERO, 1.0), |(min, max)| {
-            let (min, max) = (min.as_dvec3(), max.as_dvec3());
-            (
-                (min + max) * 0.5,
-                ((max - min).length() * 0.5).max(f64::MIN_POSITIVE),
-            )
+    /// Returns the low and high corner of the scene's box; the unit cube's without a scene.
+    fn bounds(&self) -> (DVec3, DVec3) {
+        let scene = self.loaded.as_ref().map(|loaded| &loaded.scene);
+        let bounds = scene.and_then(|scene| scene.mesh.bounds());
+        bounds.map_or((DVec3::ZERO, DVec3::ONE), |(min, max)| {
+            (min.as_dvec3(), max.as_dvec3())
         })
     }
 
+    /// Returns the centre of the scene's bounding box and half its diagonal, the scene's radius, in
+    /// scene units.
+    pub fn extent(&self) -> (DVec3, f64) {
+        let (min, max) = self.bounds();
+        let radius = (max - min).length() * 0.5;
+        ((min + max) * 0.5, radius.max(f64::MIN_POSITIVE))
+    }
+
     /// Applies a drag of the pointer by `by`, to the right and down. Camera and light turn by so
-    /// many radians; the eye of [`Drag::Pan`] moves by so many halves of the [scene's
-    /// radius](Self::extent).
+    /// many radians; the eye of [`Drag::Pan`] moves by so many times its
+    /// [pace](flight::pace).
     pub fn dragged(&mut self, drag: Drag, by: [f64; 2]) {
         let (centre, radius) = self.extent();
         let Some(view) = &mut self.desired.view else {
@@ -366,7 +367,7 @@ impl Viewer {
                     .clamp(radius * 0.05, radius * 4.0);
                 flight::orbit(&mut moved, -x, -y, distance);
             }
-            Drag::Pan => flight::fly(&mut moved, DVec3::new(-x, y, 0.0) * radius * 0.5),
+            Drag::Pan => flight::fly(&mut moved, DVec3::new(-x, y, 0.0), self.bounds()),
             Drag::Light => {
                 if let Some((name, mut light)) = self.light() {
                     flight::turn_light(&mut light, &moved, x, y, centre);
@@ -377,12 +378,11 @@ impl Viewer {
         self.look_from(moved);
     }
 
-    /// Moves the eye by `by` along its right, up and forward directions, in multiples of the
-    /// [scene's radius](Self::extent).
+    /// Moves the eye by `by` along its right, up and forward directions, in multiples of its
+    /// [pace](flight::pace).
     pub fn fly(&mut self, by: DVec3) {
-        let (_, radius) = self.extent();
         if let Some(mut view) = self.desired.view.clone() {
-            flight::fly(&mut view, by * radius);
+            flight::fly(&mut view, by, self.bounds());
             self.look_from(view);
         }
     }

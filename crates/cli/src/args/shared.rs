@@ -77,16 +77,16 @@ pub struct SceneArgs {
     /// Built-in scene, scene file (.ron), name of one in scenes/, or mesh file (.obj, .gltf, .glb).
     #[arg(long = "scene", default_value = "park", value_name = "SCENE", action = ArgAction::Set)]
     pub scenes: Vec<String>,
-    /// A view of the scene, or `all`. Without it: the scene's first view. Cameras of a glTF file
-    /// are views.
+    /// A view of the scene, or `all`. Without it: the scene's first view, and of `compare`
+    /// all that are chosen for a mesh without cameras. Cameras of a glTF file are views.
     #[arg(long, value_name = "NAME")]
     pub view: Option<String>,
-    /// Eye position, instead of the view's. Without it, for a mesh without cameras: inside the mesh
-    /// if its surfaces surround the camera, else where all of it is seen.
+    /// Eye position, instead of the view's. Without it, for a mesh without cameras: outside, in a
+    /// room, or in the street of a town.
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
     /// Direction in which the eye looks, instead of the view's. Without it, for a mesh without
-    /// cameras: to the mesh's middle.
+    /// cameras: where light and shadow are, or with --eye to the mesh's middle.
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub look: Option<DVec3>,
     /// A light of the scene, or `all`: each view under each. Without it: the scene's first light,
@@ -108,7 +108,8 @@ pub struct SceneArgs {
     /// mesh.
     #[arg(long, value_name = "LENGTH", value_parser = positive)]
     pub far: Option<f64>,
-    /// Add a ground below a mesh that has no floor: a square slab just below its lowest point.
+    /// Add a ground below a mesh that has no floor, a square slab just below its lowest point, and
+    /// choose views from outside alone.
     #[arg(long)]
     pub ground: bool,
     /// Scene file to write, to be edited: mesh, and lights, views and paths as they were chosen.

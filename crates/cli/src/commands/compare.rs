@@ -251,9 +251,11 @@ fn views(
 ) -> Result<(Arc<Scene>, Vec<ViewOrPath>), CliError> {
     let SceneSelection {
         scene,
-        views,
+        mut views,
+        further,
         paths: own,
     } = SceneSelection::load(of)?;
+    views.extend(further);
     let scene = Arc::new(scene);
     let light = light_name(of, methods, &scene, session);
     let views = match (&args.path, &of.light) {

@@ -51,6 +51,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         scene,
         mut views,
         paths,
+        ..
     } = SceneSelection::load(&args.scene)?;
     let sequence = sequence(args, &scene, &views, &paths)?;
     let scene = Arc::new(scene);

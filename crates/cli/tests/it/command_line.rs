@@ -375,9 +375,13 @@ fn a_scene_or_view_that_is_not_there_is_named() {
         "{}",
         stderr(&view)
     );
-    let own = skiagraph(folder.path(), &["run", "rt", "--look", "0,1,0"]);
+    let own = skiagraph(folder.path(), &["run", "rt", "--near", "9", "--far", "5"]);
     assert_exit(&own, 2);
-    assert!(stderr(&own).contains("parallel"), "{}", stderr(&own));
+    assert!(
+        stderr(&own).contains("near is 9 and far is 5"),
+        "{}",
+        stderr(&own)
+    );
 }
 
 /// The results that a unit test pins, as `compare` would have kept them.

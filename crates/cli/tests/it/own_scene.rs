@@ -75,8 +75,8 @@ fn a_room_without_a_camera_is_seen_from_inside() {
     assert!(pixels["lit"].as_u64() > Some(300), "{pixels}");
     assert!(pixels["shadow"].as_u64() > Some(300), "{pixels}");
     let text = said(&folder, "bare_room.gltf");
-    let chosen = "it holds no camera and no light; chosen, from inside, for the mesh surrounds \
-                  the camera: --eye ";
+    let chosen = "it holds no camera and no light; chosen `inside`, from inside, for there is a \
+                  place to stand: --eye ";
     assert!(text.contains(chosen), "{text}");
     assert!(text.contains(" and a lamp at "), "{text}");
     // A sun that is asked for shines, though not into the room.
@@ -86,6 +86,69 @@ fn a_room_without_a_camera_is_seen_from_inside() {
         sun.contains("the mesh is 8 × 3 × 6 units (x, y, z), right-handed, with 0,1,0 up"),
         "{sun}"
     );
+}
+
+#[test]
+fn a_town_is_compared_from_a_street_and_from_outside() {
+    let folder = folder();
+    let mut text = String::from("v -9 0 -9\nv -9 0 90\nv 90 0 90\nv 90 0 -9\nf 1 2 3 4\n");
+    let corners = "f -8 -7 -5 -6\nf -4 -2 -1 -3\nf -8 -4 -3 -7\nf -6 -5 -1 -2\nf -8 -6 -2 -4\n\
+                   f -7 -3 -1 -5\n";
+    for house in 0..16 {
+        let (x, z) = (f64::from(house % 4) * 22.0, f64::from(house / 4) * 22.0);
+        for corner in 0..8 {
+            let at = |bit: i32, size: f64| if corner >> bit & 1 == 1 { size } else { 0.0 };
+            text += &format!("v {} {} {}\n", x + at(0, 10.0), at(2, 8.0), z + at(1, 11.0));
+        }
+        text += corners;
+    }
+    fs::write(folder.path().join("town.obj"), text).unwrap();
+    let (runs, _) = results(folder.path(), &format!("{COMPARE} --scene town.obj"));
+    let views = runs.iter().map(|run| run["view"].as_str().unwrap());
+    assert_eq!(views.collect::<Vec<_>>(), ["street", "main"]);
+    for run in &runs {
+        let pixels = &run["pixels"];
+        let [lit, shadow] = ["lit", "shadow"].map(|class| pixels[class].as_f64().unwrap());
+        assert!(lit.min(shadow) > 0.03 * (lit + shadow), "{pixels}");
+    }
+    let told = said(&folder, "town.obj");
+    assert!(
+        told.contains("`street`, in a street, 1.7 units above the floor"),
+        "{told}"
+    );
+    assert!(!told.contains("no floor"), "{told}");
+    assert!(
+        told.contains("; `compare` takes all of them, --view one"),
+        "{told}"
+    );
+    let (runs, _) = results(
+        folder.path(),
+        &format!("{COMPARE} --replace --scene town.obj --view main"),
+    );
+    assert_eq!(runs.len(), 1);
+}
+
+#[test]
+fn a_view_may_look_along_its_up() {
+    let folder = folder();
+    let plain = "v -4 0 -4\nv -4 0 4\nv 4 0 4\nv 4 0 -4\nf 1 2 3 4\n\
+                 v -1 2 -1\nv -1 2 1\nv 1 2 1\nv 1 2 -1\nf 5 6 7 8\n";
+    fs::write(folder.path().join("plain.obj"), plain).unwrap();
+    for look in [
+        "0,-1,0",
+        "0,-1,1e-12",
+        "0,0,-1 --up 0,0,1 --eye 0,1,9",
+        "0,-2,0 --eye 0,9,0",
+    ] {
+        let line = format!("{COMPARE} --replace --scene plain.obj --look {look}");
+        let (runs, _) = results(folder.path(), &line);
+        assert_eq!(runs[0]["counts"]["wrong"].as_u64().unwrap_or(0), 0);
+        let pixels = &runs[0]["pixels"];
+        if !look.contains("--up") {
+            assert!(pixels["lit"].as_u64() > Some(300), "{look}: {pixels}");
+            assert!(pixels["shadow"].as_u64() > Some(20), "{look}: {pixels}");
+        }
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Draws a picture with its choices, legend and numbers, and handles the pointer in it.
 
 use crate::drawn::{Reading, Show, of_pixels};
+use crate::flight::SPEED;
 use crate::heat;
 use crate::state::{Drag, Viewer};
 use crate::texels::Histogram;
@@ -211,7 +212,7 @@ pub fn keys(ui: &Ui, viewer: &mut Viewer) {
     );
     if by != DVec3::ZERO {
         let seconds = f64::from(ui.input(|input| input.stable_dt)).min(0.1);
-        viewer.fly(by * seconds * 0.4);
+        viewer.fly(by * seconds * SPEED);
         ui.ctx().request_repaint();
     }
 }

@@ -166,7 +166,7 @@ fn spawn(
             ..default()
         }),
         Transform::from_translation(vector(view.eye))
-            .looking_to(vector(view.direction), vector(view.up)),
+            .looking_to(vector(view.direction), vector(view.camera([1, 1]).up)),
         RenderTarget::from(target.clone()),
         Hdr,
         Msaa::Off,

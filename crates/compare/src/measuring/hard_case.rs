@@ -179,7 +179,7 @@ impl HardCaseContext<'_> {
             name: hard.name.into(),
             reason: hard.reason.into(),
             casters: hard.casters,
-            band_cap: hard.indeterminate_cap,
+            band_cap: hard.indeterminate_cap(self.viewport[1], 0),
             verdict: Verdict::Fail,
             failed: None,
             pixels: PixelCounts::default(),
@@ -198,6 +198,7 @@ impl HardCaseContext<'_> {
         let ground_truth = &truth_view.ground_truth;
         let counts = own_counts(&ground_truth.pixels);
         (case.pixels, case.band) = (counts.pixels, counts.band);
+        case.band_cap = hard.indeterminate_cap(self.viewport[1], case.pixels.facing_light);
         case.wrong_surface = truth_view.wrong_surfaces;
         if !case.exceeds_cap() {
             case.verdict = Verdict::Pass;

@@ -6,6 +6,7 @@ mod support;
 
 mod adapter;
 mod backends;
+mod cannot_run;
 mod cells;
 mod command_line;
 mod endless_files;

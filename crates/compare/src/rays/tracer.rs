@@ -216,7 +216,7 @@ pub fn shadow_rays(
     request.captures = names.map(Capture::new).into();
     request.outputs = Some(vec![]);
     let plan = graph.plan(&request);
-    let plan = plan.map_err(|faults| CompareError::Input(reasons(&faults)))?;
+    let plan = plan.map_err(|faults| CompareError::Input(reasons(faults.iter())))?;
     let (contents, _) = frame::render(session, "rt", plan, &mut provider, &names)?;
     let words = |name: &str| contents[name].as_u32().unwrap_or_default();
     let mut rays: Vec<Ray> = bytemuck::pod_collect_to_vec(&words("rays"));
@@ -236,7 +236,8 @@ pub fn shadow_rays(
 }
 
 fn loaded(path: &str, sources: &dyn Sources) -> Result<Graph, CompareError> {
-    Graph::load(path, &registry(), sources).map_err(|faults| CompareError::Input(reasons(&faults)))
+    Graph::load(path, &registry(), sources)
+        .map_err(|faults| CompareError::Input(reasons(faults.iter())))
 }
 
 fn plan(
@@ -248,7 +249,7 @@ fn plan(
 ) -> Result<Plan, CompareError> {
     let request = Capabilities::new(session.gpu).request(viewport, provider);
     let plan = loaded(path, sources)?.plan(&request);
-    plan.map_err(|faults| CompareError::Input(reasons(&faults)))
+    plan.map_err(|faults| CompareError::Input(reasons(faults.iter())))
 }
 
 /// A graph of one pass, which traces.

@@ -48,7 +48,7 @@ use crate::records::results::{PROGRAM, Results, Run};
 use crate::sink::{Runs, Session, Step};
 use crate::wording::{length, plural, size, thousands};
 use itertools::Itertools;
-use skiagraph_graph::Plan;
+use skiagraph_graph::{Code, Diagnostic, Diagnostics, Plan};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, PixelCounts};
 use skiagraph_scene::Scene;
@@ -119,13 +119,6 @@ pub fn run(comparison: &Comparison, session: Session) -> Result<Results, Compare
         broken if broken.is_empty() => Ok(series.results),
         broken => Err(CompareError::InvalidOutputs(broken)),
     }
-}
-
-/// Why a method has no plan.
-struct Refusal {
-    reason: String,
-    /// True if its document is at fault.
-    is_mistake: bool,
 }
 
 /// The message on a method whose document is at fault.
@@ -458,8 +451,9 @@ impl<'a> Series<'a> {
         let unavailable = |reason| Box::new(context.unavailable(method, planned, reason));
         let plan = match self.plan(method, planned.viewport) {
             Ok(plan) => plan,
-            Err(Refusal { reason, is_mistake }) => {
-                let run = unavailable(reason);
+            Err(refusal) => {
+                let run = unavailable(reasons(refusal.iter()));
+                let is_mistake = is_mistake(refusal.iter());
                 self.broken.extend(is_mistake.then(|| mistake(&run)));
                 return Ok(Err(run));
             }
@@ -482,19 +476,13 @@ impl<'a> Series<'a> {
     }
 
     /// Plans a method on this adapter, under the light of the provider.
-    fn plan(&self, method: &Method, viewport: [u32; 2]) -> Result<Plan, Refusal> {
+    fn plan(&self, method: &Method, viewport: [u32; 2]) -> Result<Plan, Diagnostics> {
         let capabilities = Capabilities::new(self.session.gpu);
-        let plan = method.plan(viewport, capabilities, &self.provider);
-        let plan = plan.map_err(|diagnostics| Refusal {
-            reason: reasons(diagnostics.iter()),
-            is_mistake: is_mistake(diagnostics.iter()),
-        })?;
+        let plan = method.plan(viewport, capabilities, &self.provider)?;
+        let other = "it answers for other lights of the scene, not for this one";
         match layer_of(&plan, self.provider.light_number()) {
             Some(_) => Ok(plan),
-            None => Err(Refusal {
-                reason: "it answers for other lights of the scene, not for this one".into(),
-                is_mistake: false,
-            }),
+            None => Err(Diagnostic::error(Code::Light, other).into()),
         }
     }
 
@@ -546,11 +534,12 @@ impl<'a> Series<'a> {
             return Ok(());
         }
         match self.plan(method, viewport) {
-            Err(Refusal { reason, is_mistake }) => {
+            Err(refusal) => {
                 let run = Run {
-                    unavailable: Some(reason),
+                    unavailable: Some(reasons(refusal.iter())),
                     ..run.clone()
                 };
+                let is_mistake = is_mistake(refusal.iter());
                 self.broken.extend(is_mistake.then(|| mistake(&run)));
                 self.done(place, run);
                 self.save(&[])?;

@@ -298,11 +298,9 @@ fn each(folder: &Path, words: &[&str]) -> Vec<Method> {
     methods.unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A document of any kind that cannot run is a row with its reason; the others are measured.
-#[test]
-fn whatever_cannot_run_is_a_row_with_its_reason() {
-    let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+/// Documents that are at fault in a way of their own, beside `lit.ron`.
+fn write_documents(folder: &Path) {
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
     write("lit.ron", LIT);
     write(
         "typo.ron",
@@ -329,6 +327,13 @@ fn whatever_cannot_run_is_a_row_with_its_reason() {
         ),
     );
     write("values.ron", &LIT.replace("value: 2", "value: 7"));
+}
+
+/// A document of any kind that cannot run is a row with its reason; the others are measured.
+#[test]
+fn whatever_cannot_run_is_a_row_with_its_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    write_documents(folder.path());
     let rows = [
         ("lit.ron", None),
         ("crsm", Some("takes no point light")),

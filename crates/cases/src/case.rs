@@ -20,15 +20,51 @@ pub struct HardCase {
     /// Kind of the scene's casters. On open casters, a method that culls front faces is also tested
     /// without culling.
     pub casters: Casters,
-    /// Largest allowed share, 0 to 1, of indeterminate pixels among those that face the light. A
-    /// pixel is indeterminate if rounding to f32 may flip its answer.
-    pub indeterminate_cap: f64,
     /// Answers, lit or in shadow, that occur in the picture of the case.
     pub shows: Shows,
     seen: Seen,
     geometry: Geometry,
     change: fn(&mut Scene),
     lit: Option<fn(DVec3) -> Option<bool>>,
+    indeterminate: Indeterminate,
+}
+
+/// Bound on the indeterminate pixels of a case.
+#[derive(Clone, Copy, Debug)]
+enum Indeterminate {
+    /// A share of the pixels that face the light, 0 to 1.
+    Share(f64),
+    /// Those along the shadows' edges of a scene far from the origin.
+    Edges(Edges),
+}
+
+/// Edges of shadows in a scene whose positions f32 rounds by whole parts of a pixel: within a strip
+/// around each edge rounding decides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edges {
+    /// Distance of the scene from the origin along each axis, scene units.
+    pub offset: f32,
+    /// Half the width of a strip, in units in the last place of `offset`.
+    pub roundings: f64,
+    /// Length of all edges in the picture, in heights of it.
+    pub length: f64,
+    /// Height of the picture at the edges' distance, scene units.
+    pub height: f64,
+}
+
+impl Edges {
+    /// Returns the most pixels that may lie in the strips of a picture that is `rows` pixels high.
+    ///
+    /// The edges cross `length * rows` rows or columns of pixels, and in each of them a strip is
+    /// `width` pixels wide. It holds so many pixel centres in the mean, rounded up or down, as the
+    /// edge passes through the grid of pixels in ever other places. Of a number that is rounded up
+    /// or down the standard deviation is at most a half, and three of the sum's are allowed.
+    fn most(&self, rows: u32) -> f64 {
+        let spacing = f64::from(self.offset.next_up() - self.offset);
+        let width = 2.0 * self.roundings * spacing / (self.height / f64::from(rows));
+        let across = self.length * f64::from(rows);
+        width * across + 3.0 * 0.5 * across.sqrt()
+    }
 }
 
 /// Triangles of a case.
@@ -77,12 +113,12 @@ impl HardCase {
             name,
             reason,
             casters: Casters::Closed,
-            indeterminate_cap: 0.01,
             shows: Shows::Both,
             seen,
             geometry: Geometry::Drawn(shape),
             change: |_| {},
             lit: None,
+            indeterminate: Indeterminate::Share(0.01),
         }
     }
 
@@ -136,10 +172,26 @@ impl HardCase {
         self
     }
 
-    /// Returns the case with another value, 0 to 1, of [`HardCase::indeterminate_cap`].
+    /// Returns the case with another share, 0 to 1, of pixels that may be indeterminate.
     pub(crate) const fn indeterminate_up_to(mut self, share: f64) -> Self {
-        self.indeterminate_cap = share;
+        self.indeterminate = Indeterminate::Share(share);
         self
+    }
+
+    /// Returns the case as one whose indeterminate pixels lie along the edges of shadows.
+    pub(crate) const fn indeterminate_along(mut self, edges: Edges) -> Self {
+        self.indeterminate = Indeterminate::Edges(edges);
+        self
+    }
+
+    /// Returns the largest allowed share of indeterminate pixels among the `facing` pixels that
+    /// face the light, in a picture that is `rows` pixels high. A pixel is indeterminate if
+    /// rounding to f32 may flip its answer.
+    pub fn indeterminate_cap(&self, rows: u32, facing: u64) -> f64 {
+        match self.indeterminate {
+            Indeterminate::Share(share) => share,
+            Indeterminate::Edges(edges) => edges.most(rows) / facing.max(1) as f64,
+        }
     }
 
     /// Builds the scene of the case: its mesh, its view `main` and its light.

@@ -2,7 +2,7 @@
 
 use crate::{
     answer::{among, in_sheet, judge},
-    case::HardCase,
+    case::{Edges, HardCase},
     shape::{Block, Seen, Shape, seen},
 };
 use glam::DVec3;
@@ -151,7 +151,16 @@ pub(crate) const CASES: &[HardCase] = &[
             LIGHT,
         ),
         (&FAR, 20.0),
-    ),
+    )
+    // A receiver is off by its position's five roundings of a distance of √3 offsets, and by those
+    // of its weights, the more the flatter it is seen: by some 22 units, as pictures of 1024²
+    // pixels have it, too. The eye is 6,763 units away, and the picture 45 degrees high.
+    .indeterminate_along(Edges {
+        offset: FAR_OFF,
+        roundings: 22.0,
+        length: 0.73,
+        height: 5_600.0,
+    }),
     HardCase::closed(
         "extent_1e6_detail_1e_2",
         "boxes of a hundredth on a plain of a million: all of them in one texel",

@@ -23,7 +23,7 @@ use crate::graphs::idle_params::IdleParams;
 use crate::graphs::light_kinds::kind_and_number;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::graphs::shadow_method;
+use crate::graphs::shadow_method::PlanCheck;
 use crate::measuring::ground_truth::{PrimaryVisibility, REFERENCE_SAMPLES};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::pictures::data::DataFormat;
@@ -157,15 +157,14 @@ impl Comparison {
         })
     }
 
-    /// Checks a comparison before it runs: plans every method in every viewport, so that a mistake
-    /// in the last one is found at once. Tells the session's sink which params were set but have no
-    /// effect.
+    /// Checks a comparison before it runs: plans every method in every viewport and under every
+    /// kind of light, so that a mistake in the last one is found at once. Tells the session's sink
+    /// the mistakes of documents, and which params were set but have no effect.
     ///
     /// # Errors
-    /// A protocol without timed frames; the faults of all graphs together; outputs whose size or
-    /// format a shadow method must not have; a GPU that can run none of the methods, or not the
-    /// graph of the visible triangles in a viewport; runs whose pictures would have the same file
-    /// name.
+    /// A protocol without timed frames; no method that can be planned, with the reasons of all; a
+    /// GPU that cannot run the graph of the visible triangles in a viewport; runs whose pictures
+    /// would have the same file name.
     pub fn check(&self, session: Session) -> Result<(), CompareError> {
         if self.protocol.frames == 0 {
             let text = "a comparison needs at least one timed frame (`Protocol::frames`)";
@@ -181,6 +180,7 @@ impl Comparison {
         }
         // A provider describes the same for all views under lights of one kind and number.
         let (methods, mut idle) = (&self.methods, IdleParams::default());
+        let mut plans = PlanCheck::default();
         let lights = |view: &&ViewOrPath| {
             provider.set_view(view.view(), [1; 2]);
             kind_and_number(&provider)
@@ -188,10 +188,10 @@ impl Comparison {
         let views: Vec<&ViewOrPath> = self.views.iter().unique_by(lights).collect();
         for view in views {
             provider.set_view(view.view(), [1; 2]);
-            shadow_method::check_plans(methods, &self.viewports, &provider, Some(&device))?;
+            plans.add(methods, &self.viewports, &provider, &device);
             idle.note(session.sink, methods, &device, &provider);
         }
-        Ok(())
+        plans.end(session.sink)
     }
 
     /// Returns the methods with the params that they have on the session's GPU

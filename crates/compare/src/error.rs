@@ -78,6 +78,15 @@ impl CompareError {
         }
     }
 
+    /// True if no other method can run either: an early end, or a device that is unusable.
+    pub fn ends_all(&self) -> bool {
+        match self {
+            Self::Interrupted { .. } => true,
+            Self::Gpu { source, .. } => is_fatal(source),
+            _ => false,
+        }
+    }
+
     /// Creates the error [`CompareError::Interrupted`] with an empty `kept`: only the caller knows
     /// which results are kept.
     pub fn interrupted() -> Self {

@@ -47,7 +47,8 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// Parses a number of bytes, `1536`, `512MiB`, `2.5 GiB`; MB and GB are powers of ten.
+/// Parses a number of bytes, at least one: `1536`, `512MiB`, `2.5 GiB`; MB and GB are powers of
+/// ten.
 ///
 /// # Errors
 /// Text with the value that was expected.
@@ -72,8 +73,8 @@ pub fn bytes(text: &str) -> Result<u64, String> {
         }
     };
     match number.trim().parse::<f64>() {
-        Ok(number) if number.is_finite() && number >= 0.0 => Ok((number * unit) as u64),
-        _ => Err("expected a number of bytes, for example 512MiB or 2GiB".into()),
+        Ok(number) if number.is_finite() && number * unit >= 1.0 => Ok((number * unit) as u64),
+        _ => Err("expected a number of bytes above 0, for example 512MiB or 2GiB".into()),
     }
 }
 
@@ -164,7 +165,9 @@ mod tests {
         ] {
             assert_eq!(bytes(text), Ok(number), "{text}");
         }
-        for text in ["", "GiB", "-1", "nan", "1e", "2 gigs", "inf"] {
+        for text in [
+            "", "GiB", "-1", "0", "0GiB", "0.2", "nan", "1e", "2 gigs", "inf",
+        ] {
             assert!(bytes(text).is_err(), "{text}");
         }
     }

@@ -33,8 +33,8 @@ pub trait Sink: Sync {
     /// Receives a remark that is not an error: text of one or several lines.
     fn note(&self, text: &str);
 
-    /// Receives the warnings of a graph and its plan, at least one. By default, their text is
-    /// passed to [`note`](Self::note).
+    /// Receives the warnings of a graph and its plan, or the mistakes of documents whose methods
+    /// are left out; at least one. By default, their text is passed to [`note`](Self::note).
     fn warnings(&self, warnings: &[Diagnostic]) {
         self.note(diagnostics::render(warnings, false).trim_end());
     }

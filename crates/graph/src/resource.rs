@@ -3,6 +3,7 @@
 use crate::{
     document::materials::{Address, Filter},
     picture::Picture,
+    provided_kind::ProvidedKind,
     provider::Provided,
     source::span::Span,
 };
@@ -56,6 +57,14 @@ impl Resource {
             origin,
             growth: None,
             keep: false,
+        }
+    }
+
+    /// Name and kind of a provided resource; `None` for one without kinds, and all others.
+    pub(crate) fn named_kind(&self) -> Option<(&str, ProvidedKind)> {
+        match &self.kind {
+            ResourceKind::Provided(provided) => Some((&self.name, provided.kind?)),
+            _ => None,
         }
     }
 

@@ -4,6 +4,7 @@ use crate::graded::area_reference;
 use crate::notes::wrong_surface;
 use crate::table::{TERMINAL, terminal, wrapped};
 use itertools::Itertools;
+use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::judged_pictures::{
     JudgedPicture, JudgedPictures, MOST_UNATTRIBUTABLE,
 };
@@ -22,10 +23,60 @@ pub fn text(of: &JudgedPictures, is_broken: bool) -> String {
         }
     };
     let mut lines: Vec<String> = heading(of).into_iter().map(broken).collect();
-    lines.push(format!("\n{}\n", terminal(&table(of))));
-    let verdicts = of.pictures.iter().map(|picture| verdict(of, picture));
-    lines.extend(verdicts.chain(notes(of)).map(broken));
+    let names = short_names(&of.pictures);
+    lines.push(format!("\n{}\n", terminal(&table(of, &names))));
+    let pictures = names.iter().zip(&of.pictures);
+    let verdicts = pictures.map(|(name, picture)| verdict(of, name, picture));
+    lines.extend(verdicts.chain(notes(of, &names)).map(broken));
     lines.join("\n") + "\n"
+}
+
+/// Characters of a picture's name beside which a table of figures has room.
+const NAME: usize = 28;
+
+/// Returns the parts of the pictures' paths that tell them apart: without the folders that all
+/// have, and where that is too long for a table without what all end with, and with a gap.
+fn short_names(pictures: &[JudgedPicture]) -> Vec<String> {
+    let paths = pictures
+        .iter()
+        .map(|picture| picture.file.split(['/', '\\']));
+    let paths: Vec<Vec<&str>> = paths.map(Iterator::collect).collect();
+    let shortest = paths.iter().map(Vec::len).min().unwrap_or_default();
+    let is_common = |part: fn(&Vec<&str>, usize) -> String, at: &usize| {
+        paths.iter().map(|path| part(path, *at)).all_equal()
+    };
+    let from_front = |path: &Vec<&str>, at: usize| path[at].to_owned();
+    let from_back = |path: &Vec<&str>, at: usize| path[path.len() - 1 - at].to_owned();
+    let front = (0..shortest)
+        .take_while(|at| is_common(from_front, at))
+        .count();
+    let front = front.min(shortest.saturating_sub(1));
+    let back = (0..shortest - front)
+        .take_while(|at| is_common(from_back, at))
+        .count();
+    let names = |back: usize| -> Vec<String> {
+        let name = |path: &Vec<&str>| path[front..(path.len() - back).max(front + 1)].join("/");
+        paths.iter().map(name).collect()
+    };
+    let is_short = |name: &String| name.chars().count() <= NAME;
+    let whole = names(0);
+    if whole.iter().all(is_short) {
+        return whole;
+    }
+    let cut = |name: String| {
+        let (letters, half) = (name.chars().collect_vec(), NAME / 2);
+        if is_short(&name) {
+            return name;
+        }
+        let (begin, end) = (&letters[..half - 1], &letters[letters.len() - half..]);
+        begin.iter().chain(&['…']).chain(end).collect()
+    };
+    let short = names(back).into_iter().map(cut).collect_vec();
+    if short.iter().all_unique() {
+        short
+    } else {
+        whole
+    }
 }
 
 fn heading(of: &JudgedPictures) -> Vec<String> {
@@ -73,7 +124,7 @@ fn heading(of: &JudgedPictures) -> Vec<String> {
     lines
 }
 
-fn table(of: &JudgedPictures) -> Table {
+fn table(of: &JudgedPictures, names: &[String]) -> Table {
     let heads = [
         "picture",
         "rank",
@@ -98,11 +149,11 @@ fn table(of: &JudgedPictures) -> Table {
             "–".into()
         }
     };
-    let row = |picture: &JudgedPicture| {
+    let row = |(name, picture): (&String, &JudgedPicture)| {
         let (graded, wrong) = (&picture.graded, &picture.wrong);
         let edges = picture.edges.all();
         vec![
-            picture.file.clone(),
+            name.clone(),
             picture.rank.map_or("–".into(), |rank| rank.to_string()),
             thousands(picture.wrong_attributable()),
             percent(picture.wrong_attributable(), of.pixels.facing_light),
@@ -126,19 +177,22 @@ fn table(of: &JudgedPictures) -> Table {
             ),
         ]
     };
-    Table::new(heads, 1, of.pictures.iter().map(row))
+    Table::new(heads, 1, names.iter().zip(&of.pictures).map(row))
 }
 
-fn verdict(of: &JudgedPictures, picture: &JudgedPicture) -> String {
+fn verdict(of: &JudgedPictures, name: &str, picture: &JudgedPicture) -> String {
     let (wrong, facing) = (picture.wrong_attributable(), of.pixels.facing_light);
     let mut text = format!(
-        "{} ({}): {} of the {} pixels that face the light are wrong ({})",
-        picture.file,
+        "{name} ({}): {} of the {} pixels that face the light are wrong ({})",
         picture.format,
         thousands(wrong),
         thousands(facing),
         percent(wrong, facing)
     );
+    if picture.without_answer > 0 {
+        let unanswered = thousands(picture.without_answer);
+        text += &format!(", and {unanswered} have no finite number and are not judged");
+    }
     if of.area.is_some() {
         text += &format!(
             ", cut at one half; RMSE {:.5}",
@@ -156,9 +210,11 @@ fn verdict(of: &JudgedPictures, picture: &JudgedPicture) -> String {
     text
 }
 
-fn notes(of: &JudgedPictures) -> Vec<String> {
-    let mut notes = Vec::new();
-    for picture in &of.pictures {
+/// Warnings, each once with the pictures that it is about, and what holds of all figures.
+fn notes(of: &JudgedPictures, names: &[String]) -> Vec<String> {
+    let mut warnings: Vec<(String, Vec<&str>)> = Vec::new();
+    let mut warn = |text: String, name| entry(&mut warnings, text).push(name);
+    for (name, picture) in names.iter().zip(&of.pictures) {
         let invalid = picture.graded.invalid;
         let counts = [
             ("NaN", invalid.nan),
@@ -166,16 +222,22 @@ fn notes(of: &JudgedPictures) -> Vec<String> {
             ("outside 0 to 1", invalid.outside),
         ];
         if invalid.total() > 0 {
-            notes.push(format!(
-                "warning: {}: at pixels that face the light the factor is not a share of 0 to 1: \
-                 {}",
-                picture.file,
-                counted(counts)
-            ));
+            let counts = counted(counts);
+            let what = "at pixels that face the light the factor is not a share of 0 to 1";
+            warn(format!("{what}: {counts}"), name);
         }
-        let warnings = picture.warnings.iter();
-        notes.extend(warnings.map(|text| format!("warning: {}: {text}", picture.file)));
+        let texts = picture.warnings.iter().cloned();
+        texts.for_each(|text| warn(text, name));
     }
+    let warning = |(text, names): (String, Vec<&str>)| match &names[..] {
+        [name] => format!("warning: {name}: {text}"),
+        names => format!(
+            "warning: in {} pictures ({}): {text}",
+            names.len(),
+            names.join(", ")
+        ),
+    };
+    let mut notes: Vec<String> = warnings.into_iter().map(warning).collect();
     if !of.is_attributable() {
         notes.push(format!(
             "no rank: {} of the pixels are unattributable, more than {:.0} %: the truth differs \
@@ -281,6 +343,46 @@ mod tests {
     #[test]
     fn a_table_tells_what_is_wrong_and_what_is_open() {
         insta::assert_snapshot!(text(&judged(), true));
+    }
+
+    #[test]
+    fn warnings_that_pictures_share_are_told_once_and_paths_keep_rows_lines() {
+        let mut judged = judged();
+        let black = "2 pixels facing the light, black in the picture without shadows, too";
+        let folder = "/home/somewhere/out/engines/babylon/a_rather_long_name_of_a_run";
+        judged.pictures = (0..11)
+            .map(|number| JudgedPicture {
+                file: format!("{folder}/shadow_generator_with_setting_{number}/shadowed.exr"),
+                warnings: vec![black.into(), format!("its own {number}")],
+                ..judged.pictures[1].clone()
+            })
+            .collect();
+        let told = text(&judged, false);
+        assert_eq!(told.matches(black).count(), 1, "{told}");
+        assert!(told.contains("warning: in 11 pictures ("), "{told}");
+        assert_eq!(told.matches("its own 7").count(), 1, "{told}");
+        let table: Vec<&str> = told.split("\n\n").collect();
+        assert!(
+            table[1]
+                .lines()
+                .all(|line| line.chars().count() <= TERMINAL),
+            "{told}"
+        );
+        let rows = table[1].lines().filter(|line| line.contains('…'));
+        assert_eq!(rows.unique().count(), 11, "each row is a line: {told}");
+        assert!(!told.contains(folder), "{told}");
+        // Of one folder only names are left, of names alike the folders that differ.
+        for (files, names) in [
+            (["a/b/one.png", "a/b/two.png"], ["one.png", "two.png"]),
+            (["a/x/one.png", "a/y/one.png"], ["x/one.png", "y/one.png"]),
+            (["one.png", "one.png"], ["one.png", "one.png"]),
+        ] {
+            let pictures = files.map(|file| JudgedPicture {
+                file: file.into(),
+                ..JudgedPicture::default()
+            });
+            assert_eq!(short_names(&pictures), names);
+        }
     }
 
     #[test]

@@ -68,8 +68,6 @@ pub struct FrameSnapshot {
     /// Question to the reference ray tracer about this frame: its scene, camera, light and visible
     /// primitives.
     pub question: Question,
-    /// Index of the frame's light among the lights of the view.
-    pub light_number: usize,
     /// Classes of the pixels as if nothing cast shadows: lit wherever the surface faces the light.
     pub facing: Arc<GroundTruthPixels>,
     /// A frame of each method, in the order of the desired state.
@@ -99,6 +97,9 @@ pub struct MethodSnapshot {
     pub wall_ms: f64,
     /// Contents of the outputs and materials that were read back, by name.
     pub contents: Arc<Contents>,
+    /// Layer of the visibility that holds the answer for the frame's light; `None` if the method
+    /// answers for other lights alone.
+    pub layer: Option<usize>,
     /// Decoding of each content, by name: how depths and buffer items become numbers.
     pub readings: BTreeMap<String, Decoding>,
     /// Errors for the user: the reason why the desired state could not be planned or run (the frame

@@ -102,11 +102,15 @@ pub fn draw(
     drawn.unwrap_or_else(Drawn::only)
 }
 
+/// Said in the place of a picture under a light that the method does not read.
+const OTHER_LIGHTS: &str = "it answers for other lights of the scene, not for this one";
+
 /// The method's answer on the scene.
 fn lit(snapshot: &FrameSnapshot, method: &MethodSnapshot, show: &Show) -> Result<Drawn, String> {
     let facing = &*snapshot.facing;
     let contents = (*method.contents).clone();
-    let outputs = Outputs::from_contents(contents, snapshot.light_number, facing)?;
+    let layer = method.layer.ok_or(OTHER_LIGHTS)?;
+    let outputs = Outputs::from_contents(contents, layer, facing)?;
     let shown = outputs.shown();
     let image = match show {
         Show::Visibility => Image::visibility(facing.viewport, &shown, &outputs.status),
@@ -132,9 +136,7 @@ fn lit(snapshot: &FrameSnapshot, method: &MethodSnapshot, show: &Show) -> Result
     }
     // The numbers under the cursor are those of the answer.
     let numbers = method.contents.get(VISIBILITY).map(Content::split);
-    let numbers = numbers
-        .as_ref()
-        .and_then(|layers| layers.get(snapshot.light_number));
+    let numbers = numbers.as_ref().and_then(|layers| layers.get(layer));
     Ok(Drawn {
         image: Some(image.map_err(|error| error.to_string())?),
         legend,
@@ -156,7 +158,8 @@ fn difference(
         .filter_map(|name| Some((name.to_owned(), method.contents.get(name)?)))
         .map(|(name, content)| (name, thin_content(content, size, answer.stride)))
         .collect();
-    let outputs = Outputs::from_contents(contents, snapshot.light_number, &ground_truth.pixels)?;
+    let layer = method.layer.ok_or(OTHER_LIGHTS)?;
+    let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels)?;
     let wrong = |error: skiagraph_reference::Error| error.to_string();
     let judgement = Judgement::new(&outputs, ground_truth).map_err(wrong)?;
     let truth = &ground_truth.pixels;

@@ -4,6 +4,7 @@
 use crate::desired_state::{DesiredMethod, MethodSnapshot, PassSnapshot};
 use skiagraph_compare::error::{explain, is_fatal};
 use skiagraph_compare::files::fingerprint::{Fingerprint, RecordedSources};
+use skiagraph_compare::graphs::contract::layer_of;
 use skiagraph_compare::graphs::light_kinds::kind_and_number;
 use skiagraph_compare::graphs::planning::Capabilities;
 use skiagraph_compare::graphs::preset::{self, Preset, VISIBILITY};
@@ -78,6 +79,7 @@ impl Slot {
             self.preset = Some(Preset {
                 name: self.name.clone(),
                 graph,
+                faults: None,
                 fingerprint: recorded.fingerprint(),
             });
         }
@@ -200,7 +202,11 @@ impl Slot {
             .with_read(&read)
             .with_seconds(how.seconds);
         let (report, wall) = frame::run(session, executor, &desired)?;
-        Ok(snapshot(preset, executor.plan(), report, wall, how.planes))
+        let plan = executor.plan();
+        Ok(MethodSnapshot {
+            layer: layer_of(plan, provider.light_number()),
+            ..snapshot(preset, plan, report, wall, how.planes)
+        })
     }
 }
 
@@ -318,6 +324,7 @@ fn snapshot(
         wall_ms: ms(wall),
         readings: readings.collect(),
         contents: Arc::new(frame::contents(report.readbacks)),
+        layer: None,
         error: None,
         reads: 0,
     }

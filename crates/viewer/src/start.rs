@@ -129,7 +129,7 @@ fn desired_methods(opening: &Opening, sink: &dyn Sink) -> Result<Vec<DesiredMeth
         return Ok(plain.collect());
     }
     let (methods, params) = (&opening.methods, &opening.params);
-    let methods = method::load(methods, params, &map_sizes, &sources, preset::load_all)?;
+    let methods = method::load(methods, params, &map_sizes, &sources, preset::load_each)?;
     if methods.len() > 2 {
         return Err(CompareError::Request(format!(
             "these are {} methods and settings; the window shows two side by side",

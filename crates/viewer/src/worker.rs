@@ -292,7 +292,6 @@ impl Worker {
                 primitives: Arc::new(primitives),
                 outdated: Arc::default(),
             },
-            light_number: stage.provider.light_number(),
             facing: Arc::new(facing),
             methods,
         }))

@@ -16,7 +16,11 @@ use skiagraph_compare::files::{
     json,
     write::{check_folder, write_whole},
 };
-use skiagraph_compare::graphs::{method::Method, planning::Capabilities, preset, shadow_method};
+use skiagraph_compare::graphs::{
+    method::{self, Method},
+    planning::Capabilities,
+    preset, shadow_method,
+};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::{
     date, device,
@@ -60,14 +64,15 @@ pub const COMMIT: Option<&str> = option_env!("SKIAGRAPH_COMMIT");
 /// Checks all arguments, then measures the methods on each scene and prints and saves the results.
 ///
 /// # Errors
-/// If a graph has errors, a scene cannot be loaded, no GPU can be opened, earlier results cannot be
-/// continued, Ctrl-C stops the command, no method runs on this adapter, a limit of `--fail-if` is
-/// exceeded, or a method is worse than in `--baseline`.
+/// If a scene cannot be loaded, no GPU can be opened, earlier results cannot be continued, Ctrl-C
+/// stops the command, no method runs on this adapter, or, behind the results: a document has
+/// mistakes, a limit of `--fail-if` is exceeded, or a method is worse than in `--baseline`.
 pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let loaded = Loaded::new(args, gpu, std::env::args_os())?;
     let session = Session::new(&loaded.gpu, &Terminal);
     let (mut comparisons, targets) = (loaded.comparisons, loaded.targets);
+    let mut refusals = Vec::new();
     for (comparison, target) in comparisons.iter_mut().zip(&targets) {
         let gpu = &loaded.gpu;
         check_folder(&target.folder)?;
@@ -76,8 +81,15 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
             tune(comparison, session).map_err(search_ended)?;
         }
-        comparison.check(session)?;
+        match comparison.check(session) {
+            // On another scene methods may run.
+            Err(refusal @ CompareError::Diagnostics { .. }) => refusals.push(refusal),
+            checked => checked?,
+        }
         check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
+    }
+    if refusals.len() == targets.len() {
+        return Err(refusals.remove(0).into());
     }
     let mut measured = Measured::default();
     let mut all = comparisons.into_iter().zip(&targets);
@@ -91,17 +103,23 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         Ok(())
     };
     let Measured {
-        failures, worse, ..
+        mistakes,
+        failures,
+        worse,
+        ..
     } = measured;
+    let lines = [&mistakes, &failures, &worse].into_iter().flatten();
     if outcome.is_err() {
-        failures.iter().chain(&worse).for_each(|line| note(line));
+        lines.clone().for_each(|line| note(line));
     }
     outcome.and(shown)?;
-    match (&failures[..], &worse[..]) {
-        ([], []) => Ok(()),
-        ([], worse) => Err(CliError::Baseline(worse.join("\n"))),
-        (failures, worse) => Err(CliError::Gate([failures, worse].concat().join("\n"))),
-    }
+    let text = lines.unique().join("\nerror: ");
+    Err(match (&mistakes[..], &failures[..], &worse[..]) {
+        ([], [], []) => return Ok(()),
+        ([], [], _) => CliError::Baseline(text),
+        ([], ..) => CliError::Gate(text),
+        _ => CliError::Judged(text),
+    })
 }
 
 /// The comparisons that the arguments ask for, not checked yet.
@@ -130,7 +148,8 @@ impl Loaded {
         } else {
             preset::named_or_all(&args.presets, &sources)
         };
-        let methods = shadow_method::load_methods(&names, &args.params, &args.map_size, &sources)?;
+        let (params, sizes) = (&args.params, &args.map_size);
+        let methods = method::load(&names, params, sizes, &sources, shadow_method::load_each)?;
         note_without_map(&methods, &args.map_size);
         Gate::check(&args.fail_if, &methods).map_err(CliError::Input)?;
         let primary = PrimaryVisibility::load(&sources)?;
@@ -234,6 +253,8 @@ impl Target {
 struct Measured {
     /// Results of the scenes that have any, in the order of the scenes.
     results: Vec<Results>,
+    /// Mistakes of methods, and scenes on which none can run.
+    mistakes: Vec<String>,
     /// Conditions of `--fail-if` that do not hold.
     failures: Vec<String>,
     /// Methods that are worse than in `--baseline`.
@@ -500,14 +521,12 @@ fn finish(
             return Err(error);
         }
     }
-    if !broken.is_empty() {
-        return Err(CompareError::InvalidOutputs(broken.join("\nerror: ")).into());
-    }
+    measured.mistakes.extend(broken);
     if results.runs.iter().all(|run| run.measured.is_none()) {
-        return Err(CliError::Input(format!(
+        measured.mistakes.push(format!(
             "no method can run on {}; the reasons stand above",
-            results.adapter.name
-        )));
+            target.name.as_ref().unwrap_or(&results.adapter.name)
+        ));
     }
     tell_files(args, target, &results);
     Ok(results)

@@ -11,9 +11,10 @@ use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::json;
 use skiagraph_compare::files::write::{check_writable, write_whole};
-use skiagraph_compare::graphs::{method, preset};
+use skiagraph_compare::graphs::{faults::refusal, method, preset};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::{device, profiling};
+use skiagraph_compare::pictures::run_pictures::conditions;
 use skiagraph_compare::records::profile::Profile;
 use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::samples::TimedFrame;
@@ -37,7 +38,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     };
     let (words, sizes) = (&args.presets, &args.map_size);
     let sources = preset::sources(&Terminal);
-    let methods = method::load(words, &args.params, sizes, &sources, preset::load_all)?;
+    let methods = method::load(words, &args.params, sizes, &sources, preset::load_each)?;
     note_without_map(&methods, &args.map_size);
     let graphs = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), graphs)?;
@@ -50,6 +51,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let scene = Arc::new(scene);
     let mut profiles: Vec<Profile> = Vec::new();
     let mut timed = Vec::new();
+    let (mut unavailable, mut mistakes) = (Vec::new(), Vec::new());
     for method in methods {
         let method = method.settled(gpu.device.features());
         for view in &views {
@@ -62,6 +64,14 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
                         if !profiles.is_empty() && stop::raised() =>
                     {
                         return interrupted(args, &profiles, planned);
+                    }
+                    Err(error) if planned > 1 && !error.ends_all() => {
+                        let (reason, is_mistake) = refusal(&error);
+                        let place = conditions(&method, &view.name, viewport);
+                        unavailable.push(format!("n/a: {}, {place}: {reason}\n", method.name));
+                        let text = format!("`{}` cannot run: {reason}", method.name);
+                        mistakes.extend(is_mistake.then_some(text));
+                        continue;
                     }
                     measured => measured?,
                 };
@@ -78,7 +88,15 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             }
         }
     }
+    if profiles.is_empty() {
+        let reasons = unavailable.concat();
+        return Err(CliError::Input(format!(
+            "nothing can run\n{}",
+            reasons.trim_end()
+        )));
+    }
     show(&profiles)?;
+    print(&unavailable.concat())?;
     let written = write(args, &profiles, &timed)?;
     if timed.len() < args.frames as usize {
         return Err(CliError::Interrupted {
@@ -89,7 +107,10 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             ),
         });
     }
-    Ok(())
+    match &unique(mistakes)[..] {
+        [] => Ok(()),
+        mistakes => Err(CliError::Judged(mistakes.join("\nerror: "))),
+    }
 }
 
 /// One in full, several as tables beside each other.

@@ -9,16 +9,15 @@ use itertools::Itertools;
 use skiagraph_cases::HardCase;
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::files::write::write_whole;
-use skiagraph_compare::graphs::faults::reasons;
-use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::graphs::planning::Capabilities;
-use skiagraph_compare::graphs::{preset, shadow_method};
+use skiagraph_compare::graphs::shadow_method::{self, PlanCheck};
+use skiagraph_compare::graphs::{method, preset};
+use skiagraph_compare::measuring::device;
 use skiagraph_compare::measuring::ground_truth::PrimaryVisibility;
 use skiagraph_compare::measuring::hard_case::{HardCaseContext, MethodRun};
 use skiagraph_compare::measuring::hard_cases::{
-    cases, check_abilities, check_exact, check_pictures, claim, with_triangles,
+    cases, check_exact, check_pictures, claim, one_of_each_light,
 };
-use skiagraph_compare::measuring::{device, guarantee};
 use skiagraph_compare::records::results::PROGRAM;
 use skiagraph_compare::records::stress::{Column, Report, Verdict};
 use skiagraph_compare::sink::Session;
@@ -32,8 +31,9 @@ use std::sync::Arc;
 /// Checks all arguments, then runs the methods on the cases and prints and saves the results.
 ///
 /// # Errors
-/// If a graph has errors, a case is unknown, no GPU can be opened, Ctrl-C stops the command, a file
-/// cannot be written, a guarantee is broken, or rounding decides too many pixels of a case.
+/// If no method can run, a case is unknown, no GPU can be opened, Ctrl-C stops the command, a file
+/// cannot be written, a guarantee is broken, rounding decides too many pixels of a case, or, behind
+/// the results of the others, a document has mistakes.
 pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if args.list {
         return print(&stress_matrix::catalogue());
@@ -42,30 +42,36 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
     let names = preset::named_or_all(&args.presets, &sources);
     check_exact(&args.exact, &names)?;
-    let methods = shadow_method::load_methods(&names, &args.params, &args.map_size, &sources)?;
-    for method in &methods {
-        guarantee::find(method, &args.exact)?;
-    }
+    let (params, sizes) = (&args.params, &args.map_size);
+    let methods = method::load(&names, params, sizes, &sources, shadow_method::load_each)?;
     let primary = PrimaryVisibility::load(&sources)?;
     let viewport = args.size.0;
-    let provider = SceneProvider::new(Arc::new(with_triangles(&cases).scene()));
-    shadow_method::check_plans(&methods, &[viewport], &provider, None)?;
     let graphs = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), graphs)?;
-    let session = Session::new(&gpu, &Terminal);
-    primary.plan(session, viewport, &provider)?;
-    let with_guarantee = |method: Method| -> Result<MethodRun, CliError> {
+    let (session, device) = (Session::new(&gpu, &Terminal), Capabilities::new(&gpu));
+    let methods = methods.into_iter().map(|method| {
         let method = method.at(viewport).settled(gpu.device.features());
-        let plan = method.plan(viewport, Capabilities::new(&gpu), &provider);
-        let mut run = MethodRun::new(method, &args.exact)?;
-        run.column.unavailable = plan.err().map(|faults| reasons(&faults));
-        Ok(run)
-    };
-    let methods = methods
-        .into_iter()
-        .map(with_guarantee)
-        .collect::<Result<Vec<_>, _>>()?;
-    check_abilities(&methods, &gpu)?;
+        MethodRun::new(method, &args.exact)
+    });
+    let mut methods: Vec<MethodRun> = methods.collect();
+    let mut plans = PlanCheck::default();
+    for scene in one_of_each_light(&cases) {
+        let provider = SceneProvider::new(Arc::new(scene));
+        primary.plan(session, viewport, &provider)?;
+        let methods = methods.iter().map(|run| &run.method);
+        plans.add(methods, &[viewport], &provider, &device);
+    }
+    plans.end(&Terminal)?;
+    let mut mistakes = Vec::new();
+    for run in &mut methods {
+        let unclear = run.column.unavailable.take().map(|reason| (reason, true));
+        let refusal = unclear.or_else(|| plans.refusal(&run.method));
+        if let Some((reason, is_mistake)) = refusal {
+            let text = format!("`{}` cannot run: {reason}", run.method.name);
+            mistakes.extend(is_mistake.then_some(text));
+            run.column.unavailable = Some(reason);
+        }
+    }
     if let Some(folder) = &args.save {
         check_pictures(&methods, &cases, viewport, folder)?;
     }
@@ -91,7 +97,11 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     };
     interrupt::install()?;
     let outcome = run(&context, &cases, &mut report, args);
-    finish(&report, outcome, cases.len(), args)
+    finish(&report, outcome, cases.len(), args)?;
+    match &mistakes[..] {
+        [] => Ok(()),
+        mistakes => Err(CliError::Judged(mistakes.join("\nerror: "))),
+    }
 }
 
 /// Runs case after case; whatever is done is on disk at once.

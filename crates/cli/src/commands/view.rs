@@ -5,6 +5,8 @@ use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 #[cfg(feature = "window")]
 use crate::{args::shared::SceneArgs, scene_selection::SceneSelection, terminal::Terminal};
+#[cfg(any(test, not(feature = "window")))]
+use skiagraph_compare::wording::command_line;
 #[cfg(feature = "window")]
 use skiagraph_viewer::Opening;
 
@@ -42,9 +44,36 @@ pub fn view(args: &ViewArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 /// Always.
 #[cfg(not(feature = "window"))]
 pub fn view(_: &ViewArgs, _: &GpuArgs) -> Result<(), CliError> {
-    Err(CliError::Input(
-        "this program was built without its window; build it with the feature `window`, which is \
-         on unless --no-default-features is given"
-            .into(),
-    ))
+    Err(CliError::Input(without_window(std::env::args_os())))
+}
+
+/// Returns the message of a program without its window, with the command to type for the words of
+/// this one.
+#[cfg(any(test, not(feature = "window")))]
+fn without_window(words: impl Iterator<Item = std::ffi::OsString>) -> String {
+    let words = command_line(words);
+    let words = words.trim_start_matches("skiagraph ");
+    format!(
+        "this program was built without its window, as `./run.sh` builds it\n  \
+         in the folder of the checkout type:  cargo run --release -- {words}\n  \
+         elsewhere install it with the window:  cargo install --path CHECKOUT/crates/cli"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn without_a_window_the_command_to_type_is_told() {
+        let words = [
+            "target/release/skiagraph",
+            "view",
+            "my method.ron",
+            "--set",
+            "n=1",
+        ];
+        let text = super::without_window(words.into_iter().map(Into::into));
+        let command = "cargo run --release -- view 'my method.ron' --set n=1\n";
+        assert!(text.contains(command), "{text}");
+        assert!(text.contains("./run.sh"), "{text}");
+    }
 }

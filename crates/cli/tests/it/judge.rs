@@ -120,3 +120,22 @@ fn mistakes_of_the_command_line_are_told() {
         assert!(told.contains(expected), "{line}: {told}");
     }
 }
+
+/// A picture without a number where it counts says so, and no other camera is advised.
+#[test]
+fn a_picture_without_numbers_holds_no_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/it/judge"));
+    for name in ["allnan.exr", "plain.gltf"] {
+        fs::copy(files.join(name), folder.path().join(name)).unwrap();
+    }
+    let line = "judge allnan.exr --scene plain.gltf --eye 6,6,6 --look -1,-0.9,-1 --fov 50 \
+                --light -0.6,-1,-0.2";
+    let told = said(folder.path(), line);
+    assert!(told.contains("the picture holds no answer"), "{told}");
+    assert!(told.contains("1,080"), "{told}");
+    assert!(
+        !told.contains("--view") && !told.contains("another camera"),
+        "{told}"
+    );
+}

@@ -6,6 +6,7 @@ mod support;
 
 mod adapter;
 mod backends;
+mod cannot_run;
 mod cells;
 mod check;
 mod command_line;

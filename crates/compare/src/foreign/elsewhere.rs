@@ -2,6 +2,7 @@
 //! with the one that it was held against.
 
 use crate::error::CompareError;
+use crate::foreign::suspicions::square;
 use crate::measuring::ground_truth::heard;
 use crate::sink::{Sink, Step};
 use skiagraph_reference::{Oracle, OracleMode};
@@ -13,8 +14,14 @@ const MOST: usize = 16;
 /// Share of the error of a picture of one grey that a picture may have at most to be recognised.
 const RECOGNISED: f64 = 0.25;
 
+/// Least number of pixels that must face the light and have a share for a view to be recognised,
+/// and least variance of what is right there: a picture agrees with a view that shows nothing, or
+/// nothing but light, whatever it shows.
+const LEAST: (usize, f64) = (16, 0.001);
+
 /// Returns the options that name the view and the light of the scene with which shares of light
-/// agree best, if they agree well with any but `view`.
+/// agree best, if they agree well with any but `view`. If the camera is known, only other lights of
+/// `view` are tried.
 ///
 /// # Errors
 /// [`CompareError::Interrupted`].
@@ -22,6 +29,7 @@ pub(crate) fn elsewhere(
     (shares, viewport): (&[f32], [u32; 2]),
     scene: &Scene,
     view: &View,
+    is_camera_known: bool,
     sink: &dyn Sink,
 ) -> Result<Option<String>, CompareError> {
     let others = scene.views.iter().flat_map(|other| {
@@ -30,7 +38,9 @@ pub(crate) fn elsewhere(
     });
     let seen = |of: &View| (of.eye, of.direction, of.fov_y_degrees);
     let own = (seen(view), scene.light_of(view));
-    let others = others.filter(|(other, light)| (seen(other), light.kind) != own);
+    let others = others.filter(|(other, light)| {
+        (seen(other), light.kind) != own && (!is_camera_known || seen(other) == own.0)
+    });
     let others: Vec<_> = others.take(MOST).collect();
     let step = Step::begin(sink, "other views and lights", others.len() as u64, "views");
     let oracle = Oracle::new(&scene.mesh);
@@ -47,20 +57,20 @@ pub(crate) fn elsewhere(
         let facing = truth.classes.iter().map(|class| class.faces_light());
         let pairs = shares.iter().zip(&right).zip(facing);
         let pairs = pairs.filter(|(_, faces_light)| *faces_light);
-        let (mut count, mut lit, mut squares) = (0.0, 0.0, 0.0);
+        let (mut count, mut answered, mut lit, mut squares) = (0u32, 0, 0.0, 0.0);
         for ((shown, right), _) in pairs {
-            let off = f64::from(shown - right);
-            squares += if off.is_finite() {
-                off.powi(2).min(1.0)
-            } else {
-                1.0
-            };
+            squares += square(shown - right);
             lit += f64::from(*right);
-            count += 1.0;
+            answered += usize::from(shown.is_finite());
+            count += 1;
         }
-        let mean = lit / f64::max(count, 1.0);
-        let share = squares / f64::max(count * mean * (1.0 - mean), f64::MIN_POSITIVE);
-        if share < best.as_ref().map_or(RECOGNISED, |(least, _)| *least) {
+        let mean = lit / f64::from(count.max(1));
+        let variance = mean * (1.0 - mean);
+        let share = squares / f64::from(count) / variance;
+        if answered >= LEAST.0
+            && variance > LEAST.1
+            && share < best.as_ref().map_or(RECOGNISED, |(least, _)| *least)
+        {
             let lights = scene.lights_of(other).len();
             let light = (lights > 1).then(|| format!(" --light {}", light.name));
             let options = format!("--view {}{}", other.name, light.unwrap_or_default());

@@ -27,7 +27,7 @@ use crate::foreign::elsewhere::elsewhere;
 use crate::foreign::factor::{Factor, Reading};
 use crate::foreign::raster::Raster;
 use crate::foreign::surfaces::{by_depth, ids};
-use crate::foreign::suspicions::Suspect;
+use crate::foreign::suspicions::{Agreement, Suspect, Suspicions};
 use crate::graphs::ground_truth::Judgement;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::device::{self, GpuRequest};
@@ -44,10 +44,11 @@ use crate::sink::{Session, Sink, Step};
 use crate::wording::{percent, plural, size, thousands};
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use skiagraph_reference::{
-    Candidate, GroundTruth, Oracle, OracleMode, Statistics, candidates, unattributable,
+    Candidate, Class, GroundTruth, Oracle, OracleMode, Statistics, candidates, unattributable,
 };
 use skiagraph_scene::{LightKind, Scene, View};
 use std::{
+    borrow::Cow,
     collections::BTreeSet,
     path::{Path, PathBuf},
     rc::Rc,
@@ -115,6 +116,13 @@ pub struct Judged {
     pub files: Vec<PictureFile>,
 }
 
+impl Truth<'_> {
+    /// True if ids or depths have shown that the pictures' camera is the one of the view.
+    fn is_camera_known(&self) -> bool {
+        self.surfaces != RASTERISED
+    }
+}
+
 impl Judged {
     /// Writes `judge.json` ([`record`](Self::record)) and the pictures ([`files`](Self::files))
     /// into a folder, which is made if it is missing.
@@ -127,6 +135,9 @@ impl Judged {
         write_whole(&folder.join("judge.json"), to_text(&self.record).as_bytes())
     }
 }
+
+/// Word for surfaces that no file gives.
+const RASTERISED: &str = "rasterised";
 
 /// Truth of a view, with the pixels at which it is not unique.
 pub(crate) struct Truth<'a> {
@@ -207,17 +218,21 @@ pub fn judge(
     let mut files: Vec<PictureFile> = Vec::new();
     let mut taken = BTreeSet::new();
     for factor in &factors {
-        let (mut picture, drawn) = one(judging, factor, &truth, &judged_truth)?;
-        if picture.rank.is_none() {
-            let found = elsewhere((&factor.shares, viewport), &scene, view, sink)?;
-            let text = |options| format!("it agrees with another view or light: {options}");
-            picture.warnings.extend(found.map(text));
+        let (mut picture, drawn, agreement) = one(judging, factor, &truth, &judged_truth)?;
+        if agreement == Agreement::Hardly {
+            let shown = (&*factor.shares, viewport);
+            let found = elsewhere(shown, &scene, view, truth.is_camera_known(), sink)?;
+            if let Some(options) = found {
+                let text = format!("it agrees with another view or light: {options}");
+                picture.warnings.push(text);
+                picture.rank = None;
+            }
         }
         record.pictures.push(picture);
         files.extend(
             drawn
                 .into_iter()
-                .filter(|file| taken.insert(file.name.clone())),
+                .filter(|file| taken.insert(file.name.to_lowercase())),
         );
     }
     rank(&mut record);
@@ -305,7 +320,7 @@ pub(crate) fn truth<'a>(
             });
             (of.primitives, "depth")
         }
-        _ => (rasterised, "rasterised"),
+        _ => (rasterised, RASTERISED),
     };
     let view = traced(primitives)?;
     let unattributable = open_pixels(
@@ -385,21 +400,31 @@ fn one(
     factor: &Factor,
     truth: &Truth,
     judged_truth: &GroundTruth,
-) -> Result<(JudgedPicture, Vec<PictureFile>), CompareError> {
+) -> Result<(JudgedPicture, Vec<PictureFile>, Agreement), CompareError> {
     let told = |error: skiagraph_reference::Error| {
         CompareError::Input(format!("{}: {error}", factor.file))
     };
     let (own, pixels) = (&truth.view.ground_truth.pixels, &judged_truth.pixels);
     let outputs = Outputs::from_shares(factor.shares.clone(), own);
-    let judgement = Judgement::new(&outputs, judged_truth).map_err(told)?;
-    let mut wrong = judgement.counts.wrong;
     let is_judged: Vec<bool> = pixels
         .classes
         .iter()
         .zip(&pixels.indeterminate)
         .map(|(class, apart)| class.faces_light() && !apart)
         .collect();
-    let apart = wrong.in_band;
+    let has_no_answer = |at: &usize| is_judged[*at] && !factor.shares[*at].is_finite();
+    let unanswered: Vec<usize> = (0..is_judged.len()).filter(has_no_answer).collect();
+    let mut answered_truth = Cow::Borrowed(judged_truth);
+    for &at in &unanswered {
+        answered_truth.to_mut().pixels.indeterminate[at] = true;
+    }
+    let is_wrong =
+        |at: &&usize| (outputs.visibility[**at] == 1) != (pixels.classes[**at] == Class::Lit);
+    let wrong_without_answer = unanswered.iter().filter(is_wrong).count() as u64;
+    let pixels = &answered_truth.pixels;
+    let judgement = Judgement::new(&outputs, &answered_truth).map_err(told)?;
+    let mut wrong = judgement.counts.wrong;
+    let apart = wrong.in_band.saturating_sub(wrong_without_answer);
     let of_own = Statistics::judged(&outputs.visibility, &outputs.status, own).map_err(told)?;
     wrong.in_band = of_own.wrong.in_band;
     let mut warnings = factor.warnings.clone();
@@ -410,13 +435,14 @@ fn one(
         truth: judged_truth,
         is_judged: &is_judged,
         is_integer: factor.is_integer,
+        is_camera_known: truth.is_camera_known(),
     };
-    let suspicions = suspect.suspicions();
-    warnings.extend(suspicions.texts);
+    let Suspicions { texts, agreement } = suspect.suspicions();
+    warnings.extend(texts);
     let has_blockers = judgement.is_hard && wrong.certain > 0;
     let blockers = has_blockers.then(|| truth.view.blockers_of(&outputs, pixels));
     let (images, files) = if judging.draws {
-        let (images, files) = draw(factor, judged_truth, (&outputs, &judgement))?;
+        let (images, files) = draw(factor, &answered_truth, (&outputs, &judgement))?;
         (Some(images), files)
     } else {
         Default::default()
@@ -427,8 +453,14 @@ fn one(
         } else {
             Answer::Hard
         },
-        // Given below, to those that agree.
-        rank: (!suspicions.is_another).then_some(0),
+        // Given below, to those that agree, or whose camera is the right one.
+        rank: match agreement {
+            Agreement::Fair => Some(0),
+            Agreement::Hardly => truth.is_camera_known().then_some(0),
+            Agreement::NoAnswer => None,
+        },
+        without_answer: unanswered.len() as u64,
+        wrong_without_answer,
         wrong_unattributable: apart.saturating_sub(wrong.in_band),
         wrong,
         graded: judgement.graded,
@@ -439,7 +471,7 @@ fn one(
         file: factor.file.clone(),
         format: factor.format.clone(),
     };
-    Ok((picture, files))
+    Ok((picture, files, agreement))
 }
 
 /// Beginning of the names of the pictures that are drawn of a file.

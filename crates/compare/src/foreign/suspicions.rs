@@ -1,7 +1,8 @@
 //! Suspects a mistake in a foreign picture: it would agree much better with the truth if it were
-//! read in another way, or it hardly agrees at all.
+//! read in another way, its surfaces shade themselves, or it hardly agrees at all.
 
 use crate::foreign::factor::{flipped, linear};
+use crate::records::judged_pictures::MOST_WITHOUT_ANSWER;
 use crate::wording::percent;
 use skiagraph_reference::GroundTruth;
 
@@ -19,8 +20,20 @@ const LEAST: f64 = 0.001;
 /// Pixels that face the light, below which nothing is suspected.
 const FEW: usize = 16;
 
-/// Mean factor that pixels in full shadow may show at most.
+/// Least factor that pixels in full shadow may show at most.
 const AMBIENT: f64 = 0.05;
+
+/// Ratio of light that is lacking to light that is too much, from which on the errors are of one
+/// kind: a picture of another camera has both.
+const ONE_SIDED: f64 = 10.0;
+
+/// Share of the light that must be lacking on lit surfaces for them to shade themselves, and of
+/// those that lack it that must be scattered.
+const ACNE: [f64; 2] = [0.1, 0.5];
+
+/// Distance in pixels, along rows and columns, within which all must be lit around one on a lit
+/// surface: the filter of a map's edges reaches no farther.
+const AROUND: usize = 4;
 
 /// Compares the shares of a picture with the truth, over the pixels that face the light and that
 /// `is_judged` names.
@@ -31,21 +44,46 @@ pub(crate) struct Suspect<'a> {
     pub(crate) is_judged: &'a [bool],
     /// True if the picture's file holds integers, which renderers encode for a screen.
     pub(crate) is_integer: bool,
+    /// True if ids or depths have told that the camera is the right one.
+    pub(crate) is_camera_known: bool,
+}
+
+/// How far a picture agrees with the truth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Agreement {
+    /// As far as pictures of this view may.
+    #[default]
+    Fair,
+    /// Hardly, whichever way it is read.
+    Hardly,
+    /// It has hardly any number, so that nothing is known of it.
+    NoAnswer,
 }
 
 /// Mistakes that are suspected in a picture.
 #[derive(Default)]
 pub(crate) struct Suspicions {
     pub(crate) texts: Vec<String>,
-    /// True if the picture hardly agrees with the truth, whichever way it is read.
-    pub(crate) is_another: bool,
+    pub(crate) agreement: Agreement,
 }
 
 impl Suspect<'_> {
     /// Returns a text for each suspicion, with the way out.
     pub(crate) fn suspicions(&self) -> Suspicions {
         let right = self.truth.shares();
-        let judged: Vec<usize> = (0..right.len()).filter(|at| self.is_judged[*at]).collect();
+        let facing = self
+            .is_judged
+            .iter()
+            .filter(|is_judged| **is_judged)
+            .count();
+        let has_answer = |at: &usize| self.is_judged[*at] && self.shares[*at].is_finite();
+        let judged: Vec<usize> = (0..right.len()).filter(has_answer).collect();
+        if ((facing - judged.len()) as f64) > MOST_WITHOUT_ANSWER * facing as f64 {
+            return Suspicions {
+                texts: vec![no_answer(judged.len() as u64, facing as u64)],
+                agreement: Agreement::NoAnswer,
+            };
+        }
         if judged.len() < FEW {
             return Suspicions::default();
         }
@@ -67,13 +105,90 @@ impl Suspect<'_> {
         readings.sort_by(|(one, _), (other, _)| one.total_cmp(other));
         let is_explained = !readings.is_empty();
         texts.extend(readings.first().map(|(_, text)| (*text).to_owned()));
-        let is_another = !is_explained && even > LEAST && own > even * ALIKE;
-        if is_another {
-            texts.push(self.another(&judged, &right));
-        } else if !is_explained {
-            texts.extend(self.ambient(&judged, &right));
-        }
-        Suspicions { texts, is_another }
+        let acne = self
+            .acne(&judged, &right)
+            .filter(|_| !is_explained && own > LEAST);
+        let is_hardly = even > LEAST && own > even * ALIKE && !self.is_one_sided(&judged, &right);
+        let agreement = match acne {
+            Some(acne) => {
+                texts.push(acne);
+                Agreement::Fair
+            }
+            None if !is_explained && is_hardly => {
+                texts.push(self.hardly(&judged, &right));
+                Agreement::Hardly
+            }
+            None => {
+                let ambient = self.ambient(&judged, &right);
+                texts.extend(ambient.filter(|_| !is_explained));
+                Agreement::Fair
+            }
+        };
+        Suspicions { texts, agreement }
+    }
+
+    /// True if nearly all errors are lacking light, or nearly all light that is too much.
+    fn is_one_sided(&self, judged: &[usize], right: &[f32]) -> bool {
+        let off = judged
+            .iter()
+            .map(|at| f64::from(self.shares[*at] - right[*at]));
+        let [lacking, too_much] = off.fold([0.0; 2], |[lacking, too_much], off| {
+            [lacking + f64::max(-off, 0.0), too_much + f64::max(off, 0.0)]
+        });
+        lacking.max(too_much) > ONE_SIDED * lacking.min(too_much)
+    }
+
+    /// Indices of the pixels around one, itself among them.
+    fn around(&self, at: usize) -> impl Iterator<Item = usize> + use<> {
+        let [width, height] = self.size.map(|side| side as usize);
+        let beside = |at: usize, end: usize| at.saturating_sub(AROUND)..(at + AROUND + 1).min(end);
+        let columns = beside(at % width, width);
+        let rows = beside(at / width, height);
+        rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
+    }
+
+    /// That surfaces which are lit all around lack light, in stripes or specks or through a filter
+    /// over these, while shadows are dark.
+    fn acne(&self, judged: &[usize], right: &[f32]) -> Option<String> {
+        let classes = &self.truth.pixels.classes;
+        let is_lit = |at: usize| right[at] == 1.0;
+        let is_open = |at: &usize| {
+            let mut around = self.around(*at);
+            is_lit(*at) && around.all(|other| is_lit(other) || !classes[other].faces_light())
+        };
+        let open: Vec<usize> = judged.iter().copied().filter(is_open).collect();
+        let lacks = |at: usize| f64::from(1.0 - self.shares[at]).clamp(0.0, 1.0);
+        let lacking: f64 = open.iter().map(|at| lacks(*at)).sum();
+        let dim: Vec<usize> = open
+            .iter()
+            .copied()
+            .filter(|at| lacks(*at) > 0.05)
+            .collect();
+        let is_scattered = |at: &&usize| {
+            let mut around = self.around(**at).filter(|other| self.is_judged[*other]);
+            let lack = lacks(**at);
+            lack < 0.95 || around.any(|other| is_lit(other) && lack - lacks(other) > 0.5)
+        };
+        let scattered = dim.iter().filter(is_scattered).count();
+        let dark = judged.iter().filter(|at| right[**at] == 0.0);
+        let too_much: f64 = dark
+            .map(|at| f64::from(self.shares[*at]).clamp(0.0, 1.0))
+            .sum();
+        let [least, most_solid] = ACNE;
+        let is_acne = open.len() >= FEW
+            && lacking > least * open.len() as f64
+            && lacking > 3.0 * too_much
+            && dim.len() * 100 < open.len() * 99
+            && scattered as f64 > most_solid * dim.len() as f64;
+        is_acne.then(|| {
+            format!(
+                "surfaces that are lit all around lack light at {} of their pixels, scattered, \
+                 where shadows are as dark as they should be: acne, surfaces that shade \
+                 themselves (raise the depth or the normal bias, or cast by back faces), or a \
+                 filter that is too wide",
+                percent(dim.len() as u64, open.len() as u64)
+            )
+        })
     }
 
     /// The picture in other readings, each with what is told if it agrees much better.
@@ -119,31 +234,41 @@ impl Suspect<'_> {
     }
 
     /// That few pixels agree at all.
-    fn another(&self, judged: &[usize], right: &[f32]) -> String {
+    fn hardly(&self, judged: &[usize], right: &[f32]) -> String {
         let agrees = |at: &&usize| (self.shares[**at] - right[**at]).abs() < 0.5;
         let agreeing = judged.iter().filter(agrees).count();
         let [width, height] = self.size;
+        let causes = if self.is_camera_known {
+            "Its surfaces are those of this camera, so it may be of another light (--light), or \
+             its shadows are that far off"
+                .to_owned()
+        } else {
+            format!(
+                "It may be of another camera (--view, --eye, --look, or --fov, the vertical field \
+                 of view; the aspect is that of {width}x{height}), another light (--light) or \
+                 another scene: `skiagraph truth` writes the camera's matrices and what is right; \
+                 --ids or --depth tell that the camera is right"
+            )
+        };
         format!(
             "it hardly agrees with the truth: {} of the pixels are on the right side of one half, \
-             and a picture of one grey is about as near to it. It may be of another camera \
-             (--view, --eye, --look, or --fov, the vertical field of view; the aspect is that of \
-             {width}x{height}), another light (--light) or another scene: `skiagraph truth` writes \
-             the camera's matrices and what is right",
+             and a picture of one grey is about as near to it. {causes}",
             percent(agreeing as u64, judged.len() as u64)
         )
     }
 
-    /// That shadows are not dark: an ambient light is in the quotient.
+    /// That no shadow is dark: an ambient light is in the quotient. A filter that blurs leaves the
+    /// inside of shadows dark.
     fn ambient(&self, judged: &[usize], right: &[f32]) -> Option<String> {
         let dark = judged.iter().filter(|at| right[**at] == 0.0);
         let mut dark: Vec<f64> = dark.map(|at| self.shares[*at].into()).collect();
         dark.sort_by(f64::total_cmp);
-        let least = *dark.get(dark.len() / 10)?;
+        let least = *dark.get(dark.len() / 100)?;
         (dark.len() >= FEW && least > AMBIENT).then(|| {
             format!(
-                "nine tenths of the pixels in full shadow show a factor above {least:.2}: an \
-                 ambient light may be in the picture, or a limit of how dark shadows get; render \
-                 direct light alone"
+                "no shadow is darker than {least:.2}, but for a hundredth of the pixels in full \
+                 shadow: an ambient light may be in the picture, or a limit of how dark shadows \
+                 get; render direct light alone"
             )
         })
     }
@@ -165,8 +290,20 @@ impl Suspect<'_> {
     }
 }
 
+/// That a picture has no answer at so many pixels that it cannot be judged.
+fn no_answer(answered: u64, facing: u64) -> String {
+    let has = match answered {
+        0 => "the picture holds no answer: it has no finite number at any".to_owned(),
+        _ => format!(
+            "it has a finite number at only {}",
+            percent(answered, facing)
+        ),
+    };
+    format!("{has} of the pixels that face the light, so it gets no rank")
+}
+
 /// The squared error of a share; one that is no number is wholly wrong.
-fn square(off: f32) -> f64 {
+pub(crate) fn square(off: f32) -> f64 {
     if off.is_finite() {
         f64::from(off).powi(2).min(1.0)
     } else {

@@ -9,7 +9,8 @@
 //! # Ok::<(), String>(())
 //! ```
 
-use std::{path::Path, str::FromStr};
+use itertools::Itertools;
+use std::{fmt, path::Path, str::FromStr};
 
 /// An assignment of a value to a param of a graph, `NAME=VALUE`. The value stays text until the
 /// graph that has the param parses it.
@@ -75,6 +76,16 @@ impl MethodArgument {
             preset: preset.to_owned(),
             own: assignments,
         }
+    }
+}
+
+/// Writes the method as it can be typed again.
+impl fmt::Display for MethodArgument {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let own = self.own.iter();
+        let own = own.map(|Assignment { name, value }| format!("{name}={value}"));
+        let sign = if self.own.is_empty() { "" } else { "@" };
+        write!(f, "{}{sign}{}", self.preset, own.format(","))
     }
 }
 

@@ -15,10 +15,10 @@
 //! println!("{error}");
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, explain, with_causes};
 use crate::sink::Sink;
 use crate::wording::plural;
-use skiagraph_graph::{Diagnostic, Diagnostics, Graph, Severity};
+use skiagraph_graph::{Code, Diagnostic, Diagnostics, Graph, Severity};
 use std::collections::BTreeSet;
 
 /// Faults of several graphs, collected to be shown together, equal ones once.
@@ -37,7 +37,7 @@ impl GraphFaults {
         let rendered = diagnostics.render(false);
         self.graphs.insert(graph.into());
         if !self.rendered.contains(&rendered) {
-            self.errors += errors(diagnostics).count();
+            self.errors += errors(diagnostics.iter()).count();
             self.faults.push(diagnostics.iter().cloned().collect());
             self.rendered.push(rendered);
         }
@@ -75,19 +75,46 @@ impl GraphFaults {
     }
 }
 
-fn errors(diagnostics: &Diagnostics) -> impl Iterator<Item = &Diagnostic> {
+fn errors<'d>(
+    diagnostics: impl IntoIterator<Item = &'d Diagnostic>,
+) -> impl Iterator<Item = &'d Diagnostic> {
     let is_error = |diagnostic: &&Diagnostic| diagnostic.severity == Severity::Error;
-    diagnostics.iter().filter(is_error)
+    diagnostics.into_iter().filter(is_error)
+}
+
+/// True if a graph cannot be planned for a mistake of its own, not only for what it meets: a light
+/// that it does not take, or an adapter or program without what it needs.
+pub fn is_mistake<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> bool {
+    let is_met = |code| {
+        use Code::{Feature, Light, Limit, Memory, Size};
+        matches!(code, Feature | Light | Limit | Memory | Size)
+    };
+    errors(diagnostics).any(|error| !is_met(error.code))
 }
 
 /// Returns the errors among `diagnostics`, without warnings, as one line for a table's footnote.
 /// Only the first line of each help text is included.
-pub fn reasons(diagnostics: &Diagnostics) -> String {
+pub fn reasons<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> String {
     let line = |Diagnostic { message, help, .. }: &Diagnostic| match help {
         Some(help) => format!("{message} ({})", help.lines().next().unwrap_or_default()),
         None => message.clone(),
     };
     errors(diagnostics).map(line).collect::<Vec<_>>().join("; ")
+}
+
+/// Returns why a method cannot run as one line, and true if its document is at fault.
+pub fn refusal(error: &CompareError) -> (String, bool) {
+    match error {
+        CompareError::Diagnostics { faults, .. } => {
+            let faults = || faults.iter().flatten();
+            (reasons(faults()), is_mistake(faults()))
+        }
+        CompareError::Gpu { source, .. } => (explain(source), false),
+        error => (
+            with_causes(error),
+            matches!(error, CompareError::InvalidOutputs(_)),
+        ),
+    }
 }
 
 /// Passes the warnings of a graph and of its plan to a sink, if there are any.

@@ -11,9 +11,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
-use crate::wording::did_you_mean;
-use skiagraph_graph::Graph;
+use skiagraph_graph::{Code, Diagnostic, Graph};
 use skiagraph_passes::{SceneProvider, uniforms::LIGHT_KINDS};
 
 /// Splits the words `directional`, `spot` and `point` into two lists in this order: the kinds of
@@ -40,20 +38,12 @@ pub fn kind_and_number(provider: &SceneProvider) -> (&'static str, usize) {
     (provider.light().word(), provider.lights().len())
 }
 
-/// Checks that each kind of light that a graph's document lists is `directional`, `spot` or
-/// `point`. `name` is the graph's name for the message.
-///
-/// # Errors
-/// Names the first unknown kind.
-pub fn check(name: &str, graph: &Graph) -> Result<(), CompareError> {
-    let unknown = |word: &&str| !LIGHT_KINDS.contains(word);
-    let mut words = graph.lights().map(|word| word.as_str());
-    match words.find(unknown) {
-        None => Ok(()),
-        Some(word) => Err(CompareError::Input(format!(
-            "`{name}` takes the light `{word}`, which there is not{}\n  lights are {}",
-            did_you_mean(word, LIGHT_KINDS.into_iter()),
-            LIGHT_KINDS.join(", ")
-        ))),
-    }
+/// Returns the mistake of a document that lists another kind of light than `directional`, `spot` or
+/// `point`; `None` if it lists only these.
+pub fn unknown(graph: &Graph) -> Option<Diagnostic> {
+    let is_unknown = |word: &str| !LIGHT_KINDS.contains(&word);
+    let word = graph.lights().find(|word| is_unknown(word.as_str()))?;
+    let text = format!("unknown kind of light `{}`", word.value);
+    let mistake = Diagnostic::error(Code::UnknownVariant, text).at(word.span.clone(), "");
+    Some(mistake.suggest(word.as_str(), LIGHT_KINDS))
 }

@@ -15,6 +15,7 @@ use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::argument::Assignment;
 use crate::graphs::argument::MethodArgument;
+use crate::graphs::contract;
 use crate::graphs::openings;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset};
@@ -114,7 +115,8 @@ impl Method {
     /// time.
     ///
     /// # Errors
-    /// All faults of the graph and its params under these conditions.
+    /// All faults of the graph and its params under these conditions; outputs whose size or format
+    /// a shadow method must not have ([`contract::check_outputs`]).
     pub fn plan(
         &self,
         viewport: [u32; 2],
@@ -130,7 +132,7 @@ impl Method {
     /// [`value`](Self::value) and [`map_size`](Self::map_size) agree with the plan.
     ///
     /// # Errors
-    /// All faults of the graph and its params under these conditions.
+    /// Those of [`plan`](Self::plan).
     pub fn plan_of(
         &self,
         outputs: &[&str],
@@ -141,7 +143,9 @@ impl Method {
         let mut request = capabilities.request(viewport, provider);
         request.params = self.params.clone();
         request.outputs = Some(outputs.iter().map(|&name| name.to_owned()).collect());
-        self.preset.graph.plan(&request)
+        let plan = self.preset.plan_quietly(&request)?;
+        contract::check_outputs(&self.preset.name, &plan, provider)?;
+        Ok(plan)
     }
 
     /// Returns a hash, as 16 hexadecimal digits, of everything that a run of the method depends on,
@@ -206,11 +210,11 @@ pub type Load = fn(&[String], &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareE
 /// Loads the methods that `words` name (`crsm@n=1,depth=plane`, `my.ron@over=pcf`) with the
 /// function `load`. Returns each method in each setting that its word and `params` list, and with
 /// each of `map_sizes` (texels along an edge). If `map_sizes` is empty, the preset has no param
-/// `map_size` or the word sets it, there is one method for each setting.
+/// `map_size` or the word sets it, there is one method for each setting. A word whose document has
+/// [`faults`](Preset::faults), if `load` keeps it, is one method, which cannot be planned.
 ///
 /// # Errors
-/// Graphs with faults or that do not exist; a value that a param cannot take, a param that no graph
-/// has.
+/// The errors of `load`; a value that a param cannot take, a param that no graph has.
 pub fn load(
     words: &[impl AsRef<str>],
     params: &[Assignment],
@@ -240,6 +244,12 @@ fn methods(
         let Some(preset) = named else {
             continue;
         };
+        if preset.faults.is_some() {
+            // Which params it has is not known.
+            let name = argument.to_string();
+            methods.push(Method::new(preset.clone(), ParamValues::new()).named(&name));
+            continue;
+        }
         let mut sizes = unique(map_sizes.iter().copied().map(Some));
         if sizes.is_empty() || preset.param(MAP_SIZE).is_none() {
             sizes = vec![None];
@@ -320,8 +330,11 @@ pub fn param_values(
     parsed.collect()
 }
 
-/// Refuses an assignment that no preset has a param for.
+/// Refuses an assignment that no preset has a param for, or may have.
 fn check_names(presets: &[Arc<Preset>], assignments: &[Assignment]) -> Result<(), CompareError> {
+    if presets.iter().any(|preset| preset.faults.is_some()) {
+        return Ok(());
+    }
     for Assignment { name, .. } in assignments {
         if presets.iter().any(|preset| preset.param(name).is_some()) {
             continue;

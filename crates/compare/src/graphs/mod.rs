@@ -16,6 +16,7 @@
 //! ```
 
 pub mod argument;
+pub mod contract;
 pub mod faults;
 pub mod ground_truth;
 pub mod idle_params;

@@ -22,7 +22,8 @@ use crate::sink::Sink;
 use crate::wording::unknown;
 use itertools::Itertools;
 use skiagraph_graph::{
-    Diagnostics, FolderSources, Graph, LayeredSources, Param, Plan, PlanRequest, Sources,
+    Diagnostics, FolderSources, Graph, LayeredSources, MemorySources, Param, Plan, PlanRequest,
+    Sources,
 };
 use skiagraph_passes::{EmbeddedSources, registry};
 use std::{
@@ -152,8 +153,12 @@ pub struct Preset {
     /// `my/method.ron`, or `contact.ron@over=msm` with another document in an open include
     /// ([`load`]).
     pub name: String,
-    /// Graph of the preset's document, loaded and not yet planned.
+    /// Graph of the preset's document, loaded and not yet planned; an empty one if the document has
+    /// [`faults`](Self::faults).
     pub graph: Graph,
+    /// Faults for which the graph could not be loaded ([`load_each`]): every plan of it fails with
+    /// them. `None` for a sound document.
+    pub faults: Option<Diagnostics>,
     /// Hash of the files from which the graph was read.
     pub fingerprint: Fingerprint,
 }
@@ -192,12 +197,23 @@ impl Preset {
         params.chain(self.graph.openings().map(|(name, _)| name))
     }
 
+    /// Plans the graph.
+    ///
+    /// # Errors
+    /// The [`faults`](Self::faults) of the document, or those of the graph under this request.
+    pub fn plan_quietly(&self, request: &PlanRequest) -> Result<Plan, Diagnostics> {
+        match &self.faults {
+            Some(faults) => Err(faults.clone()),
+            None => self.graph.plan(request),
+        }
+    }
+
     /// Plans the graph, and passes the warnings of graph and plan to the sink.
     ///
     /// # Errors
-    /// The faults of the graph under this request.
+    /// Those of [`plan_quietly`](Self::plan_quietly).
     pub fn plan(&self, request: &PlanRequest, sink: &dyn Sink) -> Result<Plan, CompareError> {
-        let plan = self.graph.plan(request);
+        let plan = self.plan_quietly(request);
         let plan = plan.map_err(|diagnostics| GraphFaults::one(&self.name, &diagnostics))?;
         warn(sink, &self.graph, plan.warnings());
         Ok(plan)
@@ -212,32 +228,69 @@ pub fn graphs(presets: &[Arc<Preset>]) -> impl Iterator<Item = &Graph> {
 /// Loads the graphs that `arguments` name (a preset's name or a path), in their order, each once.
 ///
 /// # Errors
-/// The faults of all graphs together.
+/// The faults of all graphs together; those of [`load_each`].
 pub fn load_all(
     arguments: &[String],
     sources: &dyn Sources,
 ) -> Result<Vec<Arc<Preset>>, CompareError> {
-    let mut presets: Vec<Arc<Preset>> = Vec::new();
+    sound(load_each(arguments, sources)?)
+}
+
+/// Returns the presets if none of their documents has [`faults`](Preset::faults).
+///
+/// # Errors
+/// The faults of all graphs together.
+pub(crate) fn sound(presets: Vec<Arc<Preset>>) -> Result<Vec<Arc<Preset>>, CompareError> {
     let mut faults = GraphFaults::default();
+    for preset in &presets {
+        preset
+            .faults
+            .iter()
+            .for_each(|of| faults.add(&preset.name, of));
+    }
+    faults.none_or_error().map(|()| presets)
+}
+
+/// Loads the graphs that `arguments` name, as [`load_all`] does; a document with faults becomes a
+/// preset that cannot be planned ([`Preset::faults`]).
+///
+/// # Errors
+/// A name without a preset; a file that does not exist or cannot be read.
+pub fn load_each(
+    arguments: &[String],
+    sources: &dyn Sources,
+) -> Result<Vec<Arc<Preset>>, CompareError> {
+    let mut presets: Vec<Arc<Preset>> = Vec::new();
     for argument in arguments {
         if presets.iter().any(|preset| preset.name == *argument) {
             continue;
         }
         let recorded = RecordedSources::new(sources);
-        match load(argument, &recorded)? {
-            (Ok(graph), _) => presets.push(Arc::new(Preset {
-                name: argument.clone(),
-                graph,
-                fingerprint: recorded.fingerprint(),
-            })),
+        let (graph, faults) = match load(argument, &recorded)? {
+            (Ok(graph), _) => (graph, None),
             // Faults that only planning finds are shown in the same go.
-            (Err(diagnostics), path) => {
+            (Err(found), path) => {
                 let all = planning::check(&path, &registry(), sources, &Trial::default()).err();
-                faults.add(argument, &all.unwrap_or(diagnostics));
+                (empty()?, Some(all.unwrap_or(found)))
             }
-        }
+        };
+        presets.push(Arc::new(Preset {
+            name: argument.clone(),
+            graph,
+            faults,
+            fingerprint: recorded.fingerprint(),
+        }));
     }
-    faults.none_or_error().map(|()| presets)
+    Ok(presets)
+}
+
+/// Returns the graph in the place of one that cannot be loaded: nothing is known of it.
+fn empty() -> Result<Graph, CompareError> {
+    const TEXT: &str = "(format: 3, materials: [Texture(name: \"none\", format: R8Uint)], \
+                        passes: [Clear(name: \"clear\", target: \"none\")], outputs: [\"none\"])";
+    let sources = MemorySources::default().with("empty.ron", TEXT);
+    Graph::load("empty.ron", &registry(), &sources)
+        .map_err(|faults| GraphFaults::one("empty.ron", &faults))
 }
 
 /// Loads the graph that an argument names: a preset's name or a path. Returns the graph or its

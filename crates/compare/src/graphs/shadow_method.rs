@@ -13,16 +13,16 @@
 
 use crate::error::CompareError;
 use crate::graphs::argument::Assignment;
-use crate::graphs::faults::GraphFaults;
+use crate::graphs::contract::{FLOATS, INTEGERS};
+use crate::graphs::faults::{GraphFaults, is_mistake, reasons};
 use crate::graphs::light_kinds;
 use crate::graphs::method::{self, Method};
 use crate::graphs::planning::Capabilities;
-use crate::graphs::preset::{
-    self, MAP_LAYER, Preset, RAY_COUNT, STATUS, TEXEL_DENSITY, VISIBILITY,
-};
-use crate::wording::size;
+use crate::graphs::preset::{self, Preset, RAY_COUNT, STATUS, VISIBILITY};
+use crate::sink::Sink;
+use itertools::Itertools;
 use skiagraph_gpu::Content;
-use skiagraph_graph::{Code, Plan, Sources};
+use skiagraph_graph::{Code, Diagnostic, Diagnostics, Sources};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Class, GroundTruthPixels, image::Shown, statistics::status};
 use std::{
@@ -35,16 +35,29 @@ use std::{
 /// `visibility` is missing, or a kind of light is unknown.
 ///
 /// # Errors
-/// The faults of all graphs together.
+/// The faults of all graphs together; those of [`preset::load_each`].
 pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareError> {
-    let presets = preset::load_all(names, sources)?;
-    let known = |preset: &Arc<Preset>| light_kinds::check(&preset.name, &preset.graph);
-    presets.iter().try_for_each(known)?;
-    let incomplete: Vec<String> = presets
-        .iter()
-        .filter_map(|preset| missing_outputs(preset))
-        .collect();
-    none_or_error(incomplete).map(|()| presets)
+    preset::sound(load_each(names, sources)?)
+}
+
+/// Loads graphs by names or paths, as [`load_all`] does; one with faults, or that is not a shadow
+/// method, becomes a preset that cannot be planned ([`Preset::faults`]).
+///
+/// # Errors
+/// Those of [`preset::load_each`].
+pub fn load_each(
+    names: &[String],
+    sources: &dyn Sources,
+) -> Result<Vec<Arc<Preset>>, CompareError> {
+    let mut presets = preset::load_each(names, sources)?;
+    for preset in presets.iter_mut().filter_map(Arc::get_mut) {
+        if preset.faults.is_none() {
+            let mistake = light_kinds::unknown(&preset.graph);
+            let mistake = mistake.or_else(|| missing_output(preset));
+            preset.faults = mistake.map(Into::into);
+        }
+    }
+    Ok(presets)
 }
 
 /// Loads the shadow methods that `words` name, such as `nsm` or `crsm@n=1`
@@ -67,65 +80,73 @@ pub fn load_methods(
     method::load(words, params, map_sizes, sources, load_all)
 }
 
-fn none_or_error(errors: Vec<String>) -> Result<(), CompareError> {
-    match &errors[..] {
-        [] => Ok(()),
-        errors => Err(CompareError::Input(errors.join("\nerror: "))),
-    }
+/// Tells which methods can be planned on an adapter, in any of several viewports or scenes.
+#[derive(Default)]
+pub struct PlanCheck {
+    /// The first refusal of each method, by its name and map size.
+    refusals: BTreeMap<MethodKey, Diagnostics>,
+    planned: BTreeSet<MethodKey>,
+    mistakes: Vec<Diagnostic>,
 }
 
-/// Checks that methods can be planned in all viewports on [`Capabilities::greatest`], with the
-/// outputs of a shadow method. With `device`, at least one method must be able to run on it; a
-/// method that `device` cannot run, or that does not take the light of `provider`, is an error only
-/// if all fail. With `None` that check is skipped.
-///
-/// # Errors
-/// The faults of all graphs together; outputs whose size or format a shadow method must not have;
-/// the reasons why `device` can run none of the methods.
-pub fn check_plans(
-    methods: &[Method],
-    viewports: &[[u32; 2]],
-    provider: &SceneProvider,
-    device: Option<&Capabilities>,
-) -> Result<(), CompareError> {
-    let lights = provider.lights().len();
-    let mut faults = GraphFaults::default();
-    let mut mismatches = BTreeSet::new();
-    // Refusals of methods that this adapter cannot run; and whether it can run one.
-    let (mut refusals, mut can_run_one) = (GraphFaults::default(), device.is_none());
-    for &viewport in viewports {
-        for method in methods {
-            match method.plan(viewport, Capabilities::greatest(), provider) {
-                Ok(plan) => {
-                    let mut check = |plan: &Plan| {
-                        mismatches.extend(mismatch(&method.preset, plan, viewport, lights));
-                    };
-                    check(&plan);
-                    let diagnostics = method.preset.diagnostics();
-                    let greatest = Capabilities::greatest();
-                    match method.plan_of(&diagnostics, viewport, greatest, provider) {
-                        Ok(plan) => check(&plan),
-                        Err(diagnostics) => faults.add(&method.name, &diagnostics),
-                    }
-                    if let Some(device) = device {
-                        match method.plan(viewport, device.clone(), provider) {
-                            Ok(_) => can_run_one = true,
-                            Err(diagnostics) => refusals.add(&method.name, &diagnostics),
-                        }
-                    }
+type MethodKey = (String, Option<u32>);
+
+impl PlanCheck {
+    /// Plans methods in all viewports on an adapter, with the scene and light of `provider`.
+    pub fn add<'m>(
+        &mut self,
+        methods: impl IntoIterator<Item = &'m Method>,
+        viewports: &[[u32; 2]],
+        provider: &SceneProvider,
+        device: &Capabilities,
+    ) {
+        for (method, &viewport) in methods.into_iter().cartesian_product(viewports) {
+            let key = (method.name.clone(), method.map_size);
+            let names = method.preset.diagnostics();
+            let diagnostics = || method.plan_of(&names, viewport, device.clone(), provider);
+            let plan = method.plan(viewport, device.clone(), provider);
+            let mistake = match plan {
+                Ok(_) => {
+                    self.planned.insert(key);
+                    diagnostics().err()
                 }
-                Err(diagnostics) if diagnostics.iter().all(|found| found.code == Code::Light) => {
-                    refusals.add(&method.name, &diagnostics);
-                }
-                Err(diagnostics) => faults.add(&method.name, &diagnostics),
-            }
+                Err(refusal) => Some(self.refusals.entry(key).or_insert(refusal).clone()),
+            };
+            let mistake = mistake.filter(|found| is_mistake(found.iter()));
+            let mistakes = mistake.iter().flat_map(Diagnostics::iter);
+            self.mistakes.extend(mistakes.cloned());
         }
     }
-    faults.none_or_error()?;
-    if !can_run_one {
-        refusals.none_or_error()?;
+
+    /// Tells the sink the mistakes of documents, each once, if any method can be planned.
+    ///
+    /// # Errors
+    /// The reasons why none can, if no method could be planned.
+    pub fn end(&self, sink: &dyn Sink) -> Result<(), CompareError> {
+        if self.planned.is_empty() {
+            let mut faults = GraphFaults::default();
+            for ((name, _), refusal) in &self.refusals {
+                faults.add(name, refusal);
+            }
+            return faults.none_or_error();
+        }
+        let mistakes = self.mistakes.iter().cloned();
+        let mistakes = mistakes.unique_by(|found| (found.brief(), found.help.clone()));
+        let mistakes: Vec<Diagnostic> = mistakes.collect();
+        if !mistakes.is_empty() {
+            sink.warnings(&mistakes);
+        }
+        Ok(())
     }
-    none_or_error(mismatches.into_iter().collect())
+
+    /// Returns why a method could nowhere be planned, and whether its document is at fault; `None`
+    /// if it could be somewhere.
+    pub fn refusal(&self, method: &Method) -> Option<(String, bool)> {
+        let key = (method.name.clone(), method.map_size);
+        let refusal = self.refusals.get(&key)?;
+        let is_refused = !self.planned.contains(&key);
+        is_refused.then(|| (reasons(refusal.iter()), is_mistake(refusal.iter())))
+    }
 }
 
 /// True if a method computes the shadows of all lights in one frame: its output `visibility` has
@@ -138,65 +159,25 @@ pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvid
     })
 }
 
-/// Lists what the graph lacks as a shadow preset.
-fn missing_outputs(preset: &Preset) -> Option<String> {
+/// Returns the mistake of a graph without the output `visibility`.
+fn missing_output(preset: &Preset) -> Option<Diagnostic> {
     if preset.graph.outputs().contains(&VISIBILITY) {
         return None;
     }
-    Some(format!(
-        "`{}` has no output `{VISIBILITY}`, so it cannot be compared\n  \
-         a shadow method declares\n    \
-         outputs: [\"{VISIBILITY}\"] or [\"{VISIBILITY}\", \"{STATUS}\"]\n  \
+    let what = format!(
+        "`{}` has no output `{VISIBILITY}`, so it cannot be compared",
+        preset.name
+    );
+    Some(Diagnostic::error(Code::Output, what).help(format!(
+        "a shadow method declares\n  \
+         outputs: [\"{VISIBILITY}\"] or [\"{VISIBILITY}\", \"{STATUS}\"]\n\
          {VISIBILITY}: per pixel 0 in shadow to 1 in light, {INTEGERS} for a hard answer, 0 or 1, \
-         or {FLOATS} for a graded one\n  \
+         or {FLOATS} for a graded one\n\
          {STATUS}: per pixel 0 background, 1 facing away from the light, 2 certain light, \
          3 certain shadow, 4 uncertain, {INTEGERS}; without it the reference says what faces the \
-         light, and all else counts as certain\n  \
+         light, and all else counts as certain\n\
          all of the viewport's size",
-        preset.name,
-    ))
-}
-
-/// The formats of integers, as messages name them.
-const INTEGERS: &str = "R8Uint, R16Uint or R32Uint";
-/// The formats of shares.
-const FLOATS: &str = "R8Unorm, R16Unorm, R16Float or R32Float";
-
-/// Says what is wrong with the outputs' sizes and formats on this viewport.
-fn mismatch(preset: &Preset, plan: &Plan, viewport: [u32; 2], lights: usize) -> Option<String> {
-    use wgpu::TextureFormat as F;
-    plan.outputs().into_iter().find_map(|output| {
-        let fits = match (output.name.as_str(), output.format) {
-            (VISIBILITY | STATUS | MAP_LAYER, Some(F::R8Uint | F::R16Uint | F::R32Uint))
-            | (VISIBILITY, Some(F::R8Unorm | F::R16Unorm | F::R16Float | F::R32Float))
-            | (TEXEL_DENSITY, Some(F::R32Float)) => true,
-            (VISIBILITY | STATUS | TEXEL_DENSITY | MAP_LAYER, _) => false,
-            _ => return None,
-        };
-        let kind = output
-            .format
-            .map_or("a buffer".into(), |format| format!("{format:?}"));
-        let fits_lights = output.layers == 1 || output.layers as usize == lights;
-        (!fits || !fits_lights || output.size != viewport).then(|| {
-            let expected = match output.name.as_str() {
-                VISIBILITY => format!("{INTEGERS} (0 or 1), {FLOATS} (0 to 1)"),
-                TEXEL_DENSITY => "R32Float".to_owned(),
-                _ => INTEGERS.to_owned(),
-            };
-            let layers = match output.layers {
-                1 => String::new(),
-                layers => format!(" and {layers} layers"),
-            };
-            format!(
-                "`{}`: the output `{}` is {kind} of {}{layers}; expected {expected} of \
-                 the viewport's {}, in one layer or one for each of {lights} lights",
-                preset.name,
-                output.name,
-                size(output.size),
-                size(viewport)
-            )
-        })
-    })
+    )))
 }
 
 /// Decoded outputs of one frame under one light. Each list has one entry per pixel, row by row from
@@ -215,19 +196,19 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Decodes the outputs that were read back from a frame, for the light with the index `light`
-    /// among the view's lights. It is the index of the layer that is read of outputs with a layer
-    /// for each light; an output of one layer holds for every light. `truth` is the reference of
-    /// the same view, for methods without the output `status`.
+    /// Decodes the outputs that were read back from a frame, for one light. `layer` is the index of
+    /// the layer that is read of outputs with several
+    /// ([`layer_of`](crate::graphs::contract::layer_of)); an output of one layer holds for every
+    /// light. `truth` is the reference of the same view, for methods without the output `status`.
     ///
     /// # Errors
     /// The errors of [`decode`](Self::decode).
     pub fn from_contents(
         contents: BTreeMap<String, Content>,
-        light: usize,
+        layer: usize,
         truth: &GroundTruthPixels,
     ) -> Result<Self, String> {
-        let of = |(name, content): (String, Content)| (name, of_light(content, light));
+        let of = |(name, content): (String, Content)| (name, of_layer(content, layer));
         Self::decode(&contents.into_iter().map(of).collect(), truth)
     }
 
@@ -291,13 +272,12 @@ impl Outputs {
     }
 }
 
-/// Returns the layer of an output for the light with the index `light`; the whole output if it has
-/// one layer.
-pub(crate) fn of_light(content: Content, light: usize) -> Content {
+/// Returns a layer of an output; the whole output if it has one layer.
+pub(crate) fn of_layer(content: Content, layer: usize) -> Content {
     let mut layers = content.split();
     match layers.len() {
         0 | 1 => content,
-        count => layers.swap_remove(light.min(count - 1)),
+        count => layers.swap_remove(layer.min(count - 1)),
     }
 }
 

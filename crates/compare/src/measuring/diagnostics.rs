@@ -2,10 +2,11 @@
 //! after the method was timed and judged, by a plan of their own.
 
 use crate::error::{explain, is_fatal};
+use crate::graphs::faults::{is_mistake, reasons};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{MAP_LAYER, TEXEL_DENSITY};
-use crate::graphs::shadow_method::{Outputs, of_light};
+use crate::graphs::shadow_method::{Outputs, of_layer};
 use crate::measuring::frame::{self, Contents};
 use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::stop::Stop;
@@ -29,8 +30,8 @@ pub struct Diagnostics {
 }
 
 /// Draws a method's outputs `texel_density` and `map_layer` of a view, and evaluates them.
-/// `outputs` are the outputs by which it was judged, under the light with the index `light` among
-/// the view's lights. Findings that this adapter cannot draw are `None`.
+/// `outputs` are the outputs by which it was judged, of the layer with the index `layer`. Findings
+/// that this adapter cannot draw are `None`.
 ///
 /// # Errors
 /// An early end, a lost device, outputs of another size than the reference.
@@ -38,28 +39,29 @@ pub fn diagnose(
     session: Session,
     method: &Method,
     truth_view: &GroundTruthView<'_>,
-    (outputs, light): (&Outputs, usize),
+    (outputs, layer): (&Outputs, usize),
     provider: &mut dyn Provider,
 ) -> Result<Diagnostics, Stop> {
     let names = method.preset.diagnostics();
     let viewport = truth_view.ground_truth.pixels.viewport;
     let capabilities = Capabilities::new(session.gpu);
-    let plan = method.plan_of(&names, viewport, capabilities, provider);
-    // All of it was planned for the greatest adapter; this one may lack what it needs.
-    let Some(plan) = plan.ok().filter(|plan| !plan.outputs().is_empty()) else {
-        return Ok(Diagnostics::default());
+    let none = |reason: &str| {
+        let text = format!("no diagnostics of `{}`: {reason}", method.name);
+        session.sink.note(&text);
+        Ok(Diagnostics::default())
+    };
+    let plan = match method.plan_of(&names, viewport, capabilities, provider) {
+        Ok(plan) if !plan.outputs().is_empty() => plan,
+        Err(found) if is_mistake(found.iter()) => return none(&reasons(found.iter())),
+        // This adapter may lack what they need.
+        Ok(_) | Err(_) => return Ok(Diagnostics::default()),
     };
     let mut contents = match contents(session, plan, provider) {
         Ok(contents) => contents,
         Err(error) if is_fatal(&error) => return Err(error.into()),
-        Err(error) => {
-            let reason = explain(&error);
-            let text = format!("no diagnostics of `{}`: {reason}", method.name);
-            session.sink.note(&text);
-            return Ok(Diagnostics::default());
-        }
+        Err(error) => return none(&explain(&error)),
     };
-    let mut of = |name: &str| Some(of_light(contents.remove(name)?, light));
+    let mut of = |name: &str| Some(of_layer(contents.remove(name)?, layer));
     let density = of(TEXEL_DENSITY).as_ref().and_then(Content::as_f32);
     let layers = of(MAP_LAYER).as_ref().and_then(Content::as_u32);
     let footprints = density.map(|density| truth_view.footprints(&density));

@@ -44,7 +44,7 @@ pub fn find(
     let claims = preset
         .graph
         .claims(&method.params, method.viewport, method.features);
-    let claims = claims.map_err(|faults| CompareError::Input(reasons(&faults)))?;
+    let claims = claims.map_err(|faults| CompareError::Input(reasons(faults.iter())))?;
     let words = CLAIMS.map(Guarantee::word);
     if let Some(unknown) = claims
         .iter()

@@ -15,7 +15,7 @@
 //! let context = HardCaseContext {
 //!     session,
 //!     primary: &PrimaryVisibility::load(&EmbeddedSources)?,
-//!     methods: &[MethodRun::new(method, &[])?],
+//!     methods: &[MethodRun::new(method, &[])],
 //!     viewport: [128, 128],
 //!     pictures: None,
 //! };
@@ -28,7 +28,7 @@
 //! # }
 //! ```
 
-use crate::error::{CompareError, is_fatal, with_causes};
+use crate::error::{CompareError, with_causes};
 use crate::graphs::faults::reasons;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::light_kinds;
@@ -70,14 +70,19 @@ pub struct MethodRun {
 
 impl MethodRun {
     /// Prepares a method as one that the adapter can run; set [`Column::unavailable`] of one that
-    /// it cannot run, and every case leaves it out. `exact` is a list of names of methods or
-    /// presets: a method in it is judged as guaranteed to be exact.
-    ///
-    /// # Errors
-    /// The errors of [`guarantee::find`].
-    pub fn new(method: Method, exact: &[String]) -> Result<Self, CompareError> {
-        let (guarantee, because) = guarantee::find(&method, exact)?.unzip();
-        Ok(Self {
+    /// it cannot run, and every case leaves it out. It is set of one whose document has mistakes,
+    /// or claims what cannot be judged. `exact` is a list of names of methods or presets: a method
+    /// in it is judged as guaranteed to be exact.
+    pub fn new(method: Method, exact: &[String]) -> Self {
+        let claim = guarantee::find(&method, exact).map(Option::unzip);
+        let faults = method
+            .preset
+            .faults
+            .as_ref()
+            .map(|faults| reasons(faults.iter()));
+        let unclear = claim.as_ref().err().map(|error| with_causes(error));
+        let (guarantee, because) = claim.unwrap_or_default();
+        Self {
             without_culling: guarantee::without_culling(&method),
             column: Column {
                 preset: method.name.clone(),
@@ -85,10 +90,10 @@ impl MethodRun {
                 params: method.all_params(),
                 guarantee,
                 because,
-                unavailable: None,
+                unavailable: faults.or(unclear),
             },
             method,
-        })
+        }
     }
 
     /// The ways in which it runs on such casters.
@@ -179,7 +184,7 @@ impl HardCaseContext<'_> {
             name: hard.name.into(),
             reason: hard.reason.into(),
             casters: hard.casters,
-            band_cap: hard.indeterminate_cap,
+            band_cap: hard.indeterminate_cap(self.viewport[1], 0),
             verdict: Verdict::Fail,
             failed: None,
             pixels: PixelCounts::default(),
@@ -189,7 +194,7 @@ impl HardCaseContext<'_> {
         };
         let truth_view = match self.truth_view(&scene, &mut provider) {
             Ok(truth_view) => truth_view,
-            Err(error) if ends_all(&error) => return Err(error),
+            Err(error) if error.ends_all() => return Err(error),
             Err(error) => {
                 case.failed = Some(with_causes(&error));
                 return Ok(case);
@@ -198,6 +203,7 @@ impl HardCaseContext<'_> {
         let ground_truth = &truth_view.ground_truth;
         let counts = own_counts(&ground_truth.pixels);
         (case.pixels, case.band) = (counts.pixels, counts.band);
+        case.band_cap = hard.indeterminate_cap(self.viewport[1], case.pixels.facing_light);
         case.wrong_surface = truth_view.wrong_surfaces;
         if !case.exceeds_cap() {
             case.verdict = Verdict::Pass;
@@ -238,7 +244,7 @@ impl HardCaseContext<'_> {
                             cell.images = Some(images);
                         }
                     }
-                    Err(error) if ends_all(&error) => return Err(error),
+                    Err(error) if error.ends_all() => return Err(error),
                     Err(error) => cell.failed = Some(with_causes(&error)),
                 }
                 case.cells.push(cell);
@@ -277,15 +283,13 @@ impl HardCaseContext<'_> {
     ) -> Result<(Outputs, Judgement, Counts), CompareError> {
         let preset = &*method.preset;
         let plan = method.plan(self.viewport, Capabilities::new(self.session.gpu), provider);
-        let plan = plan.map_err(|faults| CompareError::Input(reasons(&faults)))?;
+        let plan = plan.map_err(|faults| CompareError::Input(reasons(faults.iter())))?;
         let names = preset.judged();
-        let (truth, light) = (&ground_truth.pixels, provider.light_number());
+        // A case has one light.
+        let (truth, layer) = (&ground_truth.pixels, 0);
         let judge = |contents| {
-            judged(
-                preset,
-                Outputs::from_contents(contents, light, truth),
-                ground_truth,
-            )
+            let outputs = Outputs::from_contents(contents, layer, truth);
+            judged(preset, outputs, ground_truth)
         };
         let (outputs, judgement) = if plan.remembers() {
             let executor = frame::executor(self.session, plan, provider);
@@ -340,15 +344,6 @@ fn right_in_band(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
         .collect()
 }
 
-/// True if no other method or case can run either.
-fn ends_all(error: &CompareError) -> bool {
-    match error {
-        CompareError::Interrupted { .. } => true,
-        CompareError::Gpu { source, .. } => is_fatal(source),
-        _ => false,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -362,7 +357,7 @@ mod tests {
         let presets = preset::load_all(&names, &skiagraph_passes::EmbeddedSources).unwrap();
         let runs = |index: usize, casters, exact: &[String]| {
             let method = Method::new(presets[index].clone(), BTreeMap::new());
-            let run = MethodRun::new(method, exact).unwrap();
+            let run = MethodRun::new(method, exact);
             let variants = run.variants(casters).into_iter();
             let keys = variants.map(|variant| (variant.set, variant.culls));
             keys.collect::<Vec<_>>()

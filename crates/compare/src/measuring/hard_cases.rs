@@ -2,11 +2,11 @@
 //! stress` runs) before any of them runs.
 //!
 //! ```
-//! use skiagraph_compare::measuring::hard_cases::{cases, with_triangles};
+//! use skiagraph_compare::measuring::hard_cases::{cases, one_of_each_light};
 //!
 //! let found = cases(&["torus".into(), "torus".into()])?;
 //! assert_eq!(found.len(), 1);
-//! assert!(!with_triangles(&found).scene().mesh.triangles.is_empty());
+//! assert!(!one_of_each_light(&found)[0].mesh.triangles.is_empty());
 //! let message = cases(&["tors".into()]).unwrap_err().to_string();
 //! assert!(message.contains("torus"), "{message}");
 //! # Ok::<(), skiagraph_compare::error::CompareError>(())
@@ -20,8 +20,9 @@ use crate::measuring::hard_case::MethodRun;
 use crate::pictures::run_pictures::{check_stems, reference_stem};
 use crate::sink::Sink;
 use crate::wording::{did_you_mean, unknown};
+use itertools::Itertools;
 use skiagraph_cases::HardCase;
-use skiagraph_gpu::device::Gpu;
+use skiagraph_scene::Scene;
 use std::path::Path;
 
 /// Returns the cases of these names, each once, in the order of the names; all cases if `names` is
@@ -45,14 +46,13 @@ pub fn cases(names: &[String]) -> Result<Vec<HardCase>, CompareError> {
     unique(names).into_iter().map(find).collect()
 }
 
-/// Returns the first case whose mesh has triangles, or else the first case. A graph is checked on
-/// it before the cases run, as a fault on an empty mesh is a result, not a mistake in the graph.
-///
-/// # Panics
-/// If `cases` is empty.
-pub fn with_triangles(cases: &[HardCase]) -> HardCase {
-    let has_triangles = |case: &&HardCase| !case.scene().mesh.triangles.is_empty();
-    *cases.iter().find(has_triangles).unwrap_or(&cases[0])
+/// Returns the scenes of cases on which methods are planned before the cases run: the first under
+/// each kind of light whose mesh has triangles, as a fault on an empty mesh is a result, not a
+/// mistake in the graph.
+pub fn one_of_each_light(cases: &[HardCase]) -> Vec<Scene> {
+    let scenes = cases.iter().map(HardCase::scene);
+    let scenes = scenes.sorted_by_key(|scene| scene.mesh.triangles.is_empty());
+    scenes.unique_by(|scene| scene.light().word()).collect()
 }
 
 /// Checks that each name of `exact`, the methods to be judged as guaranteed to be exact
@@ -69,25 +69,6 @@ pub fn check_exact(exact: &[String], names: &[String]) -> Result<(), CompareErro
     Err(CompareError::Request(unknown(
         &what, name, "methods", &names,
     )))
-}
-
-/// Checks that at least one of the methods can run: its
-/// [`Column::unavailable`](crate::records::stress::Column::unavailable) is `None`.
-///
-/// # Errors
-/// The reasons why none can run.
-pub fn check_abilities(methods: &[MethodRun], gpu: &Gpu) -> Result<(), CompareError> {
-    let reasons = methods.iter().map(|run| {
-        let reason = run.column.unavailable.as_ref()?;
-        Some(format!("\n  {}: {reason}", run.method.name))
-    });
-    match reasons.collect::<Option<String>>() {
-        Some(reasons) => Err(CompareError::Input(format!(
-            "no method can run on {}{reasons}",
-            gpu.adapter.get_info().name
-        ))),
-        None => Ok(()),
-    }
 }
 
 /// Checks that no two pairs of a method and a case have pictures of one file name, and that

@@ -37,7 +37,7 @@ const SLOPE_BIAS: &str = "slope_bias";
 pub fn find(
     session: Session,
     method: &Method,
-    (truth_view, light): (&GroundTruthView, usize),
+    (truth_view, layer): (&GroundTruthView, usize),
     (wrong, blockers): (u64, BlockerCounts),
     provider: &mut dyn Provider,
 ) -> Result<Option<Hint>, CompareError> {
@@ -62,7 +62,7 @@ pub fn find(
             method.viewport,
             method.features,
         );
-        let Some(wrong_then) = wrong_with(session, &other, (truth_view, light), provider)? else {
+        let Some(wrong_then) = wrong_with(session, &other, (truth_view, layer), provider)? else {
             continue;
         };
         if 2 * wrong_then < wrong {
@@ -111,7 +111,7 @@ fn candidates(method: &Method, cause: Cause) -> Vec<ParamValues> {
 fn wrong_with(
     session: Session,
     method: &Method,
-    (truth_view, light): (&GroundTruthView, usize),
+    (truth_view, layer): (&GroundTruthView, usize),
     provider: &mut dyn Provider,
 ) -> Result<Option<u64>, CompareError> {
     let names = method.preset.judged();
@@ -129,7 +129,8 @@ fn wrong_with(
         }
         Err(_) => return Ok(None),
     };
-    let outputs = Outputs::from_contents(contents, light, &truth.pixels);
-    let wrong = ground_truth::error(&method.preset, outputs, truth)?;
-    Ok(Some(wrong as u64))
+    let outputs = Outputs::from_contents(contents, layer, &truth.pixels);
+    // A setting whose outputs are not those of a shadow method is no way out.
+    let wrong = ground_truth::error(&method.preset, outputs, truth).ok();
+    Ok(wrong.map(|wrong| wrong as u64))
 }

@@ -30,6 +30,7 @@ use crate::records::cell_plan::{CellPlan, FILE, Head, PlannedCell, PlannedTruth}
 use crate::records::shard::Shard;
 use crate::sink::{Session, Silent};
 use crate::wording::plural;
+use itertools::Itertools;
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
@@ -158,7 +159,7 @@ pub fn measure(
         cells: chosen.len(),
         ..ShardOutcome::default()
     };
-    let mut broken = Vec::new();
+    let mut broken = BTreeSet::new();
     for SceneCells { comparison, folder } in scenes {
         let folder = folder.map_or(out.to_path_buf(), |name| out.join(name));
         let cells = CellFolder::open(&folder, comparison)?;
@@ -181,9 +182,9 @@ pub fn measure(
             .extend(unavailable.map(|run| run.label()));
         broken.append(&mut series.broken);
     }
-    match &broken[..] {
-        [] => Ok(outcome),
-        broken => Err(CompareError::InvalidOutputs(broken.join("\nerror: "))),
+    match broken.iter().join("\nerror: ") {
+        broken if broken.is_empty() => Ok(outcome),
+        broken => Err(CompareError::InvalidOutputs(broken)),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::comparison::Protocol;
 use crate::error::CompareError;
+use crate::graphs::contract::layer_of;
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
@@ -11,11 +12,7 @@ use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{self, FrameMode, Times};
 use crate::measuring::view_or_path::ViewOrPath;
-use crate::measuring::{
-    date,
-    frame::{self, Contents},
-    guarantee, hint,
-};
+use crate::measuring::{date, frame, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
 use crate::records::hint::Hint;
 use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
@@ -113,8 +110,9 @@ impl MeasureContext<'_> {
         let executor = &mut prepared.executor;
         let ground_truth = &self.truth_view.ground_truth;
         let names = method.preset.judged();
+        let layer = self.layer(executor.plan());
         let judge = |contents| {
-            let outputs = self.decode(contents, self.truth_view);
+            let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
             judged(&method.preset, outputs, ground_truth)
         };
         let (outputs, judgement) = match &mut prepared.steady {
@@ -128,7 +126,7 @@ impl MeasureContext<'_> {
         let wrong = wrong.total.saturating_sub(wrong.in_band);
         let hint = match blockers.filter(|_| self.hints) {
             Some(of) => {
-                let seen = (self.truth_view, self.light);
+                let seen = (self.truth_view, layer);
                 hint::find(self.session, method, seen, (wrong, of), provider)?
             }
             None => None,
@@ -137,7 +135,7 @@ impl MeasureContext<'_> {
             self.session,
             method,
             self.truth_view,
-            (&outputs, self.light),
+            (&outputs, layer),
             provider,
         )?;
         let images = self.draw(method, None, ground_truth, (&outputs, &judgement, &found))?;
@@ -347,14 +345,9 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Decodes the outputs that were read from a frame, for the light with the index
-    /// [`light`](Self::light).
-    pub fn decode(
-        &self,
-        contents: Contents,
-        truth_view: &GroundTruthView,
-    ) -> Result<Outputs, String> {
-        Outputs::from_contents(contents, self.light, &truth_view.ground_truth.pixels)
+    /// Returns the layer of a plan's outputs that is judged: the one of [`light`](Self::light).
+    pub fn layer(&self, plan: &Plan) -> usize {
+        layer_of(plan, self.light).unwrap_or_default()
     }
 
     /// Makes the pictures and data files that the protocol asks for, of a view or of the frame with

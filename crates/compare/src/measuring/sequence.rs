@@ -107,13 +107,8 @@ pub fn follow(
         let ground_truth = &truth_view.ground_truth;
         path.frames
             .show(*index, ground_truth.pixels.viewport, provider)?;
-        found = diagnose(
-            context.session,
-            method,
-            truth_view,
-            (outputs, context.light),
-            provider,
-        )?;
+        let answer = (outputs, context.layer(prepared.executor.plan()));
+        found = diagnose(context.session, method, truth_view, answer, provider)?;
         images = context.draw(
             method,
             Some(*index),
@@ -215,7 +210,8 @@ impl Walk<'_> {
         let (contents, timed, remade) = self.run(index, false)?;
         let (path, cost) = (self.context.path, self.cost(&timed));
         let (truth_view, account) = (&path.truth_views[index], &mut self.account);
-        let outputs = self.context.decode(contents, truth_view);
+        let layer = self.context.layer(self.executor.plan());
+        let outputs = Outputs::from_contents(contents, layer, &truth_view.ground_truth.pixels);
         let (outputs, judgement) = judged(&self.method.preset, outputs, &truth_view.ground_truth)?;
         let counts = judgement.counts;
         account.edges = account.edges.with(truth_view.edges(&outputs)?);

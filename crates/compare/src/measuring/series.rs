@@ -26,7 +26,8 @@
 
 use crate::comparison::{Comparison, Protocol};
 use crate::error::CompareError;
-use crate::graphs::faults::reasons;
+use crate::graphs::contract::layer_of;
+use crate::graphs::faults::{is_mistake, reasons};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::camera_pose::CameraPose;
@@ -46,7 +47,8 @@ use crate::records::published::attach;
 use crate::records::results::{PROGRAM, Results, Run};
 use crate::sink::{Runs, Session, Step};
 use crate::wording::{length, plural, size, thousands};
-use skiagraph_graph::Plan;
+use itertools::Itertools;
+use skiagraph_graph::{Code, Diagnostic, Diagnostics, Plan};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, PixelCounts};
 use skiagraph_scene::Scene;
@@ -81,9 +83,9 @@ pub struct Series<'a> {
     pub results: Results,
     /// Where they are kept.
     store: Store,
-    /// Messages, added by [`measure`](Self::measure), on graphs that ran but whose outputs do not
-    /// have the size, format or values that a shadow method's must have.
-    pub broken: Vec<String>,
+    /// Messages, added by [`measure`](Self::measure), on methods whose documents have mistakes, or
+    /// whose outputs do not have the values that a shadow method's must have.
+    pub broken: BTreeSet<String>,
     /// Counts the runs that are measured now.
     /// `None` before the first run that is to be measured.
     progress: Option<Runs<'a>>,
@@ -113,10 +115,16 @@ pub fn run(comparison: &Comparison, session: Session) -> Result<Results, Compare
             series.measure(view, viewport)?;
         }
     }
-    match &series.broken[..] {
-        [] => Ok(series.results),
-        broken => Err(CompareError::InvalidOutputs(broken.join("\n"))),
+    match series.broken.iter().join("\n") {
+        broken if broken.is_empty() => Ok(series.results),
+        broken => Err(CompareError::InvalidOutputs(broken)),
     }
+}
+
+/// The message on a method whose document is at fault.
+fn mistake(run: &Run) -> String {
+    let reason = run.unavailable.as_deref().unwrap_or_default();
+    format!("`{}` cannot run: {reason}", run.preset)
 }
 
 /// Bytes of methods that are timed in turns, where the device does not tell what it has.
@@ -188,7 +196,7 @@ impl<'a> Series<'a> {
             planned,
             results,
             store: Store::Memory,
-            broken: Vec::new(),
+            broken: BTreeSet::new(),
             progress: None,
             methods,
         }
@@ -441,11 +449,14 @@ impl<'a> Series<'a> {
     ) -> Result<Result<T, Box<Run>>, CompareError> {
         let planned = &self.planned[place];
         let unavailable = |reason| Box::new(context.unavailable(method, planned, reason));
-        let capabilities = Capabilities::new(self.session.gpu);
-        let plan = match method.plan(planned.viewport, capabilities, &self.provider) {
+        let plan = match self.plan(method, planned.viewport) {
             Ok(plan) => plan,
-            // The graph itself is sound: that was checked before anything ran.
-            Err(diagnostics) => return Ok(Err(unavailable(reasons(&diagnostics)))),
+            Err(refusal) => {
+                let run = unavailable(reasons(refusal.iter()));
+                let is_mistake = is_mistake(refusal.iter());
+                self.broken.extend(is_mistake.then(|| mistake(&run)));
+                return Ok(Err(run));
+            }
         };
         let name = conditions(method, context.view.name(), planned.viewport);
         let name = format!("{}, {name}", method.name);
@@ -454,13 +465,24 @@ impl<'a> Series<'a> {
         match attempt(self.session, method, came) {
             Err(CompareError::InvalidOutputs(reason)) => {
                 let run = unavailable(reason.clone());
-                self.broken.push(reason);
+                self.broken.insert(reason);
                 Ok(Err(run))
             }
             came => {
                 step.end();
                 Ok(came?.map_err(unavailable))
             }
+        }
+    }
+
+    /// Plans a method on this adapter, under the light of the provider.
+    fn plan(&self, method: &Method, viewport: [u32; 2]) -> Result<Plan, Diagnostics> {
+        let capabilities = Capabilities::new(self.session.gpu);
+        let plan = method.plan(viewport, capabilities, &self.provider)?;
+        let other = "it answers for other lights of the scene, not for this one";
+        match layer_of(&plan, self.provider.light_number()) {
+            Some(_) => Ok(plan),
+            None => Err(Diagnostic::error(Code::Light, other).into()),
         }
     }
 
@@ -511,13 +533,14 @@ impl<'a> Series<'a> {
         if run.unavailable.is_none() || self.is_done[place] {
             return Ok(());
         }
-        let capabilities = Capabilities::new(self.session.gpu);
-        match method.plan(viewport, capabilities, &self.provider) {
-            Err(diagnostics) => {
+        match self.plan(method, viewport) {
+            Err(refusal) => {
                 let run = Run {
-                    unavailable: Some(reasons(&diagnostics)),
+                    unavailable: Some(reasons(refusal.iter())),
                     ..run.clone()
                 };
+                let is_mistake = is_mistake(refusal.iter());
+                self.broken.extend(is_mistake.then(|| mistake(&run)));
                 self.done(place, run);
                 self.save(&[])?;
             }

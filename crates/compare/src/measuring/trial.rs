@@ -1,6 +1,7 @@
 //! Tries settings of a method on some views: runs and judges each once.
 
 use crate::error::CompareError;
+use crate::graphs::contract::layer_of;
 use crate::graphs::ground_truth;
 use crate::graphs::light_kinds::{self, kind_and_number};
 use crate::graphs::method::{Method, ParamValues};
@@ -129,8 +130,7 @@ impl<'a> Trials<'a> {
     /// soon as it must be greater than `best`.
     ///
     /// # Errors
-    /// An early end; a lost device; outputs whose size, format or values a shadow method must not
-    /// have.
+    /// An early end; a lost device.
     pub fn run(&mut self, params: &ParamValues, best: f64) -> Result<Trial, CompareError> {
         self.session.check_stopped()?;
         if self.left < 1 + self.views.len() as u64 {
@@ -143,10 +143,10 @@ impl<'a> Trials<'a> {
         if self.holds_memory && !self.is_small(params)? {
             return Ok(Trial::Worse);
         }
-        let came = self.judged(&set, best);
-        match attempt(self.session, self.method, came)? {
-            Ok(trial) => Ok(trial),
-            Err(_refused) => Ok(Trial::Worse),
+        let trial = self.judged(&set, best);
+        match attempt(self.session, self.method, trial) {
+            Err(CompareError::InvalidOutputs(_)) => Ok(Trial::Worse),
+            trial => trial.map(|trial| trial.unwrap_or(Trial::Worse)),
         }
     }
 
@@ -343,8 +343,8 @@ impl<'a> Trials<'a> {
         self.left = self.left.saturating_sub(1 + u64::from(growth.frames));
         let contents = frame::contents(report.readbacks);
         let truth = &view.truth.ground_truth;
-        let light = self.provider.light_number();
-        let outputs = Outputs::from_contents(contents, light, &truth.pixels);
+        let layer = layer_of(executor.plan(), self.provider.light_number());
+        let outputs = Outputs::from_contents(contents, layer.unwrap_or_default(), &truth.pixels);
         Ok(ground_truth::error(&set.preset, outputs, truth)?)
     }
 }

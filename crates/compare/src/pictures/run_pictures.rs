@@ -167,14 +167,15 @@ pub fn numbered(file: &Path, frame: usize) -> PathBuf {
 pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<(), CompareError> {
     let mut owners: BTreeMap<String, String> = BTreeMap::new();
     for (stem, owner) in stems {
-        if let Some(other) = owners.get(&stem) {
+        // Some file systems do not tell capitals from small letters.
+        if let Some(other) = owners.get(&stem.to_lowercase()) {
             return Err(CompareError::Input(format!(
                 "the pictures of {other} and of {owner} would overwrite each other: both are \
-                 called {stem}-….png\n  rename one, or run them one after the other into \
-                 folders of their own"
+                 called {stem}-….png, or differ only in capitals\n  rename one, or run them one \
+                 after the other into folders of their own"
             )));
         }
-        owners.insert(stem, owner);
+        owners.insert(stem.to_lowercase(), owner);
     }
     Ok(())
 }

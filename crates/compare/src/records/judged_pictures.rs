@@ -16,6 +16,10 @@ use skiagraph_reference::{BlockerCounts, EdgeDistances, Graded, PixelCounts, Wro
 /// [unattributable](JudgedPictures::unattributable): with more of them pictures get no rank.
 pub const MOST_UNATTRIBUTABLE: f64 = 0.01;
 
+/// Greatest share of the pixels facing the light that may have no finite number in a picture
+/// ([`JudgedPicture::without_answer`]): one with more of them gets no rank.
+pub const MOST_WITHOUT_ANSWER: f64 = 0.01;
+
 /// Content of `judge.json`: pictures of one view of a scene, with the [truth](crate#terms) that
 /// they were held against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,7 +78,8 @@ pub struct JudgedPicture {
     pub answer: Answer,
     /// Rank among the pictures, 1 for the best: by wrong pixels, under a light [with an
     /// extent](crate#terms) by `rmse_outside_band`. Null if more than 1 % of the pixels facing the
-    /// light are unattributable, or the picture hardly agrees with the [truth](crate#terms).
+    /// light are unattributable or have no finite number in it, or the picture hardly agrees with
+    /// the [truth](crate#terms) and no ids or depths tell that its camera is right.
     pub rank: Option<u32>,
     /// Numbers of pixels on which picture and reference disagree; of shares, one half or more
     /// counts as lit. Unattributable ones are included.
@@ -83,9 +88,17 @@ pub struct JudgedPicture {
     /// [unattributable](JudgedPictures::unattributable); none of them is in the
     /// [band](crate#terms).
     pub wrong_unattributable: u64,
+    /// Number of pixels facing the light at which the picture has no finite number, the
+    /// [unattributable](JudgedPictures::unattributable) ones and those in the [band](crate#terms)
+    /// left out; absent if there are none. They count as in shadow in `wrong`, and nowhere else.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub without_answer: u64,
+    /// Number of the pixels of `wrong.total` among them.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub wrong_without_answer: u64,
     /// Errors of the [shares of light](crate#terms), over all pixels facing the light. The fields
-    /// `rmse_outside_band` and `soft` leave out pixels in the band and
-    /// [unattributable](JudgedPictures::unattributable) ones.
+    /// `rmse_outside_band` and `soft` leave out pixels in the band,
+    /// [unattributable](JudgedPictures::unattributable) ones and those without an answer.
     pub graded: Graded,
     /// Distances of the wrong pixels, outside the [band](crate#terms) and attributable, from the
     /// edges of the [reference](crate#terms)'s shadows.
@@ -102,6 +115,10 @@ pub struct JudgedPicture {
     pub images: Option<Images>,
 }
 
+fn is_zero(count: &u64) -> bool {
+    *count == 0
+}
+
 impl JudgedPictures {
     /// True if so few pixels are unattributable that pictures have ranks.
     pub fn is_attributable(&self) -> bool {
@@ -112,9 +129,9 @@ impl JudgedPictures {
 
 impl JudgedPicture {
     /// Returns the number of wrong pixels outside the [band](crate#terms) that are not
-    /// [unattributable](JudgedPictures::unattributable).
+    /// [unattributable](JudgedPictures::unattributable) and have an answer.
     pub fn wrong_attributable(&self) -> u64 {
-        let apart = self.wrong.in_band + self.wrong_unattributable;
+        let apart = self.wrong.in_band + self.wrong_unattributable + self.wrong_without_answer;
         self.wrong.total.saturating_sub(apart)
     }
 }

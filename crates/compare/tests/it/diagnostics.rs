@@ -1,14 +1,11 @@
 //! Outputs on request that tell of a shadow map.
 
 use crate::support::{
-    LIT, NOWHERE, along, comparison, count, gpu, keep, mesh, park, park_comparison, runs,
+    Heard, LIT, NOWHERE, along, comparison, count, gpu, keep, mesh, park, park_comparison, runs,
 };
 use glam::DVec3;
 use serde_json::Value;
-use skiagraph_compare::{
-    measuring::resume::Kept,
-    sink::{Session, Silent},
-};
+use skiagraph_compare::{measuring::resume::Kept, sink::Session};
 use skiagraph_scene::{DirectionalLight, View};
 use std::fs;
 
@@ -123,7 +120,7 @@ fn a_paths_worst_frame_is_asked() {
 }
 
 #[test]
-fn diagnostics_of_another_format_are_refused() {
+fn diagnostics_of_another_format_are_told_and_left_out() {
     let folder = tempfile::tempdir().unwrap();
     let odd = LIT.replace(
         r#"outputs: ["visibility", "status"]"#,
@@ -134,10 +131,15 @@ fn diagnostics_of_another_format_are_refused() {
     assert_ne!(odd, LIT);
     fs::write(folder.path().join("odd.ron"), odd).unwrap();
     let comparison = park_comparison(&["odd.ron"], folder.path(), 16);
-    let error = comparison.check(Session::new(gpu(), &Silent)).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "`odd.ron`: the output `texel_density` is R8Uint of 16x16; expected R32Float of the \
-         viewport's 16x16, in one layer or one for each of 1 lights"
-    );
+    let heard = Heard::default();
+    comparison.check(Session::new(gpu(), &heard)).unwrap();
+    let told = heard.notes();
+    for part in [
+        "`odd.ron`: the output `texel_density` is R8Uint of 16x16",
+        "expected R32Float",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
+    let run = &runs(&comparison)[0];
+    assert!(run["wrong"].is_object() && run["texels"].is_null(), "{run}");
 }

@@ -53,7 +53,8 @@ fn shown(scene: &Arc<Scene>, methods: &[&str], map: u32) -> Vec<Shown> {
     let runs = series.results.runs.iter().map(|run| {
         let is_own = |file: &&PathBuf| {
             let name = file.file_name().unwrap().to_str().unwrap();
-            name.starts_with(&format!("{}-", run.preset)) && name.ends_with("-visibility.npy")
+            let preset = run.preset.split('@').next().unwrap();
+            name.starts_with(&format!("{preset}-")) && name.ends_with("-visibility.npy")
         };
         let values = Raster::read(files.iter().find(is_own).unwrap())
             .unwrap()
@@ -428,6 +429,182 @@ fn a_picture_of_another_camera_is_told_and_has_no_rank() {
     assert_eq!(other.pictures[0].rank, None);
     let found = &other.pictures[0].warnings[1];
     assert!(found.contains(&format!("--view {right}")), "{found}");
+}
+
+/// Numbers that are none are told and not judged, and what is right stays right.
+#[test]
+fn pixels_without_a_number_are_told_and_the_rest_is_judged() {
+    let scene = park();
+    let [rt, nsm] = <[Shown; 2]>::try_from(shown(&scene, &["rt", "nsm"], 256))
+        .ok()
+        .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let every = |step: usize, with: f32, shares: &[f32]| -> Vec<f32> {
+        let shares = shares.iter().enumerate();
+        shares
+            .map(|(at, share)| if at % step == 3 { with } else { *share })
+            .collect()
+    };
+    let all = rt.shares.len();
+    for (name, with, counted) in [
+        ("nan", f32::NAN, true),
+        ("inf", f32::INFINITY, true),
+        ("negative", -1.0, false),
+    ] {
+        let files = [("rt", &rt.shares), ("nsm", &nsm.shares)];
+        let files = files.map(|(method, shares)| {
+            let few = every(120, with, shares);
+            write(&folder, &format!("{name}-{method}.exr"), &few)
+        });
+        let record = judged(&scene, &judging(files.to_vec())).unwrap();
+        let own = [&rt, &nsm].map(|of| of.measured.wrong_outside_band());
+        for (picture, own) in record.pictures.iter().zip(own) {
+            let invalid = picture.graded.invalid;
+            assert!(
+                invalid.total() > 10 && invalid.total() < all as u64 / 100,
+                "{name}"
+            );
+            assert_eq!(picture.without_answer > 0, counted, "{name}");
+            assert!(picture.without_answer <= invalid.total());
+            if counted {
+                assert!(picture.wrong_attributable() <= own, "{name}");
+            }
+            assert_eq!(picture.rank.is_some(), record.is_attributable(), "{name}");
+            assert!(
+                picture.warnings.is_empty(),
+                "{name}: {:?}",
+                picture.warnings
+            );
+        }
+        assert!(
+            !counted || record.pictures[0].wrong_attributable() == 0,
+            "{name}"
+        );
+    }
+    for (name, step, expected) in [
+        ("some", 5, "a finite number at only"),
+        ("all", 1, "finite number at"),
+    ] {
+        // One number, or the file would have none.
+        let mut shares = match step {
+            1 => vec![f32::NAN; all],
+            _ => rt
+                .shares
+                .iter()
+                .enumerate()
+                .map(|(at, share)| if at % step == 0 { f32::NAN } else { *share })
+                .collect(),
+        };
+        shares[0] = 1.0;
+        let file = write(&folder, &format!("{name}.exr"), &shares);
+        let record = judged(&scene, &judging(vec![file])).unwrap();
+        let picture = &record.pictures[0];
+        let told = picture.warnings.join("\n");
+        assert!(told.contains(expected), "{name}: {told}");
+        assert!(
+            !told.contains("another") && !told.contains("--view"),
+            "{name}: {told}"
+        );
+        assert_eq!(picture.rank, None, "{name}");
+    }
+    // One number everywhere is no picture of another view, however light that is.
+    for (name, share) in [("light", 1.0), ("dark", 0.0), ("grey", 0.7)] {
+        let told = warned(&scene, &format!("{name}.exr"), &vec![share; all]);
+        assert!(!told.contains("agrees with another view"), "{name}: {told}");
+    }
+}
+
+/// Acne is named, and is no other camera; with depths or ids the camera is right however bad the
+/// shadows are.
+#[test]
+fn bad_shadows_of_the_right_camera_have_a_rank_and_acne_is_named() {
+    let scene = park();
+    let folder = tempfile::tempdir().unwrap();
+    let (view, gpu) = (scene.views[0].clone(), GpuRequest::default());
+    let request = TruthRequest::new(SIZE);
+    write_truth(
+        &request,
+        (*scene).clone(),
+        &view,
+        folder.path(),
+        &gpu,
+        &Silent,
+    )
+    .unwrap();
+    let acne = shown(&scene, &["nsm@cull=none,bias=0,slope_bias=0"], 512).remove(0);
+    let striped = write(&folder, "acne.exr", &acne.shares);
+    // Through a filter over the stripes.
+    let width = SIZE[0] as usize;
+    let mean = |at: usize| {
+        let around = [0, 1, width, width + 1]
+            .map(|step| acne.shares[(at + step).min(acne.shares.len() - 1)]);
+        around.iter().sum::<f32>() / 4.0
+    };
+    let filtered: Vec<f32> = (0..acne.shares.len()).map(mean).collect();
+    let filtered = write(&folder, "filtered.exr", &filtered);
+    // Shadows of another light, and none that has to do with the scene.
+    let odd: Vec<f32> = (0..acne.shares.len())
+        .map(|at| ((at / 40 + at % width / 20) % 2) as f32)
+        .collect();
+    let odd = write(&folder, "odd.exr", &odd);
+    let files = vec![odd, striped, filtered];
+    for surfaces in [
+        Surfaces::Ids(folder.path().join("ids.exr")),
+        Surfaces::Depth(folder.path().join("depth.exr")),
+        Surfaces::Rasterised,
+    ] {
+        let is_known = surfaces != Surfaces::Rasterised;
+        let record = judged(
+            &scene,
+            &Judging {
+                surfaces,
+                ..judging(files.clone())
+            },
+        )
+        .unwrap();
+        let told = |index: usize| record.pictures[index].warnings.join("\n");
+        for index in [1, 2] {
+            assert!(told(index).contains("acne"), "{index}: {}", told(index));
+            assert!(!told(index).contains("--view"), "{index}: {}", told(index));
+        }
+        let ranks: Vec<bool> = record.pictures.iter().map(|of| of.rank.is_some()).collect();
+        let is_open = !record.is_attributable();
+        assert_eq!(
+            ranks,
+            [is_known && !is_open, !is_open, !is_open],
+            "{}",
+            told(0)
+        );
+        assert!(told(0).contains("hardly agrees"), "{}", told(0));
+        assert_eq!(told(0).contains("--view"), !is_known, "{}", told(0));
+    }
+}
+
+/// A filter that blurs the edges of shadows is no ambient light.
+#[test]
+fn a_wide_filter_is_not_taken_for_ambient_light() {
+    let scene = park();
+    let rt = shown(&scene, &["rt"], 64).remove(0);
+    let [width, height] = SIZE.map(|side| side as i64);
+    let blurred = |radius: i64| -> Vec<f32> {
+        let share = |at: usize| {
+            let (x, y) = (at as i64 % width, at as i64 / width);
+            let rows = (y - radius).max(0)..=(y + radius).min(height - 1);
+            let around = rows.flat_map(|y| {
+                ((x - radius).max(0)..=(x + radius).min(width - 1))
+                    .map(move |x| (y * width + x) as usize)
+            });
+            let around: Vec<f32> = around.map(|at| rt.shares[at]).collect();
+            around.iter().sum::<f32>() / around.len() as f32
+        };
+        (0..rt.shares.len()).map(share).collect()
+    };
+    for radius in [1, 2, 3] {
+        let told = warned(&scene, "blurred.exr", &blurred(radius));
+        assert!(!told.contains("ambient"), "{radius}: {told}");
+    }
+    let lifted: Vec<f32> = blurred(1).iter().map(|share| 0.2 + 0.8 * share).collect();
+    assert!(warned(&scene, "lifted.exr", &lifted).contains("ambient"));
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn method_runs(folder: &Path, names: &[&str], exact: &[String], side: u32) -> Ve
     let features = gpu().device.features();
     let methods = methods.into_iter().map(|method| {
         let settled = method.at([side; 2]).settled(features);
-        MethodRun::new(settled, exact).unwrap()
+        MethodRun::new(settled, exact)
     });
     methods.collect()
 }

@@ -1,22 +1,27 @@
 //! Lights of a scene: a view's own, several at once, and one that has an extent.
 
-use crate::support::{Heard, LIT, NOWHERE, comparison, count, gpu, keep, runs, scene};
+use crate::support::{Heard, LIT, NOWHERE, comparison, count, gpu, keep, runs, scene, sources};
 use serde_json::Value;
 use skiagraph_compare::{
-    comparison::Comparison,
+    comparison::{Comparison, Protocol},
     graphs::{
+        faults::{is_mistake, reasons},
         idle_params::{IdleParams, under_other_lights},
+        light_kinds,
+        method::{self, Method},
         planning::Capabilities,
-        shadow_method::load_methods,
+        preset,
+        shadow_method::{self, load_methods},
     },
     measuring::{
         resume::Kept,
+        series::Series,
         view_or_path::{ViewOrPath, under_lights},
     },
     sink::Session,
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
-use std::fs;
+use std::{fs, path::Path};
 
 /// Park under a spot light, a point light and a directional one.
 const LAMPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/lamps.ron");
@@ -250,4 +255,196 @@ fn params_that_a_kind_of_light_has_no_use_for_are_named() {
     let told = "; under a spot light fit has no effect; under a point light fit has no effect";
     assert_eq!(nsm, told);
     assert!(!rt.contains("no effect"), "{rt}");
+}
+
+/// Each preset is planned under the kinds of light that it takes, and of each other kind it says
+/// just that, whatever else it lacks there.
+#[test]
+fn every_preset_is_planned_under_its_lights_and_names_the_others() {
+    let scene = scene(LAMPS, None);
+    let views = under_lights(&scene, scene.views.clone(), Some("all")).unwrap();
+    let methods = load_methods(&preset::built_in(), &[], &[], &EmbeddedSources).unwrap();
+    let mut provider = SceneProvider::new(scene);
+    let (mut planned, mut refused) = (0, 0);
+    for view in &views {
+        provider.set_view(view, [64, 48]);
+        let kind = provider.light().word();
+        for method in &methods {
+            let graph = &method.preset.graph;
+            match method.plan([64, 48], Capabilities::greatest(), &provider) {
+                Ok(_) => {
+                    assert!(light_kinds::takes(graph, kind), "{} {kind}", method.name);
+                    planned += 1;
+                }
+                Err(found) => {
+                    let takes = light_kinds::split(graph)[0].join(", ");
+                    let file = format!("pipelines/{}.ron", method.name);
+                    let told = format!("`{file}` takes no {kind} light (it takes: {takes})");
+                    assert_eq!(reasons(found.iter()), told);
+                    assert!(!is_mistake(found.iter()), "{told}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert_eq!(planned + refused, 3 * methods.len());
+    assert!(planned > methods.len() && refused > methods.len());
+}
+
+/// Methods as `compare` loads them, a document with mistakes among them.
+fn each(folder: &Path, words: &[&str]) -> Vec<Method> {
+    let sources = sources(folder);
+    let methods = method::load(words, &[], &[64], &sources, shadow_method::load_each);
+    methods.unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Documents that are at fault in a way of their own, beside `lit.ron`.
+fn write_documents(folder: &Path) {
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    write("lit.ron", LIT);
+    write(
+        "typo.ron",
+        &LIT.replace("target: \"status\"", "target: \"satus\""),
+    );
+    write("torn.ron", "(format: 3, passes: [");
+    write(
+        "blind.ron",
+        &LIT.replace("[\"visibility\", \"status\"]", "[\"status\"]"),
+    );
+    write(
+        "lamp.ron",
+        &LIT.replace("outputs:", "lights: [lamp], outputs:"),
+    );
+    write(
+        "small.ron",
+        &LIT.replace("format: R8Uint", "size: 7, format: R8Uint"),
+    );
+    write(
+        "empty.ron",
+        &LIT.replace(
+            "format: R8Uint",
+            "size: \"viewport.width - 16\", format: R8Uint",
+        ),
+    );
+    write("values.ron", &LIT.replace("value: 2", "value: 7"));
+}
+
+/// A document of any kind that cannot run is a row with its reason; the others are measured.
+#[test]
+fn whatever_cannot_run_is_a_row_with_its_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    write_documents(folder.path());
+    let rows = [
+        ("lit.ron", None),
+        ("crsm", Some("takes no point light")),
+        (
+            "rt@engine=embree",
+            Some("this program was built without Embree"),
+        ),
+        ("typo.ron", Some("satus")),
+        ("torn.ron@n=1", Some("")),
+        ("blind.ron", Some("has no output `visibility`")),
+        ("lamp.ron", Some("unknown kind of light `lamp`")),
+        ("small.ron", Some("is R8Uint of 7x7; expected R8Uint")),
+        ("empty.ron", Some("")),
+        ("values.ron", Some("status is 7")),
+    ];
+    let methods = each(folder.path(), &rows.map(|(word, _)| word));
+    let mut compared = Comparison::new(scene(LAMPS, None), methods).unwrap();
+    compared.protocol = Protocol {
+        frames: 1,
+        warmup: 0,
+        cached_frames: 0,
+        ..Protocol::default()
+    };
+    compared.viewports = vec![[16, 16]];
+    let compared = under(compared, "bulb");
+    let heard = Heard::default();
+    let session = Session::new(gpu(), &heard);
+    compared
+        .check(session)
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        heard.notes().contains("satus"),
+        "told at once: {}",
+        heard.notes()
+    );
+    let mut series = Series::new(&compared, session, None).unwrap();
+    series.measure(0, 0).unwrap();
+    let runs = &series.results.runs;
+    assert_eq!(runs.len(), rows.len());
+    for ((word, expected), run) in rows.iter().zip(runs) {
+        assert_eq!(run.preset, *word);
+        assert_eq!(run.measured.is_some(), expected.is_none(), "{word}");
+        let reason = run.unavailable.clone().unwrap_or_default();
+        assert!(
+            reason.contains(expected.unwrap_or_default()),
+            "{word}: {reason}"
+        );
+        assert_eq!(reason.is_empty(), expected.is_none(), "{word}");
+    }
+    // Mistakes of documents end the command with exit code 1, what they meet does not.
+    let broken = series.broken.iter().cloned().collect::<Vec<_>>().join("\n");
+    for word in ["typo", "torn", "blind", "lamp", "small", "values"] {
+        assert!(broken.contains(&format!("`{word}.ron")), "{word}: {broken}");
+    }
+    assert!(
+        !broken.contains("crsm") && !broken.contains("embree"),
+        "{broken}"
+    );
+    // Where none can run, all reasons are the error.
+    drop(series);
+    let mut none = compared;
+    none.methods
+        .retain(|method| ["crsm", "torn.ron@n=1"].contains(&&*method.name));
+    let told = none.check(session).unwrap_err().to_string();
+    assert!(
+        told.contains("takes no point light") && told.contains("torn.ron"),
+        "{told}"
+    );
+}
+
+/// A document of two of three lights is judged on these, in whatever order the scene has them.
+#[test]
+fn a_document_of_two_lights_in_a_scene_of_three_is_judged_on_those_it_names() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, [one, other]) in [
+        ("first.ron", [0, 1]),
+        ("ends.ron", [0, 2]),
+        ("last.ron", [1, 2]),
+    ] {
+        let include = |layer: usize, light: usize| {
+            format!(
+                "Include(graph: \"rt.ron\", name: \"lit_{layer}\", bind: {{\
+                    \"light\": \"lights[{light}]\", \"visibility\": \"visibility[{layer}]\", \
+                    \"status\": \"status[{layer}]\"}}),"
+            )
+        };
+        let text = format!(
+            "(format: 3, materials: [Texture(name: \"visibility\", format: R32Uint, layers: 2), \
+                Texture(name: \"status\", format: R32Uint, layers: 2)], passes: [{}{}], \
+                outputs: [\"visibility\", \"status\"], lights: [directional, spot, point])",
+            include(0, one),
+            include(1, other)
+        );
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let methods = ["first.ron", "ends.ron", "last.ron"];
+    let mut compared = comparison(scene(LAMPS, None), &methods, folder.path(), &[]);
+    compared.viewports = vec![[32, 24]];
+    let runs = runs(&under(compared, "all"));
+    let judged: Vec<bool> = runs.iter().map(|run| run["wrong"].is_object()).collect();
+    assert_eq!(
+        judged,
+        [true, true, false, true, false, true, false, true, true]
+    );
+    for run in runs.iter().filter(|run| run["wrong"].is_object()) {
+        assert_eq!(
+            run["wrong"]["total"], run["wrong"]["in_band"],
+            "{}",
+            run["view"]
+        );
+    }
+    let reason = runs[2]["unavailable"].as_str().unwrap();
+    assert!(reason.contains("other lights of the scene"), "{reason}");
 }

@@ -104,6 +104,16 @@ impl<'a> SymbolTable<'a> {
         self.asked.take()
     }
 
+    /// Names and kinds of the provided resources that are bound, or whose kind was asked for.
+    pub fn kinds(&self) -> Vec<(String, ProvidedKind)> {
+        let bound = self.resources.iter().filter_map(Resource::named_kind);
+        let bound = bound.map(|(name, kind)| (name.to_owned(), kind));
+        let asked = self.asked.borrow();
+        let asked = asked.iter();
+        let asked = asked.filter_map(|(name, provided)| Some((name.clone(), (*provided)?.kind?)));
+        bound.chain(asked).collect()
+    }
+
     /// Asks the provider for a description, and notes the answer.
     fn ask(&self, name: &str) -> Option<Provided> {
         let described = self.request.provider.describe(name);

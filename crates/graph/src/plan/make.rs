@@ -127,10 +127,21 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
     };
     let mut plan_inputs = std::mem::take(&mut linked.plan_inputs);
     let mut reports = std::mem::take(&mut linked.symbols.reports);
+    let refused = refused_light(&graph.document, linked.symbols.kinds());
     let inputs = &mut plan_inputs;
-    match schedule(graph, linked, request, values, inputs, &mut reports) {
-        Some(plan) => finish(plan, request, reports, plan_inputs),
-        None => Outcome::failed(reports, plan_inputs),
+    match (
+        schedule(graph, linked, request, values, inputs, &mut reports),
+        refused,
+    ) {
+        (Some(plan), _) => finish(plan, request, reports, plan_inputs),
+        // Whatever else is wrong under a light that the document does not take may be fine under
+        // one that it takes.
+        (None, Some(refused)) => {
+            reports = before;
+            reports.report(refused);
+            Outcome::failed(reports, plan_inputs)
+        }
+        (None, None) => Outcome::failed(reports, plan_inputs),
     }
 }
 
@@ -253,7 +264,7 @@ fn finish(
     let memory = plan.memory();
     let too_much = memory.check(request.memory_limit, plan.graph.place());
     let bound = plan.schedule.lifetimes.keys();
-    let bound = bound.map(|id| &plan.resources[id.0]);
+    let bound = bound.filter_map(|id| plan.resources[id.0].named_kind());
     if let Some(error) = too_much.or_else(|| refused_light(&plan.graph.document, bound)) {
         reports.report(error);
         return Outcome::failed(reports, plan_inputs);

@@ -4,7 +4,7 @@ use crate::{
     document::typed::Document,
     errors::plan::OutputError,
     provided_kind::ProvidedKind,
-    resource::{Resource, ResourceKind, Target},
+    resource::{ResourceKind, Target},
 };
 
 /// Name and kind of a pass that a plan runs.
@@ -65,16 +65,16 @@ impl OutputSummary {
     }
 }
 
-/// Returns an error if a bound light is of a kind that the document does not take. A document takes
-/// the first kind, unless its section `lights` lists others.
-pub(super) fn refused_light<'p>(
+/// Returns an error if a light is of a kind that the document does not take. `kinds` holds provided
+/// resources by their names, each with its kind. A document takes the first kind, unless its
+/// section `lights` lists others.
+pub(super) fn refused_light<N: AsRef<str>>(
     document: &Document,
-    bound: impl Iterator<Item = &'p Resource>,
+    kinds: impl IntoIterator<Item = (N, ProvidedKind)>,
 ) -> Option<OutputError> {
-    let kinds = bound.filter_map(|resource| match &resource.kind {
-        ResourceKind::Provided(provided) if is_light(&resource.name) => provided.kind,
-        _ => None,
-    });
+    let lights = kinds
+        .into_iter()
+        .filter(|(name, _)| is_light(name.as_ref()));
     let takes = |kind: &ProvidedKind| {
         if document.lights.is_empty() {
             kind.number == 0
@@ -85,7 +85,7 @@ pub(super) fn refused_light<'p>(
                 .any(|word| word.as_str() == kind.word())
         }
     };
-    let kind = kinds.into_iter().find(|kind| !takes(kind))?;
+    let kind = lights.map(|(_, kind)| kind).find(|kind| !takes(kind))?;
     let words = document.lights.iter().map(|word| word.value.to_string());
     let takes = if document.lights.is_empty() {
         kind.words

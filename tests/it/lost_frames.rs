@@ -1,10 +1,11 @@
-//! A host that loses frames at random, and submits them in another order: every frame that is
-//! encoded after that was known shows what a scene that never moved does, and the host is told of
-//! each other frame.
+//! A host that loses frames at random, submits them in another order and goes on on another device:
+//! every frame that is encoded after that was known shows what a scene that never moved does, and the
+//! host is told of each other frame.
 
 use crate::{
     one_submission::{parts, places, same, sun, view},
     support::{
+        devices::others,
         graphs::{self, open, values},
         random::Random,
     },
@@ -78,9 +79,7 @@ fn fresh(gpu: &Gpu, preset: &str, time: usize) -> Vec<u32> {
 }
 
 impl<'g> Host<'g> {
-    fn new(gpu: &'g Gpu, preset: &str) -> Self {
-        let mut provider = SceneProvider::from_parts(parts(), sun());
-        set(&mut provider, 0);
+    fn new(gpu: &'g Gpu, preset: &str, mut provider: SceneProvider) -> Self {
         Self {
             executor: start(gpu, preset, &mut provider),
             gpu,
@@ -163,8 +162,12 @@ impl<'g> Host<'g> {
         self.faults.extend(faults);
     }
 
-    /// Looks at all frames; returns how many must be right, and how many were stale.
-    fn check(mut self, expected: &[Vec<u32>], preset: &str) -> [usize; 2] {
+    /// Submits what is held, and looks at all frames. Returns how many must be right, and how many
+    /// were stale, with the scene.
+    fn check(mut self, expected: &[Vec<u32>], preset: &str) -> ([usize; 2], SceneProvider) {
+        for held in std::mem::take(&mut self.held) {
+            self.end(held, End::Submitted);
+        }
         self.wait();
         self.ask();
         let mut reports = HashMap::new();
@@ -196,25 +199,36 @@ impl<'g> Host<'g> {
                 stale += usize::from(seen != expected[frame.time]);
             }
         }
-        [right, stale]
+        ([right, stale], self.provider)
     }
 }
 
 #[test]
 fn frames_that_never_ran_leave_nothing_stale() {
     let gpu = open();
-    let mut stales = 0;
+    let [beside, elsewhere] = others(&gpu);
+    let devices = [&gpu, &beside, &elsewhere];
+    let [mut stales, mut moves] = [0; 2];
     for (number, preset) in PRESETS.into_iter().enumerate() {
         let expected: Vec<_> = (0..TIMES).map(|time| fresh(&gpu, preset, time)).collect();
         assert_ne!(expected[0], expected[1], "{preset}: what moves is seen");
         let mut random = Random(number as u64);
         let mut pick = |count: usize| (random.unit() * count as f32) as usize;
-        let mut host = Host::new(&gpu, preset);
-        let mut time = 0;
+        let mut provider = SceneProvider::from_parts(parts(), sun());
+        set(&mut provider, 0);
+        let mut host = Host::new(&gpu, preset, provider);
+        let (mut time, mut rights) = (0, 0);
         for _ in 0..FRAMES / PRESETS.len() {
             if pick(2) == 0 {
                 time = pick(TIMES);
                 set(&mut host.provider, time);
+            }
+            if pick(25) == 0 {
+                let ([right, stale], mut provider) = host.check(&expected, preset);
+                (rights, stales, moves) = (rights + right, stales + stale, moves + 1);
+                let device = devices[pick(devices.len())];
+                provider.move_to(&device.device);
+                host = Host::new(device, preset, provider);
             }
             let encoded = host.encode(time, pick(3) > 0);
             match pick(20) {
@@ -235,13 +249,17 @@ fn frames_that_never_ran_leave_nothing_stale() {
                 _ => {}
             }
         }
-        for held in std::mem::take(&mut host.held) {
-            host.end(held, End::Submitted);
-        }
-        let [right, stale] = host.check(&expected, preset);
-        assert!(right > FRAMES / PRESETS.len() / 8, "{preset}: only {right}");
-        stales += stale;
+        let ([right, stale], _) = host.check(&expected, preset);
+        (rights, stales) = (rights + right, stales + stale);
+        assert!(
+            rights > FRAMES / PRESETS.len() / 8,
+            "{preset}: only {rights}"
+        );
     }
+    assert!(
+        moves > PRESETS.len(),
+        "the device changed only {moves} times"
+    );
     assert!(
         stales > 0,
         "no frame was stale, so none need have been told"

@@ -743,8 +743,8 @@ fn a_host_that_changes_devices_shows_what_is_there() {
 }
 
 #[test]
-#[ignore = "takes minutes: cargo test -p skiagraph-tests --test across 500_frames -- --ignored"]
-fn a_host_that_changes_devices_shows_what_is_there_in_500_frames() {
+#[ignore = "takes minutes: `.ci/long` runs it"]
+fn ci_long_a_host_that_changes_devices_shows_what_is_there() {
     let moves = changing_host(500, 57);
     assert!(moves > 50, "{moves}");
 }

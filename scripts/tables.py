@@ -57,12 +57,13 @@ def measure(program, text, options):
     return text.replace("\n- date: ", f"\n- commit: {commit}\n- date: ", 1)
 
 
-def check(name, old, new):
+def check(name, old, new, is_part):
     """Prints where a document and what is printed now differ; returns how many places do."""
     old, new = figures(old), figures(new)
-    differing = [place for place in new if old.get(place) != new[place]]
+    places = new if is_part else old | new
+    differing = [place for place in places if old.get(place) != new.get(place)]
     for place in differing:
-        print(f"FAILED {name}: {', '.join(place)}: {new[place]}, in the document {old.get(place, 'nothing')}")
+        print(f"FAILED {name}: {', '.join(place)}: {new.get(place, 'nothing')}, in the document {old.get(place, 'nothing')}")
     print(f"{name}: {len(new)} of {len(old)} figures measured, {len(differing)} differ", flush=True)
     return len(differing) if new else 1
 
@@ -85,7 +86,7 @@ def main():
         old = file.read_text()
         if given.check:
             new = measure(given.program, old, part | ONE_FRAME | {"--out": f"out/check-{name}"})
-            failed += check(name, old, new)
+            failed += check(name, old, new, bool(part))
         else:
             file.write_text(measure(given.program, old, {}))
             print(f"{file.relative_to(ROOT)} is written", flush=True)

@@ -44,7 +44,7 @@ pub struct Tracer {
 /// Feature that the engine `RayQuery` needs.
 pub const RAY_QUERY: wgpu::Features = wgpu::Features::EXPERIMENTAL_RAY_QUERY;
 
-/// Least primitive id that is none.
+/// Least id that names no triangle.
 const NONE: u32 = 0xffff_fffd;
 
 impl Tracer {

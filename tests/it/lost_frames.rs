@@ -1,6 +1,6 @@
 //! A host that loses frames at random, submits them in another order and goes on on another device:
-//! every frame that is encoded after that was known shows what a scene that never moved does, and the
-//! host is told of each other frame.
+//! every frame that is encoded after that was known shows what a scene that never moved does, and
+//! the host is told of each other frame.
 
 use crate::{
     one_submission::{parts, places, same, sun, view},

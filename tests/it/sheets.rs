@@ -575,6 +575,7 @@ fn sheets_move_with_their_parts() {
     same(&mut scene, &[(&ground, place(6.0)), (&leaves, mirrored)]);
     scene.remove_part(there).unwrap();
     scene.add_part(&stone, &place(4.0)).unwrap();
+    same(&mut scene, &[(&ground, place(6.0)), (&stone, place(4.0))]);
     scene.add_part(&potted, &mirrored).unwrap();
     let parts = [
         (&ground, place(6.0)),

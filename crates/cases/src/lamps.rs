@@ -77,7 +77,7 @@ pub(crate) const CASES: &[HardCase] = &[
     ),
     HardCase::closed(
         "light_inside_a_mesh",
-        "a light in the midst of a closed box: it lights nobody, whichever faces are culled",
+        "a light in the midst of a closed box: it lights nothing, whichever faces are culled",
         in_the_yard(point(WITHIN)),
         || Shape::default().cuboids(&YARD).cuboid(LID),
     )

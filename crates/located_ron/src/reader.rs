@@ -674,7 +674,15 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         R::ExpectedInteger | R::ExpectedFloat => "a number",
         R::InvalidValueForType { expected, .. } => expected,
         other => {
-            let unclosed = open_bracket(&span.file);
+            let is_unclosed = matches!(
+                other,
+                R::ExpectedArrayEnd
+                    | R::ExpectedComma
+                    | R::ExpectedMapEnd
+                    | R::ExpectedOptionEnd
+                    | R::ExpectedStructLikeEnd
+            );
+            let unclosed = is_unclosed.then(|| open_bracket(&span.file)).flatten();
             return unclosed
                 .unwrap_or_else(|| syntax(lower_first(&other.to_string())).at(span, "here"));
         }

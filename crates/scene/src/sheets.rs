@@ -40,10 +40,13 @@ impl Sheets {
             let (word, bit) = (&mut self.0[at / 32], at % 32);
             *word = (*word & !(1 << bit)) | u32::from(flag) << bit;
         }
+        if self.0.iter().all(|&word| word == 0) {
+            self.0.clear();
+        }
     }
 
     /// Returns one bit per triangle, set for sheets: 32 to a word, lowest bit first. No words if no
-    /// triangle was ever a sheet.
+    /// triangle is a sheet.
     pub fn words(&self) -> &[u32] {
         &self.0
     }
@@ -124,5 +127,8 @@ mod tests {
         let expected = |id: u32| id < 3 || id == 30 || (36..70).contains(&id);
         assert!((0..200).all(|id| is_sheet(&sheets, id) == expected(id)));
         assert_eq!(sheets.words().len(), 5);
+        sheets.put(&leaves(40, 0), 0, 130);
+        sheets.put(&leaves(40, 0), 40, 130);
+        assert!(sheets.words().is_empty(), "no sheet is left");
     }
 }

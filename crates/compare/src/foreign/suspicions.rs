@@ -147,8 +147,8 @@ impl Suspect<'_> {
         rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
     }
 
-    /// That surfaces which are lit all around lack light, in stripes or specks or through a filter
-    /// over these, while shadows are dark.
+    /// Tells that surfaces which are lit all around lack light, in stripes or specks or through a
+    /// filter over these, while shadows are dark.
     fn acne(&self, judged: &[usize], right: &[f32]) -> Option<String> {
         let classes = &self.truth.pixels.classes;
         let is_lit = |at: usize| right[at] == 1.0;
@@ -233,7 +233,7 @@ impl Suspect<'_> {
         readings
     }
 
-    /// That few pixels agree at all.
+    /// Tells that few pixels agree at all.
     fn hardly(&self, judged: &[usize], right: &[f32]) -> String {
         let agrees = |at: &&usize| (self.shares[**at] - right[**at]).abs() < 0.5;
         let agreeing = judged.iter().filter(agrees).count();
@@ -257,8 +257,8 @@ impl Suspect<'_> {
         )
     }
 
-    /// That no shadow is dark: an ambient light is in the quotient. A filter that blurs leaves the
-    /// inside of shadows dark.
+    /// Tells that no shadow is dark: an ambient light is in the quotient. A filter that blurs
+    /// leaves the inside of shadows dark.
     fn ambient(&self, judged: &[usize], right: &[f32]) -> Option<String> {
         let dark = judged.iter().filter(|at| right[**at] == 0.0);
         let mut dark: Vec<f64> = dark.map(|at| self.shares[*at].into()).collect();
@@ -273,7 +273,7 @@ impl Suspect<'_> {
         })
     }
 
-    /// That numbers are not shares at all, such as bytes that are held as floats.
+    /// Tells that numbers are not shares at all, such as bytes that are held as floats.
     fn out_of_range(&self) -> Option<String> {
         let finite = self
             .shares
@@ -290,7 +290,7 @@ impl Suspect<'_> {
     }
 }
 
-/// That a picture has no answer at so many pixels that it cannot be judged.
+/// Tells that a picture has no answer at so many pixels that it cannot be judged.
 fn no_answer(answered: u64, facing: u64) -> String {
     let has = match answered {
         0 => "the picture holds no answer: it has no finite number at any".to_owned(),

@@ -2,11 +2,12 @@
 //! light.
 //!
 //! ```
-//! use skiagraph_compare::graphs::{contract::layer_of, planning};
+//! use skiagraph_compare::graphs::{contract::layer_of, planning::{self, Trial}};
 //! use skiagraph_passes::{EmbeddedSources, registry};
 //!
-//! let (_, plan) = planning::check("pipelines/nsm.ron", &registry(), &EmbeddedSources, None)?;
-//! assert_eq!(layer_of(&plan, 2), Some(0), "one layer for every light");
+//! let (path, trial) = ("pipelines/nsm.ron", Trial::default());
+//! let checked = planning::check(path, &registry(), &EmbeddedSources, &trial)?;
+//! assert_eq!(layer_of(&checked.plan, 2), Some(0), "one layer for every light");
 //! # Ok::<(), skiagraph_graph::Diagnostics>(())
 //! ```
 

@@ -377,25 +377,24 @@ fn disagreement(name: &str, seen: &[Seen]) -> Option<LayoutError> {
         .iter()
         .filter(|view| view.part == SubresourceRange::WHOLE);
     let first = whole.next()?;
-    for other in whole {
-        let (name, spans) = (name.to_owned(), [first.span.clone(), other.span.clone()]);
-        if other.layout != first.layout {
-            return Some(LayoutError::Disagreement {
-                name,
-                layouts: [first.shown(), other.shown()],
-                spans,
-            });
-        }
-        if let Some((member, offsets)) = swapped(first.item.as_ref()?, other.item.as_ref()?) {
-            return Some(LayoutError::Swapped {
-                name,
-                member,
-                offsets,
-                spans,
-            });
-        }
+    let (name, spans) = (name.to_owned(), |other: &Seen| {
+        [first.span.clone(), other.span.clone()]
+    });
+    if let Some(other) = whole.clone().find(|view| view.layout != first.layout) {
+        return Some(LayoutError::Disagreement {
+            name,
+            layouts: [first.shown(), other.shown()],
+            spans: spans(other),
+        });
     }
-    None
+    let (other, (member, offsets)) =
+        whole.find_map(|view| Some((view, swapped(first.item.as_ref()?, view.item.as_ref()?)?)))?;
+    Some(LayoutError::Swapped {
+        name,
+        member,
+        offsets,
+        spans: spans(other),
+    })
 }
 
 /// Returns the first name that two items have at different offsets, with both.

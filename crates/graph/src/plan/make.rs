@@ -458,7 +458,8 @@ fn unmade(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Reports) {
         let is_drawn = lifetime
             .textures
             .contains(wgt::TextureUsages::RENDER_ATTACHMENT);
-        let is_own = resource.origin != Origin::Host;
+        // A history is drawn as the resource itself.
+        let is_own = resource.origin == Origin::Own;
         let name = Located::new(resource.name.clone(), declared);
         match &resource.kind {
             ResourceKind::Buffer(Buffer { bytes: 0, .. }) => {

@@ -2,7 +2,7 @@
 //! message says, and checks the document again.
 
 use crate::broken::{Broken, folder, request};
-use skiagraph_graph::{Diagnostic, Graph, Picture, Registry, Sources};
+use skiagraph_graph::{Code, Diagnostic, Graph, Picture, Registry, Sources};
 use std::sync::Arc;
 
 /// The documents of `tests/broken`, some of the files with another text.
@@ -374,6 +374,20 @@ fn warnings_have_ways_out() {
         "span_read.wgsl",
         "far: f32, near: f32",
         "near: f32, far: f32",
+    );
+    // Another layout behind these two is an error all the same.
+    let read = "Compute(name: \"span_read\", dispatch: Over(4)),";
+    let third = read.to_owned() + &read.replace("read", "third");
+    let document = text("layout_swapped.ron").replace(read, &third);
+    let shader = text("span_read.wgsl").replace("far: f32, near: f32", "far: u32, near: f32");
+    let files = [
+        ("layout_swapped.ron", &*document),
+        ("span_third.wgsl", &*shader),
+    ];
+    assert!(
+        said_with("layout_swapped", &files)
+            .iter()
+            .any(|said| said.code == Code::LayoutMismatch)
     );
     message("samples_only_bound");
     let edited = text("samples_only_bound.ron").replace(", samples: 4", "");

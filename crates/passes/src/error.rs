@@ -188,8 +188,8 @@ pub enum Error {
     /// The provider's resources are on another device than the one that is asked of, or a host's
     /// mesh on another one than these.
     #[error(
-        "{0} is of another device: move the provider by `SceneProvider::move_to`, and make hosts' \
-         meshes on its device"
+        "{0} is of another device, or this one is lost: move the provider by \
+         `SceneProvider::move_to`, and make hosts' meshes on its device"
     )]
     OtherDevice(
         /// Thing that is of another device: `the provider` or `the host's mesh`.

@@ -94,12 +94,7 @@ impl HostMesh {
         if given < needed || given > needed.max(u64::from(vertices.count) * vertices.stride) {
             return Err(HostMeshError::Rest { needed, given });
         }
-        let binds = |what, bytes: u64| {
-            let limit = binding_limit(&device.limits());
-            let error = HostMeshError::TooLarge { what, bytes, limit };
-            if bytes <= limit { Ok(()) } else { Err(error) }
-        };
-        binds("the vertices", needed)?;
+        binds(device, "the vertices", needed)?;
         let wide;
         let indices = match indices {
             HostIndices::U32(indices) => indices,
@@ -130,8 +125,7 @@ impl HostMesh {
         if !has_normals {
             part_normals(&mut mesh);
         }
-        binds("the positions", 16 * mesh.positions.len() as u64)?;
-        binds("the normals", 16 * mesh.normals.len() as u64)?;
+        binds_mesh(device, &mesh)?;
         let welded = Welded::new(&mesh, &positions, indices);
         let movable = Movable::joined(&[&mesh]);
         let tree = Bvh::build(&movable.rest);
@@ -157,7 +151,8 @@ impl HostMesh {
     /// # Errors
     /// [`HostMeshError::OtherVertices`] for another number of vertices, or if only one of both has
     /// normals; [`HostMeshError::OtherDevice`] for a buffer or decoder of another device than
-    /// `device`; those of [`new`](Self::new) for a layout that cannot be read.
+    /// `device`; those of [`new`](Self::new) for a layout that cannot be read, or more than the
+    /// device can bind.
     pub fn with_vertices(
         &self,
         device: &wgpu::Device,
@@ -169,6 +164,8 @@ impl HostMesh {
         if given != mesh {
             return Err(HostMeshError::OtherVertices { mesh, given });
         }
+        binds(device, "the vertices", vertices.length())?;
+        binds_mesh(device, &self.own.rest.movable.rest)?;
         let own = Own::new(device, (vertices, known), Arc::clone(&self.own.rest));
         Ok(Self {
             own: Arc::new(own),
@@ -301,6 +298,19 @@ fn packed(levels: &[Vec<u32>]) -> Vec<u32> {
     }
     packed.extend(levels.iter().flatten());
     packed
+}
+
+/// Checks that a device can bind so many bytes.
+fn binds(device: &wgpu::Device, what: &'static str, bytes: u64) -> Result<(), HostMeshError> {
+    let limit = binding_limit(&device.limits());
+    let error = HostMeshError::TooLarge { what, bytes, limit };
+    if bytes <= limit { Ok(()) } else { Err(error) }
+}
+
+/// Checks that a device can bind what is made of a mesh.
+fn binds_mesh(device: &wgpu::Device, mesh: &Mesh) -> Result<(), HostMeshError> {
+    binds(device, "the positions", 16 * mesh.positions.len() as u64)?;
+    binds(device, "the normals", 16 * mesh.normals.len() as u64)
 }
 
 fn storage(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {

@@ -224,7 +224,8 @@ fn a_view_and_a_light_of_ones_own_on_any_scene() {
     );
     // All of a bare mesh is seen, and it is said from where.
     let (mesh, text) = compare("--scene mesh.obj");
-    assert!(text.contains("chosen: --eye "), "{text}");
+    let chosen = "chosen `main`, from outside: --eye ";
+    assert!(text.contains(chosen), "{text}");
     assert!(count(&mesh["pixels"]["facing_light"]) > 50, "{mesh}");
     assert!(count(&mesh["pixels"]["background"]) > 0, "{mesh}");
     let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))

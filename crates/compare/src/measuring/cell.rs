@@ -36,8 +36,9 @@ use skiagraph_scene::{
 /// triangles; the name, camera and light of the view or path; the viewport in pixels; the preset
 /// with all params that it runs with; and the protocol. The method's name is not part of the hash:
 /// two settings with the same params are one cell. Neither are shaders and the mesh: a change of
-/// these changes the run's [`fingerprint`](crate::records::results::Run::fingerprint). Defaults of
-/// params may depend on the viewport: call [`Method::at`] with it first.
+/// these changes the run's [`fingerprint`](crate::records::results::Run::fingerprint). A preset
+/// that gets a param has other cells than before. Defaults of params may depend on the viewport:
+/// call [`Method::at`] with it first.
 pub fn id(
     comparison: &Comparison,
     view: &ViewOrPath,
@@ -217,7 +218,8 @@ mod tests {
         id(comparison, view, comparison.viewports[0], method)
     }
 
-    /// Results and plans of other versions and machines hold ids: this one never changes.
+    /// Results and plans of other versions and machines hold ids: this one changes only if `nsm`
+    /// gets another param, as it did with `two_sided`.
     #[test]
     fn an_id_is_the_same_in_every_version() {
         insta::assert_snapshot!(id_of(&comparison()));

@@ -267,7 +267,9 @@ impl FramesInFlight {
             if frame.fate != Fate::Lost || frame.number != self.newest {
                 break;
             }
-            (self.newest, self.is_strict) = (frame.follows, frame.is_strict);
+            // The one before it may be lost as well, if the frame is older than the last fault.
+            self.is_strict = frame.is_strict && frame.number >= self.since_fault;
+            self.newest = frame.follows;
             setback.rewind = Some(frame.number);
         }
         let rewound = setback.rewind.unwrap_or(u64::MAX);

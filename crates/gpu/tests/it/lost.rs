@@ -175,8 +175,13 @@ fn frames_that_are_lost_one_by_one_leave_nothing() {
                 let fault = ([one, two][at], FaultKind::NeverRan);
                 assert_eq!(told(&mut executor), [fault]);
             }
-            assert_eq!(values(&mut executor), [6, 2], "{losses:?}, {order:?}");
-            assert_eq!(values(&mut executor), [6, 3], "{losses:?}, {order:?}");
+            for total in [2, 3] {
+                let report = frame(&mut executor, &names);
+                let values = [0, 1].map(|at| words(&report, at)[0]);
+                assert_eq!(values, [6, total], "{losses:?}, {order:?}");
+                assert_eq!(report.fault, None, "{losses:?}, {order:?}");
+            }
+            assert_eq!(told(&mut executor), [], "{losses:?}, {order:?}");
             // A frame at rest for another plan, and one that is lost before the plan changes.
             lost(&mut executor, &Frame::default(), losses[0]);
             set(&mut executor, "other", ParamValue::U32(2));

@@ -323,9 +323,7 @@ impl Executor {
             ping_pong,
         } = &self.decision;
         let number = frame_in_flight.number;
-        if !rests {
-            frame_in_flight.before.clone_from(&state.contents);
-        }
+        frame_in_flight.before.clone_from(&state.contents);
         if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
             && let Ok(uniform) = state.memory.buffer(id, ping_pong)
         {

@@ -347,33 +347,28 @@ impl FramesInFlight {
         device: &wgpu::Device,
         presence: &Presence,
     ) -> Result<Option<FrameReport>, ExecuteError> {
-        let Some(mut frame_in_flight) = self.under_way.pop_front() else {
+        let asked = self.under_way.iter().position(FrameInFlight::is_asked);
+        let Some((at, frame)) = asked.map(|at| (at, &mut self.under_way[at])) else {
             return Ok(None);
         };
-        if frame_in_flight.fate == Fate::Pending || frame_in_flight.is_being_mapped() {
-            self.under_way.push_front(frame_in_flight);
+        let timing = if frame.fate == Fate::Pending || frame.is_being_mapped() {
+            Ok(None)
+        } else if frame.is_timed {
+            frame.times(device).map(|times| times.map(Some))
+        } else {
+            Ok(Some(None))
+        };
+        if matches!(timing, Ok(None)) {
             // A lost device does not report that work under way will never come.
             presence.check()?;
             return Ok(None);
         }
-        let timing = if frame_in_flight.is_timed {
-            match frame_in_flight.times(device) {
-                Ok(Some(timing)) => Some(timing),
-                Ok(None) => {
-                    self.under_way.push_front(frame_in_flight);
-                    // They never come from a device that is lost meanwhile.
-                    presence.check()?;
-                    return Ok(None);
-                }
-                Err(error) => {
-                    frame_in_flight.timer = None;
-                    self.recycle(frame_in_flight);
-                    return Err(error);
-                }
-            }
-        } else {
-            None
+        let Some(mut frame_in_flight) = self.under_way.remove(at) else {
+            return Ok(None);
         };
+        if timing.is_err() {
+            frame_in_flight.timer = None;
+        }
         let fetched: Result<Vec<_>, _> = frame_in_flight
             .fetches
             .drain(..)
@@ -387,7 +382,7 @@ impl FramesInFlight {
         let report = fetched.and_then(|readbacks| {
             Ok(FrameReport {
                 index: frame_in_flight.index,
-                timing,
+                timing: timing?.flatten(),
                 statistics: counted?,
                 skipped: names(&frame_in_flight.skipped),
                 readbacks,

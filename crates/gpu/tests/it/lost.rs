@@ -190,6 +190,32 @@ fn frames_that_are_lost_one_by_one_leave_nothing() {
     }
 }
 
+/// ```text
+/// total.previous ─▶ count ─▶ total
+/// ```
+fn counts() -> Files {
+    let count = compute("count", "", r#""old": "total.previous", "out": "total""#);
+    document("", &["total"], &[count], &["total"]).with("count.wgsl", writes(OLD, "old[0] + 1u"))
+}
+
+/// A frame that asks for nothing and is never submitted keeps no report back.
+#[test]
+fn a_report_waits_for_no_frame_that_asks_for_nothing() {
+    let mut executor = executor(&caches(), &request(&NoProvider));
+    let (held, first) = encoded(&mut executor);
+    let mut second = encoder();
+    let read = Frame::new().with_read(&["b"]).with_all(true);
+    let asked = executor.encode(&mut second, &read).unwrap();
+    run(second);
+    let report = executor.finish().unwrap();
+    assert_eq!((report.index, words(&report, 0)), (asked, vec![6]));
+    assert_eq!(report.fault, Some(FaultKind::OutOfOrder));
+    assert_eq!(told(&mut executor), [(asked, FaultKind::OutOfOrder)]);
+    lose(first, LOSSES[0]);
+    assert_eq!(told(&mut executor), [(held, FaultKind::NeverRan)]);
+    assert_eq!(numbers(&mut executor, "b"), [6]);
+}
+
 /// A plan may change while frames are under way that asked for contents at rest.
 #[test]
 fn frames_at_rest_outlive_a_change_of_the_plan() {
@@ -213,11 +239,8 @@ fn frames_at_rest_outlive_a_change_of_the_plan() {
 /// Several frames of one encoder are lost together.
 #[test]
 fn all_frames_of_an_encoder_are_lost_with_it() {
-    let count = compute("count", "", r#""old": "total.previous", "out": "total""#);
-    let files = document("", &["total"], &[count], &["total"])
-        .with("count.wgsl", writes(OLD, "old[0] + 1u"));
     for loss in LOSSES {
-        let mut executor = executor(&files, &request(&NoProvider));
+        let mut executor = executor(&counts(), &request(&NoProvider));
         assert_eq!(numbers(&mut executor, "total"), [1]);
         let mut commands = encoder();
         for _ in 0..3 {

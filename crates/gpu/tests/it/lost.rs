@@ -198,6 +198,78 @@ fn counts() -> Files {
     document("", &["total"], &[count], &["total"]).with("count.wgsl", writes(OLD, "old[0] + 1u"))
 }
 
+/// A frame that goes on from what those before it leave is told if they have not run by then,
+/// whether they run later or never.
+#[test]
+fn a_frame_before_those_that_it_goes_on_from_is_told() {
+    let (never, without) = (FaultKind::NeverRan, FaultKind::WithoutPredecessor);
+    for loss in LOSSES {
+        for is_late in [false, true] {
+            let mut executor = executor(&counts(), &request(&NoProvider));
+            assert_eq!(numbers(&mut executor, "total"), [1]);
+            let (missing, lost) = encoded(&mut executor);
+            let waiting = [0, 1].map(|_| encoded(&mut executor));
+            lose(lost, loss);
+            assert_eq!(told(&mut executor), [(missing, never)]);
+            let (early, commands) = encoded(&mut executor);
+            run(commands);
+            assert_eq!(told(&mut executor), [(early, FaultKind::OutOfOrder)]);
+            let expected = waiting.each_ref().map(|(index, _)| match is_late {
+                true => (*index, without),
+                false => (*index, never),
+            });
+            for (_, commands) in waiting {
+                match is_late {
+                    true => run(commands),
+                    false => lose(commands, loss),
+                }
+            }
+            assert_eq!(told(&mut executor), expected, "{loss:?}");
+            assert_eq!(numbers(&mut executor, "total"), [2], "{loss:?}");
+            assert_eq!(numbers(&mut executor, "total"), [3], "{loss:?}");
+            assert_eq!(told(&mut executor), [], "{loss:?}");
+        }
+        // In the order of encoding nothing is wrong with it.
+        let mut executor = executor(&counts(), &request(&NoProvider));
+        let (_, lost) = encoded(&mut executor);
+        let (index, waiting) = encoded(&mut executor);
+        lose(lost, loss);
+        executor.take_faults().unwrap();
+        let (_, commands) = encoded(&mut executor);
+        run(waiting);
+        run(commands);
+        assert_eq!(told(&mut executor), [(index, without)], "{loss:?}");
+        assert_eq!(numbers(&mut executor, "total"), [3], "{loss:?}");
+        assert_eq!(told(&mut executor), [], "{loss:?}");
+    }
+}
+
+/// Two frames are lost one by one; the one behind them has run, and left its content.
+#[test]
+fn what_a_frame_behind_lost_ones_has_left_stays() {
+    for loss in LOSSES {
+        for order in [[0, 1], [1, 0]] {
+            let mut executor = executor(&counts(), &request(&NoProvider));
+            assert_eq!(numbers(&mut executor, "total"), [1]);
+            let mut lost = [0, 1].map(|_| Some(encoded(&mut executor)));
+            let (behind, commands) = encoded(&mut executor);
+            for at in order {
+                let (index, commands) = lost[at].take().unwrap();
+                lose(commands, loss);
+                assert_eq!(told(&mut executor), [(index, FaultKind::NeverRan)]);
+            }
+            run(commands);
+            let fault = (behind, FaultKind::WithoutPredecessor);
+            assert_eq!(told(&mut executor), [fault]);
+            let total = executor.output_buffer("total").unwrap();
+            let left = crate::given::content(&total, encoder());
+            assert_eq!(left, [2], "{loss:?}, {order:?}");
+            assert_eq!(numbers(&mut executor, "total"), [3], "{loss:?}, {order:?}");
+            assert_eq!(told(&mut executor), []);
+        }
+    }
+}
+
 /// A frame that asks for nothing and is never submitted keeps no report back.
 #[test]
 fn a_report_waits_for_no_frame_that_asks_for_nothing() {
@@ -275,6 +347,24 @@ fn what_the_host_provided_before_is_that_of_the_last_frame_that_ran() {
         let plan = planned(&files, &request(&provider));
         let made = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider);
         let mut executor = made.unwrap();
+        // A frame that runs before the one that fills the copy is told.
+        let (_, missing) = encoded(&mut executor);
+        let (_, waiting) = encoded(&mut executor);
+        lose(missing, loss);
+        executor.take_faults().unwrap();
+        let (early, commands) = encoded(&mut executor);
+        run(commands);
+        let fault = (early, FaultKind::OutOfOrder);
+        assert!(told(&mut executor).contains(&fault), "{loss:?}");
+        lose(waiting, loss);
+        told(&mut executor);
+        let made = Executor::new(
+            &GPU.device,
+            &GPU.queue,
+            executor.plan().clone(),
+            &mut provider,
+        );
+        let mut executor = made.unwrap();
         // The first frame has no frame before it, and does not count if it is lost.
         lost(&mut executor, &Frame::default(), loss);
         let mut turn = |number: u32| {
@@ -341,6 +431,22 @@ fn what_stays_survives_a_lost_copy() {
         lost(&mut executor, &Frame::default(), loss);
         let expected = [10, 11, 12, 13, 14, 15, 0, 0, 0];
         assert_eq!(numbers(&mut executor, "list"), expected, "{loss:?}");
+        // A frame that runs before the copy is told.
+        let (_, missing) = encoded(&mut executor);
+        let plan = executor.plan().with(|request| {
+            request.grown.insert("list".to_owned(), 20);
+        });
+        executor
+            .replace_graph(plan.unwrap(), &mut NoProvider)
+            .unwrap();
+        let (_, waiting) = encoded(&mut executor);
+        lose(missing, loss);
+        executor.take_faults().unwrap();
+        let (early, commands) = encoded(&mut executor);
+        run(commands);
+        let fault = (early, FaultKind::OutOfOrder);
+        assert!(told(&mut executor).contains(&fault), "{loss:?}");
+        drop(waiting);
     }
 }
 
@@ -411,6 +517,23 @@ fn a_history_goes_on_from_what_was_written_last() {
         assert_eq!(numbers(&mut executor, "total"), [12], "{loss:?}");
         on(&mut executor, true);
         assert_eq!(numbers(&mut executor, "total"), [123], "{loss:?}");
+        // Nor does one that runs late, behind others that have written it.
+        told(&mut executor);
+        on(&mut executor, false);
+        let (late, held) = encoded(&mut executor);
+        on(&mut executor, true);
+        seed(&mut executor, 4);
+        let (early, commands) = encoded(&mut executor);
+        run(commands);
+        let out = FaultKind::OutOfOrder;
+        assert_eq!(told(&mut executor), [(early, out)], "{loss:?}");
+        seed(&mut executor, 5);
+        assert_eq!(numbers(&mut executor, "total"), [12345], "{loss:?}");
+        assert_eq!(told(&mut executor), [], "{loss:?}");
+        run(held);
+        assert_eq!(told(&mut executor), [(late, out)], "{loss:?}");
+        seed(&mut executor, 6);
+        assert_eq!(numbers(&mut executor, "total"), [123_456], "{loss:?}");
     }
 }
 

@@ -14,9 +14,8 @@ pub(super) struct Contents {
     /// Version of every resource of the plan, by id.
     versions: Vec<u64>,
     clock: u64,
-    /// Index of the allocation with the latest content, for each resource with two allocations, in
-    /// the order of ids.
-    latest: Vec<(ResourceId, usize)>,
+    /// Latest content of each resource with two allocations, in the order of ids.
+    latest: Vec<(ResourceId, Written)>,
     /// The provided resources that are read as `.previous`, with their copies; `None` for a copy
     /// that was never filled.
     host_copies: Vec<(HostCopy, Option<Copied>)>,
@@ -30,12 +29,16 @@ pub(super) struct Contents {
 /// A provided resource, and the copy of it that the next frame reads as `.previous`.
 pub(super) type HostCopy = (ResourceId, ResourceId);
 
+/// Latest content of a resource with two allocations: the index of its allocation, and the number of
+/// the frame that wrote it; 0 if none has.
+type Written = (usize, u64);
+
 /// Content of a `.previous` copy of a provided resource: its version, and the number of the frame
 /// that copied it first.
 type Copied = (u64, u64);
 
-/// Content of a copy that is not known: no content has this version.
-const UNKNOWN: Copied = (0, 0);
+/// Version of a copy whose content is not known: no content has it.
+const UNKNOWN: u64 = 0;
 
 /// Copies into the memory that is there: one is made for every frame.
 impl Clone for Contents {
@@ -70,7 +73,7 @@ impl Contents {
         for &id in plan.schedule().lifetimes.keys() {
             contents.touch(id);
             if plan.versions(id) > 1 {
-                contents.latest.push((id, 0));
+                contents.latest.push((id, (0, 0)));
             }
         }
         contents
@@ -160,7 +163,7 @@ impl Contents {
         let writers = &plan.schedule().conditions.writers;
         // Entries that exist stay in their place: every frame comes here.
         turn.retain(|id, _| self.latest.iter().any(|(known, _)| known == id));
-        for &(id, latest) in &self.latest {
+        for &(id, (latest, _)) in &self.latest {
             let is_written = writers[id.index()].is_some_and(|group| runs[group]);
             let current = if is_written { 1 - latest } else { latest };
             let previous = latest;
@@ -168,13 +171,14 @@ impl Contents {
         }
     }
 
-    /// Notes that these passes ran in a frame that began with the contents `before`.
+    /// Notes that these passes ran in the frame with this number, which began with the contents
+    /// `before`.
     pub fn ran(
         &mut self,
         plan: &Plan,
         passes: &[GpuPass],
         runs: &[bool],
-        (before, ping_pong): (&Self, &PingPong),
+        (number, before, ping_pong): (u64, &Self, &PingPong),
     ) {
         let conditions = &plan.schedule().conditions;
         let is_kept = |id: ResourceId| plan.resource(id).keep;
@@ -204,7 +208,10 @@ impl Contents {
             self.stale[at] = false;
         }
         for (id, latest) in &mut self.latest {
-            *latest = ping_pong.get(id).map_or(*latest, |it| it.current);
+            let current = ping_pong.get(id).map(|versions| versions.current);
+            if let Some(written) = current.filter(|current| *current != latest.0) {
+                *latest = (written, number);
+            }
         }
     }
 
@@ -238,6 +245,14 @@ impl Contents {
         }
     }
 
+    /// True if a content is there only once the frame with this number has run.
+    pub fn relies_on(&self, number: u64) -> bool {
+        let latest = self.latest.iter().map(|(_, (_, writer))| *writer);
+        let copies = self.host_copies.iter().filter_map(|(_, copied)| *copied);
+        let mut writers = latest.chain(copies.map(|(_, first)| first));
+        writers.any(|writer| writer == number)
+    }
+
     /// Restores the contents before frames that never ran. What the host has changed since then
     /// stays changed.
     pub fn rewind(&mut self, plan: &Plan, before: &Self) {
@@ -257,34 +272,35 @@ impl Contents {
 
     /// Forgets what passes have seen, so that all run again, and what lost frames have written: of
     /// resources with two allocations the latest is that which the last of the others has written.
-    /// `frames` has the contents before each frame, in which the same is forgotten, and true if the
-    /// frame is lost.
-    pub fn forget(&mut self, frames: &mut [(&mut Self, bool)]) {
-        for at in 0..self.latest.len() {
-            let first = frames.first().map(|(first, _)| first.latest[at].1);
-            let mut right = first.unwrap_or(self.latest[at].1);
-            for number in 0..frames.len() {
-                let next = frames.get(number + 1);
-                let after = next.map_or(self.latest[at].1, |(next, _)| next.latest[at].1);
-                let (before, is_lost) = &mut frames[number];
-                let assumed = std::mem::replace(&mut before.latest[at].1, right);
-                if !*is_lost && assumed != after {
-                    right = after;
+    /// `frames` has the number of each frame, the contents before it, in which the same is
+    /// forgotten, and true if the frame is lost.
+    pub fn forget(&mut self, frames: &mut [(u64, &mut Self, bool)]) {
+        for at in 0..frames.len() {
+            let (until, behind) = frames.split_at_mut(at + 1);
+            let (number, before, true) = &until[at] else {
+                continue;
+            };
+            let behind = behind.iter_mut().map(|(_, contents, _)| &mut **contents);
+            for contents in behind.chain([&mut *self]) {
+                for ((_, written), (_, before)) in contents.latest.iter_mut().zip(&before.latest) {
+                    if written.1 == *number {
+                        *written = *before;
+                    }
                 }
             }
-            self.latest[at].1 = right;
         }
         for at in 0..self.host_copies.len() {
-            let first = frames.first().map(|(first, _)| first.host_copies[at].1);
-            let mut right = first.unwrap_or(self.host_copies[at].1).and(Some(UNKNOWN));
-            for (before, is_lost) in &mut *frames {
+            let first = frames.first().map(|(_, first, _)| first.host_copies[at].1);
+            let first = first.unwrap_or(self.host_copies[at].1);
+            let mut right = first.map(|_| (UNKNOWN, 0));
+            for (number, before, is_lost) in &mut *frames {
                 before.host_copies[at].1 = right;
-                right = if *is_lost { right } else { Some(UNKNOWN) };
+                right = right.or((!*is_lost).then_some((UNKNOWN, *number)));
             }
             self.host_copies[at].1 = right;
         }
         self.seen.fill(None);
-        for (before, _) in frames {
+        for (_, before, _) in frames {
             before.seen.fill(None);
         }
     }

@@ -323,9 +323,7 @@ impl Executor {
             ping_pong,
         } = &self.decision;
         let number = frame_in_flight.number;
-        if !rests {
-            frame_in_flight.before.clone_from(&state.contents);
-        }
+        frame_in_flight.before.clone_from(&state.contents);
         if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
             && let Ok(uniform) = state.memory.buffer(id, ping_pong)
         {
@@ -373,7 +371,7 @@ impl Executor {
             frame_in_flight.changes = is_counted.then_some(change);
         }
         let (plan, passes) = (&state.plan, &state.passes);
-        let before = (&frame_in_flight.before, ping_pong);
+        let before = (number, &frame_in_flight.before, ping_pong);
         if !rests {
             state.contents.ran(plan, passes, runs, before);
         }
@@ -454,7 +452,7 @@ impl Executor {
                     .filter(|frame| frame.is_followed);
                 let followed = followed.map(|frame| {
                     let is_lost = frame.is_lost();
-                    (&mut frame.before, is_lost)
+                    (frame.number, &mut frame.before, is_lost)
                 });
                 state.contents.forget(&mut followed.collect::<Vec<_>>());
                 self.host_changes.note_new_memory();

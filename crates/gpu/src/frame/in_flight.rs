@@ -40,7 +40,8 @@ pub(super) struct FrameInFlight {
     pub is_followed: bool,
     /// Number of the frame before.
     follows: u64,
-    /// True if the frame must run right after that one; if not, after any one before.
+    /// True if the frame must run right after that one; if not, after those before that leave
+    /// contents which it goes on from.
     is_strict: bool,
     fault: Option<FaultKind>,
     /// Contents before the frame.
@@ -105,6 +106,13 @@ impl FrameInFlight {
     /// True if the frame is known to have never run.
     pub fn is_lost(&self) -> bool {
         self.fate == Fate::Lost
+    }
+
+    /// True if the frame, which ran right after that with the number `before`, goes on from
+    /// contents of an earlier one that had not run by then.
+    fn lacks(&self, earlier: &Self, before: u64) -> bool {
+        let is_later = earlier.fate == Fate::Pending && earlier.number != before;
+        is_later && (!earlier.grown.is_empty() || self.before.relies_on(earlier.number))
     }
 
     /// Returns how many changes there were before the frame, if it has newly run as it should.
@@ -255,7 +263,8 @@ impl FramesInFlight {
 
     /// Finds out which frames have run since the last call, and notes the faults.
     pub fn settle(&mut self) -> Setback {
-        for frame in &mut self.under_way {
+        // The last one first: what is not done then was not done before a later frame.
+        for frame in self.under_way.iter_mut().rev() {
             if let (Fate::Pending, Some(stamp)) = (frame.fate, &frame.stamp) {
                 frame.fate = stamp.fate(frame.number);
                 frame.is_news = frame.fate != Fate::Pending;
@@ -267,7 +276,9 @@ impl FramesInFlight {
             if frame.fate != Fate::Lost || frame.number != self.newest {
                 break;
             }
-            (self.newest, self.is_strict) = (frame.follows, frame.is_strict);
+            // The one before it may be lost as well, if the frame is older than the last fault.
+            self.is_strict = frame.is_strict && frame.number >= self.since_fault;
+            self.newest = frame.follows;
             setback.rewind = Some(frame.number);
         }
         let rewound = setback.rewind.unwrap_or(u64::MAX);
@@ -317,19 +328,24 @@ impl FramesInFlight {
     /// number behind which frames are in doubt; `None` if there are none.
     fn disorder(&mut self) -> Option<u64> {
         let mut doubtful: Option<u64> = None;
-        for frame in self.under_way.iter_mut().filter(|frame| frame.is_news) {
-            let Fate::RanAfter(before) = frame.fate else {
+        for at in 0..self.under_way.len() {
+            let frame = &self.under_way[at];
+            let (true, Fate::RanAfter(before)) = (frame.is_news, frame.fate) else {
                 continue;
             };
+            let mut earlier = self.under_way.iter().take(at);
             let is_right = match (frame.fault, frame.is_strict) {
                 // It was in doubt already; those behind it were encoded without it.
                 (Some(_), _) => before < self.since_fault,
                 (None, true) => before == frame.follows,
-                (None, false) => before < frame.number,
+                (None, false) => {
+                    before < frame.number && !earlier.any(|other| frame.lacks(other, before))
+                }
             };
             if is_right {
                 continue;
             }
+            let frame = &mut self.under_way[at];
             frame.fault.get_or_insert(FaultKind::OutOfOrder);
             if frame.is_followed {
                 let least = before.min(frame.follows);
@@ -345,33 +361,28 @@ impl FramesInFlight {
         device: &wgpu::Device,
         presence: &Presence,
     ) -> Result<Option<FrameReport>, ExecuteError> {
-        let Some(mut frame_in_flight) = self.under_way.pop_front() else {
+        let asked = self.under_way.iter().position(FrameInFlight::is_asked);
+        let Some((at, frame)) = asked.map(|at| (at, &mut self.under_way[at])) else {
             return Ok(None);
         };
-        if frame_in_flight.fate == Fate::Pending || frame_in_flight.is_being_mapped() {
-            self.under_way.push_front(frame_in_flight);
+        let timing = if frame.fate == Fate::Pending || frame.is_being_mapped() {
+            Ok(None)
+        } else if frame.is_timed {
+            frame.times(device).map(|times| times.map(Some))
+        } else {
+            Ok(Some(None))
+        };
+        if matches!(timing, Ok(None)) {
             // A lost device does not report that work under way will never come.
             presence.check()?;
             return Ok(None);
         }
-        let timing = if frame_in_flight.is_timed {
-            match frame_in_flight.times(device) {
-                Ok(Some(timing)) => Some(timing),
-                Ok(None) => {
-                    self.under_way.push_front(frame_in_flight);
-                    // They never come from a device that is lost meanwhile.
-                    presence.check()?;
-                    return Ok(None);
-                }
-                Err(error) => {
-                    frame_in_flight.timer = None;
-                    self.recycle(frame_in_flight);
-                    return Err(error);
-                }
-            }
-        } else {
-            None
+        let Some(mut frame_in_flight) = self.under_way.remove(at) else {
+            return Ok(None);
         };
+        if timing.is_err() {
+            frame_in_flight.timer = None;
+        }
         let fetched: Result<Vec<_>, _> = frame_in_flight
             .fetches
             .drain(..)
@@ -385,7 +396,7 @@ impl FramesInFlight {
         let report = fetched.and_then(|readbacks| {
             Ok(FrameReport {
                 index: frame_in_flight.index,
-                timing,
+                timing: timing?.flatten(),
                 statistics: counted?,
                 skipped: names(&frame_in_flight.skipped),
                 readbacks,

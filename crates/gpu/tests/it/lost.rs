@@ -175,14 +175,117 @@ fn frames_that_are_lost_one_by_one_leave_nothing() {
                 let fault = ([one, two][at], FaultKind::NeverRan);
                 assert_eq!(told(&mut executor), [fault]);
             }
-            assert_eq!(values(&mut executor), [6, 2], "{losses:?}, {order:?}");
-            assert_eq!(values(&mut executor), [6, 3], "{losses:?}, {order:?}");
+            for total in [2, 3] {
+                let report = frame(&mut executor, &names);
+                let values = [0, 1].map(|at| words(&report, at)[0]);
+                assert_eq!(values, [6, total], "{losses:?}, {order:?}");
+                assert_eq!(report.fault, None, "{losses:?}, {order:?}");
+            }
+            assert_eq!(told(&mut executor), [], "{losses:?}, {order:?}");
             // A frame at rest for another plan, and one that is lost before the plan changes.
             lost(&mut executor, &Frame::default(), losses[0]);
             set(&mut executor, "other", ParamValue::U32(2));
             assert_eq!(values(&mut executor)[0], 6);
         }
     }
+}
+
+/// ```text
+/// total.previous ─▶ count ─▶ total
+/// ```
+fn counts() -> Files {
+    let count = compute("count", "", r#""old": "total.previous", "out": "total""#);
+    document("", &["total"], &[count], &["total"]).with("count.wgsl", writes(OLD, "old[0] + 1u"))
+}
+
+/// A frame that goes on from what those before it leave is told if they have not run by then,
+/// whether they run later or never.
+#[test]
+fn a_frame_before_those_that_it_goes_on_from_is_told() {
+    let (never, without) = (FaultKind::NeverRan, FaultKind::WithoutPredecessor);
+    for loss in LOSSES {
+        for is_late in [false, true] {
+            let mut executor = executor(&counts(), &request(&NoProvider));
+            assert_eq!(numbers(&mut executor, "total"), [1]);
+            let (missing, lost) = encoded(&mut executor);
+            let waiting = [0, 1].map(|_| encoded(&mut executor));
+            lose(lost, loss);
+            assert_eq!(told(&mut executor), [(missing, never)]);
+            let (early, commands) = encoded(&mut executor);
+            run(commands);
+            assert_eq!(told(&mut executor), [(early, FaultKind::OutOfOrder)]);
+            let expected = waiting.each_ref().map(|(index, _)| match is_late {
+                true => (*index, without),
+                false => (*index, never),
+            });
+            for (_, commands) in waiting {
+                match is_late {
+                    true => run(commands),
+                    false => lose(commands, loss),
+                }
+            }
+            assert_eq!(told(&mut executor), expected, "{loss:?}");
+            assert_eq!(numbers(&mut executor, "total"), [2], "{loss:?}");
+            assert_eq!(numbers(&mut executor, "total"), [3], "{loss:?}");
+            assert_eq!(told(&mut executor), [], "{loss:?}");
+        }
+        // In the order of encoding nothing is wrong with it.
+        let mut executor = executor(&counts(), &request(&NoProvider));
+        let (_, lost) = encoded(&mut executor);
+        let (index, waiting) = encoded(&mut executor);
+        lose(lost, loss);
+        executor.take_faults().unwrap();
+        let (_, commands) = encoded(&mut executor);
+        run(waiting);
+        run(commands);
+        assert_eq!(told(&mut executor), [(index, without)], "{loss:?}");
+        assert_eq!(numbers(&mut executor, "total"), [3], "{loss:?}");
+        assert_eq!(told(&mut executor), [], "{loss:?}");
+    }
+}
+
+/// Two frames are lost one by one; the one behind them has run, and left its content.
+#[test]
+fn what_a_frame_behind_lost_ones_has_left_stays() {
+    for loss in LOSSES {
+        for order in [[0, 1], [1, 0]] {
+            let mut executor = executor(&counts(), &request(&NoProvider));
+            assert_eq!(numbers(&mut executor, "total"), [1]);
+            let mut lost = [0, 1].map(|_| Some(encoded(&mut executor)));
+            let (behind, commands) = encoded(&mut executor);
+            for at in order {
+                let (index, commands) = lost[at].take().unwrap();
+                lose(commands, loss);
+                assert_eq!(told(&mut executor), [(index, FaultKind::NeverRan)]);
+            }
+            run(commands);
+            let fault = (behind, FaultKind::WithoutPredecessor);
+            assert_eq!(told(&mut executor), [fault]);
+            let total = executor.output_buffer("total").unwrap();
+            let left = crate::given::content(&total, encoder());
+            assert_eq!(left, [2], "{loss:?}, {order:?}");
+            assert_eq!(numbers(&mut executor, "total"), [3], "{loss:?}, {order:?}");
+            assert_eq!(told(&mut executor), []);
+        }
+    }
+}
+
+/// A frame that asks for nothing and is never submitted keeps no report back.
+#[test]
+fn a_report_waits_for_no_frame_that_asks_for_nothing() {
+    let mut executor = executor(&caches(), &request(&NoProvider));
+    let (held, first) = encoded(&mut executor);
+    let mut second = encoder();
+    let read = Frame::new().with_read(&["b"]).with_all(true);
+    let asked = executor.encode(&mut second, &read).unwrap();
+    run(second);
+    let report = executor.finish().unwrap();
+    assert_eq!((report.index, words(&report, 0)), (asked, vec![6]));
+    assert_eq!(report.fault, Some(FaultKind::OutOfOrder));
+    assert_eq!(told(&mut executor), [(asked, FaultKind::OutOfOrder)]);
+    lose(first, LOSSES[0]);
+    assert_eq!(told(&mut executor), [(held, FaultKind::NeverRan)]);
+    assert_eq!(numbers(&mut executor, "b"), [6]);
 }
 
 /// A plan may change while frames are under way that asked for contents at rest.
@@ -208,11 +311,8 @@ fn frames_at_rest_outlive_a_change_of_the_plan() {
 /// Several frames of one encoder are lost together.
 #[test]
 fn all_frames_of_an_encoder_are_lost_with_it() {
-    let count = compute("count", "", r#""old": "total.previous", "out": "total""#);
-    let files = document("", &["total"], &[count], &["total"])
-        .with("count.wgsl", writes(OLD, "old[0] + 1u"));
     for loss in LOSSES {
-        let mut executor = executor(&files, &request(&NoProvider));
+        let mut executor = executor(&counts(), &request(&NoProvider));
         assert_eq!(numbers(&mut executor, "total"), [1]);
         let mut commands = encoder();
         for _ in 0..3 {
@@ -246,6 +346,24 @@ fn what_the_host_provided_before_is_that_of_the_last_frame_that_ran() {
         let mut provider = Number::new(false);
         let plan = planned(&files, &request(&provider));
         let made = Executor::new(&GPU.device, &GPU.queue, plan, &mut provider);
+        let mut executor = made.unwrap();
+        // A frame that runs before the one that fills the copy is told.
+        let (_, missing) = encoded(&mut executor);
+        let (_, waiting) = encoded(&mut executor);
+        lose(missing, loss);
+        executor.take_faults().unwrap();
+        let (early, commands) = encoded(&mut executor);
+        run(commands);
+        let fault = (early, FaultKind::OutOfOrder);
+        assert!(told(&mut executor).contains(&fault), "{loss:?}");
+        lose(waiting, loss);
+        told(&mut executor);
+        let made = Executor::new(
+            &GPU.device,
+            &GPU.queue,
+            executor.plan().clone(),
+            &mut provider,
+        );
         let mut executor = made.unwrap();
         // The first frame has no frame before it, and does not count if it is lost.
         lost(&mut executor, &Frame::default(), loss);
@@ -313,6 +431,22 @@ fn what_stays_survives_a_lost_copy() {
         lost(&mut executor, &Frame::default(), loss);
         let expected = [10, 11, 12, 13, 14, 15, 0, 0, 0];
         assert_eq!(numbers(&mut executor, "list"), expected, "{loss:?}");
+        // A frame that runs before the copy is told.
+        let (_, missing) = encoded(&mut executor);
+        let plan = executor.plan().with(|request| {
+            request.grown.insert("list".to_owned(), 20);
+        });
+        executor
+            .replace_graph(plan.unwrap(), &mut NoProvider)
+            .unwrap();
+        let (_, waiting) = encoded(&mut executor);
+        lose(missing, loss);
+        executor.take_faults().unwrap();
+        let (early, commands) = encoded(&mut executor);
+        run(commands);
+        let fault = (early, FaultKind::OutOfOrder);
+        assert!(told(&mut executor).contains(&fault), "{loss:?}");
+        drop(waiting);
     }
 }
 
@@ -383,6 +517,23 @@ fn a_history_goes_on_from_what_was_written_last() {
         assert_eq!(numbers(&mut executor, "total"), [12], "{loss:?}");
         on(&mut executor, true);
         assert_eq!(numbers(&mut executor, "total"), [123], "{loss:?}");
+        // Nor does one that runs late, behind others that have written it.
+        told(&mut executor);
+        on(&mut executor, false);
+        let (late, held) = encoded(&mut executor);
+        on(&mut executor, true);
+        seed(&mut executor, 4);
+        let (early, commands) = encoded(&mut executor);
+        run(commands);
+        let out = FaultKind::OutOfOrder;
+        assert_eq!(told(&mut executor), [(early, out)], "{loss:?}");
+        seed(&mut executor, 5);
+        assert_eq!(numbers(&mut executor, "total"), [12345], "{loss:?}");
+        assert_eq!(told(&mut executor), [], "{loss:?}");
+        run(held);
+        assert_eq!(told(&mut executor), [(late, out)], "{loss:?}");
+        seed(&mut executor, 6);
+        assert_eq!(numbers(&mut executor, "total"), [123_456], "{loss:?}");
     }
 }
 

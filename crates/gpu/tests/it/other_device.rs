@@ -1,6 +1,7 @@
 //! Things of another device are refused by name before wgpu sees them: of the same instance, and of
 //! another one, whose devices, textures and buffers have the numbers of ours.
 
+use crate::buffers::{compute, document, writes};
 use crate::given::{KIND, SAMPLED, STORAGE, sums};
 use crate::support::{Files, load, right};
 use skiagraph_gpu::{
@@ -370,5 +371,36 @@ fn an_encoder_of_another_device_is_no_panic() {
         }
         assert_eq!(numbers(&gpu, &mut takes, "copy"), [3]);
         assert_eq!(numbers(&gpu, &mut sums, "sum"), [5; 64]);
+    }
+}
+
+/// The frame at rest is the first one of its kind while another waits to be asked for its report.
+#[test]
+fn an_encoder_of_another_device_at_rest_is_no_panic() {
+    let (gpu, others) = devices();
+    let make = compute("make", "run: OnChange,", r#""out": "made""#);
+    let files = document("", &["made"], &[make], &["made"]).with("make.wgsl", writes("", "7u"));
+    for other in &others {
+        other.device.on_uncaptured_error(Arc::new(|_| {}));
+        let plan = right(load(&files)).plan(&PlanRequest::new([8, 8], &NoProvider));
+        let mut executor = Executor::on(&gpu, right(plan), &mut NoProvider).unwrap();
+        let read = Frame::new().with_read(&["made"]);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        executor.encode(&mut encoder, &read).unwrap();
+        gpu.queue.submit([encoder.finish()]);
+        let wait = wgpu::PollType::wait_indefinitely();
+        gpu.device.poll(wait).unwrap();
+        let mut encoder = other.device.create_command_encoder(&Default::default());
+        match executor.encode(&mut encoder, &read) {
+            Ok(_) => drop(encoder.finish()),
+            error => refused(error, "the encoder", "executor's device"),
+        }
+        let report = executor.finish().unwrap();
+        assert_eq!(report.readbacks[0].content.as_u32().unwrap(), [7]);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        executor.encode(&mut encoder, &read).unwrap();
+        gpu.queue.submit([encoder.finish()]);
+        let report = executor.finish().unwrap();
+        assert_eq!(report.readbacks[0].content.as_u32().unwrap(), [7]);
     }
 }

@@ -4,7 +4,7 @@ use crate::args::commands::{RecordFormat, StressArgs};
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::terminal::console::print;
-use crate::terminal::{Terminal, interrupt, progress};
+use crate::terminal::{Terminal, interrupt, progress, stop};
 use itertools::Itertools;
 use skiagraph_cases::HardCase;
 use skiagraph_compare::files::json::to_text;
@@ -100,6 +100,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     };
     interrupt::install()?;
     let outcome = run(&context, &cases, &mut report, args);
+    stop::take_end();
     finish(&report, outcome, cases.len(), args)?;
     match &mistakes[..] {
         [] => Ok(()),

@@ -72,6 +72,8 @@ fn main() -> ExitCode {
         Command::Adapter(args) => commands::adapter::adapter(args, gpu),
         Command::View(args) => commands::view::view(args, gpu),
     };
+    // Where the process ends in the middle of work, that is what is told.
+    terminal::stop::take_end();
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => terminal::console::report(&error),

@@ -19,6 +19,7 @@
 
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
+use crate::graphs::faults::GraphFaults;
 use crate::graphs::idle_params::IdleParams;
 use crate::graphs::light_kinds::kind_and_number;
 use crate::graphs::method::Method;
@@ -166,6 +167,15 @@ impl Comparison {
     /// GPU that cannot run the graph of the visible triangles in a viewport; runs whose pictures
     /// would have the same file name.
     pub fn check(&self, session: Session) -> Result<(), CompareError> {
+        self.refusals(session)?.none_or_error()
+    }
+
+    /// Checks a comparison as [`check`](Self::check) does. If no method can be planned, the reasons
+    /// of all are returned, so that comparisons of other scenes may go on.
+    ///
+    /// # Errors
+    /// The other errors of [`check`](Self::check).
+    pub fn refusals(&self, session: Session) -> Result<GraphFaults, CompareError> {
         if self.protocol.frames == 0 {
             let text = "a comparison needs at least one timed frame (`Protocol::frames`)";
             return Err(CompareError::Input(text.to_owned()));
@@ -191,7 +201,7 @@ impl Comparison {
             plans.add(methods, &self.viewports, &provider, &device);
             idle.note(session.sink, methods, &device, &provider);
         }
-        plans.end(session.sink)
+        Ok(plans.end(session.sink))
     }
 
     /// Returns the methods with the params that they have on the session's GPU

@@ -59,6 +59,10 @@ pub trait Sink: Sync {
     /// Receives the end of the current step. `is_whole` is false if it ended early.
     fn end_step(&self, _is_whole: bool) {}
 
+    /// Receives that all work is done, and that its files are written now: an end in the middle of
+    /// that would leave some of them out of date.
+    fn begin_writing(&self) {}
+
     /// Returns the flag that asks the work to end early once it is true. A
     /// [`Series`](crate::measuring::series::Series) keeps the results that it has by then. By
     /// default the flag is never set.

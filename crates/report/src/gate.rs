@@ -4,9 +4,11 @@
 use crate::summary::{Row, by_wall};
 use crate::summary_table::summaries;
 use skiagraph_compare::graphs::method::Method;
-use skiagraph_compare::records::judged_pictures::{JudgedPicture, JudgedPictures};
+use skiagraph_compare::records::judged_pictures::{
+    JudgedPicture, JudgedPictures, MOST_WITHOUT_ANSWER,
+};
 use skiagraph_compare::records::results::Results;
-use skiagraph_compare::wording::{bytes, ms, size, unknown};
+use skiagraph_compare::wording::{bytes, ms, percent, size, unknown};
 use std::path::Path;
 
 /// Upper limit for one figure of a method or picture, beyond which `--fail-if` makes `compare` or
@@ -161,16 +163,26 @@ impl Gate {
         Err(unknown(&what, name, "pictures", &stems.collect::<Vec<_>>()))
     }
 
-    /// Returns a line of text for each judged picture that is beyond this limit; empty if all are
+    /// Returns a line of text for each judged picture that is beyond this limit, or without an
+    /// answer at more than [`MOST_WITHOUT_ANSWER`] of the pixels that are judged; empty if all are
     /// within it. [`check_pictures`](Self::check_pictures) must have accepted the limit. Wrong
-    /// pixels and RMSE leave out pixels in the [band](skiagraph_compare#terms) and
-    /// [unattributable](JudgedPictures::unattributable) ones.
+    /// pixels and RMSE leave out pixels in the [band](skiagraph_compare#terms),
+    /// [unattributable](JudgedPictures::unattributable) ones and those without an answer.
     pub fn picture_failures(&self, judged: &JudgedPictures) -> Vec<String> {
         let facing = judged.pixels.facing_light.max(1) as f64;
+        let apart = judged.band + judged.unattributable;
+        let wanted = judged.pixels.facing_light.saturating_sub(apart);
         let pictures = judged.pictures.iter().filter(|of| self.is_of(&of.file));
         let line = |of: &JudgedPicture| {
-            let value = self.figure.of_picture(of, facing)?;
             let (word, text) = (self.figure.word(), |value| self.figure.text(value));
+            if of.without_answer as f64 > MOST_WITHOUT_ANSWER * wanted as f64 {
+                let share = percent(of.without_answer, wanted);
+                return Some(format!(
+                    "`{}` has no {word}: no finite number at {share} of the pixels that are judged",
+                    of.file
+                ));
+            }
+            let value = self.figure.of_picture(of, facing)?;
             let (value, most) = (value > self.most).then(|| (text(value), text(self.most)))?;
             Some(format!("`{}`: {word} {value} is more than {most}", of.file))
         };

@@ -5,7 +5,7 @@ use crate::args::{
     commands::CompareArgs,
     shared::GpuArgs,
 };
-use crate::commands::compare::{COMMIT, Loaded, write_graphs};
+use crate::commands::compare::{COMMIT, Loaded, check_all, write_graphs};
 use crate::error::CliError;
 use crate::terminal::{Terminal, console::note};
 use clap::Parser;
@@ -28,7 +28,7 @@ pub fn plan(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let file = args.plan.as_deref().unwrap_or(Path::new(FILE));
     let of = Loaded::new(args, gpu, std::env::args_os())?;
     let session = Session::new(&of.gpu, &Terminal);
-    of.comparisons.iter().try_for_each(|it| it.check(session))?;
+    check_all(&of.comparisons, session)?;
     let words = std::env::args_os().skip(1).map(OsString::into_string);
     let words = words.collect::<Result<Vec<String>, OsString>>();
     let words = words.map_err(|word| {
@@ -75,10 +75,7 @@ pub fn measure(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         shard: args.shard.unwrap_or(Shard::ALL),
         out: &args.out,
     };
-    loaded
-        .comparisons
-        .iter()
-        .try_for_each(|it| it.check(session))?;
+    check_all(&loaded.comparisons, session)?;
     let done = many_machines::measure(&share, &scenes(&loaded), session)?;
     for (comparison, target) in loaded.comparisons.iter().zip(&loaded.targets) {
         write_graphs(comparison, &target.folder, session)?;

@@ -17,6 +17,7 @@ use skiagraph_compare::files::{
     write::{check_folder, write_whole},
 };
 use skiagraph_compare::graphs::{
+    faults::GraphFaults,
     method::{self, Method},
     planning::Capabilities,
     preset, shadow_method,
@@ -72,24 +73,18 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let loaded = Loaded::new(args, gpu, std::env::args_os())?;
     let session = Session::new(&loaded.gpu, &Terminal);
     let (mut comparisons, targets) = (loaded.comparisons, loaded.targets);
-    let mut refusals = Vec::new();
+    let (gpu, silent) = (&loaded.gpu, Session::new(&loaded.gpu, &Silent));
     for (comparison, target) in comparisons.iter_mut().zip(&targets) {
-        let gpu = &loaded.gpu;
         check_folder(&target.folder)?;
-        if args.tune {
+        if args.tune && comparison.refusals(silent)?.is_empty() {
             // Refused before the search, not behind it.
             check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
             tune(comparison, session).map_err(search_ended)?;
         }
-        match comparison.check(session) {
-            // On another scene methods may run.
-            Err(refusal @ CompareError::Diagnostics { .. }) => refusals.push(refusal),
-            checked => checked?,
-        }
-        check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
     }
-    if refusals.len() == targets.len() {
-        return Err(refusals.remove(0).into());
+    check_all(&comparisons, session)?;
+    for (comparison, target) in comparisons.iter().zip(&targets) {
+        check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
     }
     let mut measured = Measured::default();
     let mut all = comparisons.into_iter().zip(&targets);
@@ -196,11 +191,29 @@ impl Loaded {
     }
 }
 
+/// Checks the comparisons of all scenes: where no method can run on one, they may on another.
+///
+/// # Errors
+/// The reasons of all scenes if no method can run on any; the other errors of
+/// [`Comparison::check`].
+pub fn check_all(comparisons: &[Comparison], session: Session) -> Result<(), CliError> {
+    let (mut refusals, mut refused) = (GraphFaults::default(), 0);
+    for comparison in comparisons {
+        let reasons = comparison.refusals(session)?;
+        refused += usize::from(!reasons.is_empty());
+        refusals.append(reasons);
+    }
+    if refused < comparisons.len() {
+        return Ok(());
+    }
+    Ok(refusals.none_or_error()?)
+}
+
 /// The error of a search for settings, before which nothing is measured.
 fn search_ended(why: CompareError) -> CliError {
     match why {
         CompareError::Interrupted { .. } => CliError::Interrupted {
-            kept: "no run was finished".into(),
+            kept: NONE_FINISHED.into(),
         },
         why => why.into(),
     }
@@ -316,13 +329,18 @@ fn measure(
             args.scene.scenes.len()
         ));
     }
+    let mut series = Series::new(comparison, session, Some((folder, kept(args))))?;
     let file = folder.join("results.json");
+    let written = |file: &Path| file.metadata().and_then(|file| file.modified()).ok();
+    let (before, has_runs) = (written(&file), !series.results.runs.is_empty());
     interrupt::on_end_in_the_middle(move || {
-        let file = file.display();
-        let kept = format!("finished runs are kept in {file}; {RESUME}");
+        let kept = if has_runs || written(&file) != before {
+            format!("finished runs are kept in {}; {RESUME}", file.display())
+        } else {
+            NONE_FINISHED.into()
+        };
         Err(CliError::Interrupted { kept })
     });
-    let mut series = Series::new(comparison, session, Some((folder, kept(args))))?;
     write_graphs(comparison, folder, session)?;
     let outcome = run(args, comparison, &mut series);
     let results = finish(args, target, series, outcome, measured)?;
@@ -478,6 +496,9 @@ fn overview(args: &CompareArgs, targets: &[Target], all: &[Results]) -> Result<(
     Ok(())
 }
 
+/// All that is said after Ctrl-C where nothing is kept.
+const NONE_FINISHED: &str = "no run was finished";
+
 /// The way out after Ctrl-C.
 const RESUME: &str = "the same command with --resume goes on from there";
 
@@ -502,8 +523,8 @@ fn finish(
     } = series;
     let file = folder.join("results.json");
     let mut kept = match results.runs.len() {
-        0 if measured.finished > 0 => format!("no run was finished; {RESUME}"),
-        0 => "no run was finished".into(),
+        0 if measured.finished > 0 => format!("{NONE_FINISHED}; {RESUME}"),
+        0 => NONE_FINISHED.into(),
         done => format!(
             "{done} of {planned} runs are kept in {}; {RESUME}",
             file.display()

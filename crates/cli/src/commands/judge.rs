@@ -5,7 +5,7 @@ use crate::args::commands::{JudgeArgs, RecordFormat, TruthArgs};
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::error::CliError;
 use crate::scene_selection::SceneSelection;
-use crate::terminal::{Terminal, console::print, interrupt};
+use crate::terminal::{Terminal, console::print, interrupt, stop};
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::foreign::judging::{Judging, Surfaces, judge as judge_pictures};
 use skiagraph_compare::foreign::truth::{TruthRequest, write_truth};
@@ -47,6 +47,7 @@ pub fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let (scene, view) = single_view(&args.scene)?;
     interrupt::install()?;
     let judged = judge_pictures(&judging, scene, &view, &gpu.request(), &Terminal)?;
+    stop::take_end();
     if let Some(folder) = &args.out {
         judged.write(folder)?;
     }

@@ -95,6 +95,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             reasons.trim_end()
         )));
     }
+    stop::take_end();
     show(&profiles)?;
     print(&unavailable.concat())?;
     let written = write(args, &profiles, &timed)?;

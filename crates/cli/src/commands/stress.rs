@@ -4,7 +4,7 @@ use crate::args::commands::{RecordFormat, StressArgs};
 use crate::args::shared::GpuArgs;
 use crate::error::CliError;
 use crate::terminal::console::print;
-use crate::terminal::{Terminal, interrupt, progress};
+use crate::terminal::{Terminal, interrupt, progress, stop};
 use itertools::Itertools;
 use skiagraph_cases::HardCase;
 use skiagraph_compare::files::json::to_text;
@@ -61,7 +61,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let methods = methods.iter().map(|run| &run.method);
         plans.add(methods, &[viewport], &provider, &device);
     }
-    plans.end(&Terminal)?;
+    plans.end(&Terminal).none_or_error()?;
     let mut mistakes = Vec::new();
     for run in &mut methods {
         let unclear = run.column.unavailable.take().map(|reason| (reason, true));
@@ -71,6 +71,9 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             mistakes.extend(is_mistake.then_some(text));
             run.column.unavailable = Some(reason);
         }
+    }
+    if mistakes.is_empty() && plans.has_mistakes() {
+        mistakes.push("a document has mistakes; they stand above".into());
     }
     if let Some(folder) = &args.save {
         check_pictures(&methods, &cases, viewport, folder)?;
@@ -97,6 +100,7 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     };
     interrupt::install()?;
     let outcome = run(&context, &cases, &mut report, args);
+    stop::take_end();
     finish(&report, outcome, cases.len(), args)?;
     match &mistakes[..] {
         [] => Ok(()),

@@ -3,7 +3,7 @@
 
 use crate::error::CliError;
 use crate::terminal::{console, progress::Terminal, stop};
-use skiagraph_compare::sink::Sink;
+use skiagraph_compare::{files::write::remove_unfinished, sink::Sink};
 use std::{
     process,
     sync::{Mutex, PoisonError, atomic::Ordering},
@@ -62,6 +62,7 @@ fn end_unnoticed() {
 /// place: an exit would run the destructors of drivers, and LLVM dies of them in a thread that
 /// compiles a shader.
 fn end() -> ! {
+    remove_unfinished();
     #[cfg(unix)]
     {
         use std::os::unix::process::CommandExt;

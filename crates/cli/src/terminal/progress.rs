@@ -188,6 +188,10 @@ impl Sink for Terminal {
         }
     }
 
+    fn begin_writing(&self) {
+        stop::take_end();
+    }
+
     fn stop(&self) -> &AtomicBool {
         stop::flag()
     }

@@ -27,10 +27,16 @@ pub fn raised() -> bool {
     if !RAISED.load(Ordering::Relaxed) {
         return false;
     }
+    take_end();
+    true
+}
+
+/// Leaves the end of the command to the caller, whether a stop is requested or not: the work is
+/// done, and is shown and written whole. Does not return where the process ends already.
+pub fn take_end() {
     while !claim(THE_WORK) {
         thread::park();
     }
-    true
 }
 
 /// True if the work has taken no notice of the stop. From then on [`raised`] does not return.
@@ -42,4 +48,16 @@ pub fn is_unnoticed() -> bool {
 fn claim(by: u8) -> bool {
     let before = ENDING.compare_exchange(NOT_YET, by, Ordering::Relaxed, Ordering::Relaxed);
     before.is_ok() || before == Err(by)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_watch_does_not_end_what_the_work_ends() {
+        take_end();
+        assert!(!is_unnoticed());
+        take_end();
+    }
 }

@@ -128,6 +128,31 @@ fn a_scene_without_a_method_loses_no_other_scene() {
     assert!(told.contains("no method can run on night"), "{told}");
     let day = fs::read_to_string(folder.path().join("out/day/results.json")).unwrap();
     assert!(day.contains("\"wrong\""), "{day}");
+    let tuned = line.replace("--out out", "--tune --out tuned");
+    let [_, told] = printed(folder.path(), &tuned, 1);
+    assert!(told.contains("no method can run on night"), "{told}");
+    let day = fs::read_to_string(folder.path().join("tuned/day/results.json")).unwrap();
+    assert!(day.contains("\"wrong\""), "{day}");
+    let planned = line.replace("--out out", "--plan plan.json");
+    let [_, told] = printed(folder.path(), &planned, 0);
+    assert!(told.contains("2 cells are in plan.json"), "{told}");
+    let cells = "compare --cells plan.json --out shard";
+    let [_, told] = printed(folder.path(), cells, 0);
+    assert!(told.contains("2 cells are in shard"), "{told}");
+    assert!(told.contains("map 64 cannot run here"), "{told}");
+    write(
+        "lamp.ron",
+        &scene(
+            r#"Spot(name: "lamp", position: (-10, 20, 8), direction: (-0.1, -1, 0.1),
+                cone_degrees: 110)"#,
+        ),
+    );
+    // Where all are refused, the reasons of all are told.
+    let none = line.replace("day.ron", "lamp.ron");
+    let [_, told] = printed(folder.path(), &none, 1);
+    for light in ["spot", "point"] {
+        assert!(told.contains(&format!("takes no {light} light")), "{told}");
+    }
     let [_, told] = printed(
         folder.path(),
         &line
@@ -171,16 +196,103 @@ fn views_that_differ_in_capitals_alone_keep_their_pictures() {
 #[test]
 fn a_budget_of_no_memory_is_refused() {
     let folder = folder();
-    for option in [
-        "--memory 0",
-        "--memory 0GiB",
-        "--memory-limit 0",
-        "--memory-limit -1",
-    ] {
-        let [_, told] = printed(folder.path(), &format!("compare lit.ron {option}"), 2);
+    for option in ["--memory", "--memory-limit"] {
+        for value in ["0", "0GiB"] {
+            let line = format!("compare lit.ron {option} {value}");
+            let [_, told] = printed(folder.path(), &line, 2);
+            assert!(told.contains("a number of bytes above 0"), "{told}");
+            assert!(told.contains(&format!("'{option} ")), "{told}");
+        }
+        let [_, told] = printed(folder.path(), &format!("compare lit.ron {option}=-1"), 2);
+        assert!(told.contains("a number of bytes above 0"), "{told}");
+        assert!(told.contains(&format!("'{option} ")), "{told}");
+    }
+}
+
+/// A folder with `lit.ron` and a document that has other sections beside its own.
+fn folder_with(name: &str, sections: &str) -> TempDir {
+    let folder = folder();
+    let text = LIT.replace("format: 3,", &format!("format: 3, {sections}"));
+    fs::write(folder.path().join(name), text).unwrap();
+    folder
+}
+
+/// A scene that a document excludes is no mistake of the document.
+#[test]
+fn a_document_that_needs_more_than_there_is_is_a_row_and_no_mistake() {
+    let folder = folder_with("two.ron", r#"needs: ["lights.count >= 2"],"#);
+    for command in ["compare", "stress"] {
+        let rest = match command {
+            "compare" => format!("{SMALL} --images none --out out"),
+            _ => "--case torus --size 16x16".into(),
+        };
+        let line = format!("{command} lit.ron two.ron {rest}");
+        let [table, told] = printed(folder.path(), &line, 0);
         assert!(
-            told.contains("a number of bytes above 0") || told.contains("unexpected"),
-            "{told}"
+            table.contains("needs `lights.count >= 2`"),
+            "{line}: {table}{told}"
         );
+        assert!(!told.contains("cannot run"), "{line}: {told}");
+    }
+}
+
+#[test]
+fn a_mistake_is_told_whatever_was_refused_before_it() {
+    let folder = folder();
+    let spot = LIT.replace("format: 3,", "format: 3, lights: [spot],");
+    let spot = spot.replacen("R8Uint)", "R8Uint, size: 5)", 1);
+    fs::write(folder.path().join("spot.ron"), spot).unwrap();
+    let line = "stress lit.ron spot.ron --case torus --case spot_inside_a_mesh --size 16x16";
+    let [table, told] = printed(folder.path(), line, 1);
+    assert!(table.contains("lit.ron"), "{table}");
+    let end = told.lines().last().unwrap();
+    assert!(end.starts_with("error: `spot.ron` cannot run: "), "{told}");
+    assert!(!end.contains("takes no"), "{told}");
+}
+
+/// The row has all other figures.
+#[test]
+fn a_mistake_in_an_output_that_describes_the_map_ends_with_exit_code_1() {
+    let folder = folder();
+    let text = LIT
+        .replace(
+            "materials: [",
+            r#"materials: [Texture(name: "texel_density", format: R32Float, size: 5),"#,
+        )
+        .replace(
+            "passes: [",
+            r#"passes: [Clear(name: "no", target: "texel_density"),"#,
+        )
+        .replace(
+            r#""status"],"#,
+            r#""status", (name: "texel_density", on_request: true)],"#,
+        );
+    fs::write(folder.path().join("density.ron"), text).unwrap();
+    let line = format!("compare lit.ron density.ron {SMALL} --images none --out out");
+    let [table, told] = printed(folder.path(), &line, 1);
+    assert!(!is_without_figures(&table, "density.ron"), "{table}");
+    let end = told.lines().last().unwrap();
+    assert!(
+        end.starts_with("error: `density.ron`: ") && end.contains("texel_density"),
+        "{told}"
+    );
+    let line = "stress lit.ron density.ron --case torus --size 16x16";
+    let [_, told] = printed(folder.path(), line, 1);
+    assert!(told.contains("texel_density"), "{told}");
+}
+
+#[test]
+fn a_param_that_no_sound_document_has_is_refused() {
+    let folder = folder();
+    // Not even the params of this one are known.
+    fs::write(folder.path().join("broken.ron"), "(format: 3, oops").unwrap();
+    let line = format!("compare nsm broken.ron --set biass=1 {SMALL}");
+    let [_, told] = printed(folder.path(), &line, 1);
+    for part in [
+        "unknown param `biass`",
+        "`broken.ron`",
+        "did you mean `bias`",
+    ] {
+        assert!(told.contains(part), "{told}");
     }
 }

@@ -104,6 +104,36 @@ fn a_fault_of_a_stand_in_names_it() {
     assert_said(&folder, "check never.ron", 1, "× `1 - 2` is -1, below 0");
 }
 
+/// Adds the section to a document that `check` advises, and returns it.
+fn with_advice(folder: &TempDir, name: &str) -> String {
+    let (_, told) = said(folder, &format!("check {name}"));
+    let (_, advice) = told.split_once("`needs: ").expect("advice");
+    let (needs, _) = advice.split_once('`').unwrap();
+    let path = folder.path().join(name);
+    let text = fs::read_to_string(&path).unwrap();
+    let needed = format!("format: 3, needs: {needs},");
+    fs::write(path, text.replacen("format: 3,", &needed, 1)).unwrap();
+    needs.to_owned()
+}
+
+/// In a comparison the scene is known: faults of stand-ins for one are none there.
+#[test]
+fn a_faulty_document_in_a_comparison_has_no_faults_of_stand_ins() {
+    let folder = folder();
+    let two = fs::read_to_string(folder.path().join("two.ron")).unwrap();
+    let faulty = two.replace("color: [\"image\"]", "color: [\"imagee\"]");
+    fs::write(folder.path().join("faulty.ron"), faulty).unwrap();
+    let line = "compare rt faulty.ron --scene twolights.ron --size 16x16 --frames 1 --warmup 0 \
+                --images none --out out";
+    let (code, told) = said(&folder, line);
+    assert_eq!(code, 1, "{told}");
+    assert!(told.contains("`imagee`"), "{told}");
+    assert!(
+        !told.contains("`lights[1]` does not exist") && !told.contains("for one light"),
+        "{told}"
+    );
+}
+
 /// Numbers of lights are tried as values of params are, from one to three.
 #[test]
 fn numbers_of_lights_are_tried() {
@@ -137,6 +167,19 @@ fn numbers_of_lights_are_tried() {
         );
         write(&folder, "counts.ron", &sections);
         assert_said(&folder, "check counts.ron", 1, faulty);
+        let advised = with_advice(&folder, "counts.ron");
+        assert!(advised.contains("lights.count <= "), "{advised}");
+        assert_said(&folder, "check counts.ron", 0, "counts.ron: fine");
+    }
+    for light in ["lights[1]", "lights[2]"] {
+        fs::write(
+            folder.path().join("further.ron"),
+            two.replace("lights[1]", light),
+        )
+        .unwrap();
+        assert_said(&folder, "check further.ron", 1, "× for one light: ");
+        with_advice(&folder, "further.ron");
+        assert_said(&folder, "check further.ron", 0, "further.ron: fine");
     }
     assert_said(
         &folder,

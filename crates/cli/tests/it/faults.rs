@@ -291,11 +291,14 @@ fn ctrl_c_ends_the_program_in_the_middle_of_work_that_takes_no_notice() {
     let city = "--scene city:1000000 --size 16x16 --out o";
     let loading = format!("compare rt --map-size 64 --frames 1 {city}");
     let hierarchy = format!("compare light.ron --frames 1 {city}");
-    let kept = "finished runs are kept in o/results.json; the same command with --resume goes on";
     let lost = "what was under way is lost";
     for (line, at, told) in [
         (loading, "--map-size has no effect", lost),
-        (hierarchy, "starting hierarchy of city", kept),
+        (
+            hierarchy,
+            "starting hierarchy of city",
+            "no run was finished",
+        ),
         (format!("truth {city}"), "starting hierarchy of city", lost),
     ] {
         let (code, stderr) = interrupted(folder.path(), &line, at, Duration::ZERO);
@@ -305,6 +308,43 @@ fn ctrl_c_ends_the_program_in_the_middle_of_work_that_takes_no_notice() {
             "{line}: {stderr}"
         );
         assert!(!folder.path().join("o/results.json").exists(), "{line}");
+    }
+}
+
+/// Names of the files in a folder.
+fn files(folder: &Path) -> Vec<String> {
+    let files = fs::read_dir(folder).unwrap();
+    let names = files.map(|file| file.unwrap().file_name().into_string().unwrap());
+    names.collect()
+}
+
+/// All files of a truth belong together.
+#[test]
+fn ctrl_c_while_files_are_written_leaves_none_out_and_a_second_one_no_part_of_one() {
+    let folder = folder();
+    let out = folder.path().join("o");
+    let line = "truth --scene park --size 768x512 --out o";
+    let (code, stderr) = interrupted(folder.path(), line, "blockers, ", Duration::ZERO);
+    assert_eq!(code, 0, "{stderr}");
+    let written = files(&out);
+    assert_eq!(written.len(), 8, "{written:?}");
+    for pause in [100, 300] {
+        let mut child = command(folder.path(), line)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+        lines.find(|line| line.as_ref().unwrap().starts_with("blockers, "));
+        for pause in [0, pause] {
+            thread::sleep(Duration::from_millis(pause));
+            let id = child.id().to_string();
+            Command::new("kill").args(["-INT", &id]).status().unwrap();
+        }
+        child.wait().unwrap();
+        let parts = files(&out);
+        let parts = parts.iter().filter(|name| name.starts_with(".skiagraph-"));
+        assert_eq!(parts.count(), 0, "{pause}");
     }
 }
 

@@ -138,4 +138,15 @@ fn a_picture_without_numbers_holds_no_answer() {
         !told.contains("--view") && !told.contains("another camera"),
         "{told}"
     );
+    for figure in ["wrong > 0.1%", "rmse > 0.1", "flip > 0.1"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_skiagraph"));
+        command
+            .args(line.split_whitespace())
+            .current_dir(folder.path());
+        let gate = format!("allnan: {figure}");
+        let output = command.args(["--fail-if", &gate]).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(4), "{told}");
+        assert!(told.contains("no finite number at 100.000 %"), "{told}");
+    }
 }

@@ -16,7 +16,9 @@ use crate::error::CompareError;
 use std::{
     fs,
     io::{self, Write},
+    mem,
     path::{Component, Path, PathBuf},
+    sync::{Mutex, MutexGuard, PoisonError},
 };
 
 /// Checks, before anything runs, that files can be written: their folders exist and are writable,
@@ -71,10 +73,7 @@ pub fn check_folder(folder: &Path) -> Result<(), CompareError> {
 /// Writes a few bytes into a folder and takes them away again: permissions alone do not say whether
 /// that works, and a full disk has room for an empty file.
 fn try_out(folder: &Path) -> io::Result<()> {
-    let mut file = tempfile::Builder::new()
-        .prefix(".skiagraph-")
-        .tempfile_in(folder)?;
-    file.write_all(&[0; 4096])
+    beside(&folder.join("a"))?.write_all(&[0; 4096])
 }
 
 /// True if a path holds a file, or nothing yet. Devices and pipes (`/dev/stdout`) are written into;
@@ -98,7 +97,27 @@ fn beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     // makes.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.prefix(".skiagraph-").tempfile_in(folder_of(path))
+    let mut unfinished = unfinished();
+    let file = builder.prefix(".skiagraph-").tempfile_in(folder_of(path))?;
+    unfinished.retain(|path| path.exists());
+    unfinished.push(file.path().to_owned());
+    Ok(file)
+}
+
+/// The temporary files that were made, as far as they may be there yet.
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files of all files that are being written, and lets no further one begin:
+/// for a process that ends at once, in the middle of work.
+pub fn remove_unfinished() {
+    let files = unfinished();
+    for file in &*files {
+        let _ = fs::remove_file(file);
+    }
+    mem::forget(files);
 }
 
 /// Writes a file whole or not at all. It writes a temporary file beside `path` and renames it to

@@ -126,6 +126,7 @@ pub fn write_truth(
         let errors = Values::F32(area.standard_errors.clone());
         arrays.push(("standard_error", errors, "standard error of visibility"));
     }
+    sink.begin_writing();
     let mut lines = Vec::new();
     for (name, values, meaning) in arrays {
         let file = format!("{name}.{}", request.format.extension());

@@ -34,12 +34,28 @@ impl GraphFaults {
     /// Adds the faults of the graph named `graph`. Faults equal to ones that were added before, for
     /// example by planning for another viewport, are not repeated.
     pub fn add(&mut self, graph: &str, diagnostics: &Diagnostics) {
-        let rendered = diagnostics.render(false);
-        self.graphs.insert(graph.into());
-        if !self.rendered.contains(&rendered) {
-            self.errors += errors(diagnostics.iter()).count();
-            self.faults.push(diagnostics.iter().cloned().collect());
-            self.rendered.push(rendered);
+        self.append(Self {
+            rendered: vec![diagnostics.render(false)],
+            faults: vec![diagnostics.iter().cloned().collect()],
+            errors: 0,
+            graphs: [graph.into()].into(),
+        });
+    }
+
+    /// True if no faults were added.
+    pub fn is_empty(&self) -> bool {
+        self.graphs.is_empty()
+    }
+
+    /// Adds all faults in `other`; those that were added before are not repeated.
+    pub fn append(&mut self, other: Self) {
+        self.graphs.extend(other.graphs);
+        for (rendered, faults) in other.rendered.into_iter().zip(other.faults) {
+            if !self.rendered.contains(&rendered) {
+                self.errors += errors(&faults).count();
+                self.faults.push(faults);
+                self.rendered.push(rendered);
+            }
         }
     }
 
@@ -83,11 +99,12 @@ fn errors<'d>(
 }
 
 /// True if a graph cannot be planned for a mistake of its own, not only for what it meets: a light
-/// that it does not take, or an adapter or program without what it needs.
+/// that it does not take, a viewport or scene that its section `needs` excludes, or an adapter or
+/// program without what it needs.
 pub fn is_mistake<'d>(diagnostics: impl IntoIterator<Item = &'d Diagnostic>) -> bool {
     let is_met = |code| {
-        use Code::{Feature, Light, Limit, Memory, Size};
-        matches!(code, Feature | Light | Limit | Memory | Size)
+        use Code::{Feature, Light, Limit, Memory, Need, Size};
+        matches!(code, Feature | Light | Limit | Memory | Need | Size)
     };
     errors(diagnostics).any(|error| !is_met(error.code))
 }

@@ -330,9 +330,9 @@ pub fn param_values(
     parsed.collect()
 }
 
-/// Refuses an assignment that no preset has a param for, or may have.
+/// Refuses an assignment that no preset has a param for. Where all have faults, none is known.
 fn check_names(presets: &[Arc<Preset>], assignments: &[Assignment]) -> Result<(), CompareError> {
-    if presets.iter().any(|preset| preset.faults.is_some()) {
+    if presets.iter().all(|preset| preset.faults.is_some()) {
         return Ok(());
     }
     for Assignment { name, .. } in assignments {
@@ -344,7 +344,9 @@ fn check_names(presets: &[Arc<Preset>], assignments: &[Assignment]) -> Result<()
         if known.is_empty() {
             known.push("none");
         }
-        let what = format!("unknown param `{name}`");
+        let faulty = presets.iter().find(|preset| preset.faults.is_some());
+        let faulty = faulty.map(|preset| format!("; those of `{}` are unknown", preset.name));
+        let what = format!("unknown param `{name}`{}", faulty.unwrap_or_default());
         return Err(CompareError::Input(unknown(&what, name, "params", &known)));
     }
     Ok(())

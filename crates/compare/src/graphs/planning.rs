@@ -21,7 +21,7 @@ use skiagraph_graph::{
     Code, Diagnostic, Diagnostics, Graph, PartialBackend, Plan, PlanRequest, Registry, Sources,
     Span,
 };
-use skiagraph_passes::SceneProvider;
+use skiagraph_passes::{SceneProvider, registry};
 use skiagraph_scene::{
     DirectionalLight, Light, LightKind, Mesh, PointLight, Scene, SpotLight, View,
 };
@@ -248,6 +248,25 @@ fn asks_for_lights(plan: &Plan) -> bool {
     names.any(|name| name.starts_with("lights") || name.starts_with("light_areas"))
 }
 
+/// The begin of the help on a fault that other hosts would not have.
+const FOR_OTHERS: &str = "`check` plans for others with --size, --scene and --light; if the \
+                          document is made for these alone, it says so";
+
+/// Returns the faults of a document with these faults, `found` when it was loaded, and of its plan,
+/// as far as it has them for every host.
+pub(crate) fn of_every_host(path: &str, sources: &dyn Sources, found: Diagnostics) -> Diagnostics {
+    let planned = check(path, &registry(), sources, &Trial::default());
+    let hangs = |fault: &Diagnostic| fault.help.iter().any(|help| help.starts_with(FOR_OTHERS));
+    let faults = planned.err().unwrap_or(found);
+    Diagnostics::new(
+        faults
+            .iter()
+            .filter(|fault| !hangs(fault))
+            .cloned()
+            .collect(),
+    )
+}
+
 /// Begins the message of each fault that does not hold for every host with the part of `host`, a
 /// stand-in, on which it depends.
 fn for_which(
@@ -258,39 +277,46 @@ fn for_which(
 ) -> Diagnostics {
     let [_, (larger, triangles)] = HOSTS;
     let lights = provider.lights();
-    let count = if lights.len() == 1 { MOST_LIGHTS } else { 1 };
     let large = lit(&described(*viewport, triangles), lights, lights.len());
-    let more = lit(provider, lights, count);
-    let (is_sized, has_scene) = (trial.viewport.is_some(), trial.scene.is_some());
-    let sized = (is_sized, pixels(*viewport), "viewport.width >= 1024");
-    let small = (
-        has_scene,
-        "a small scene".to_owned(),
-        "scene.indices.count >= 1000000",
-    );
-    let few = (has_scene, count_of(lights.len()), "lights.count >= 2");
-    let others = [
-        (sized, (larger, provider.clone())),
-        (small, (*viewport, large)),
-        (few, (*viewport, more)),
-    ];
+    let mut assumed = Vec::new();
+    if trial.viewport.is_none() {
+        let need = "viewport.width >= 1024".to_owned();
+        assumed.push((pixels(*viewport), need, (larger, provider.clone())));
+    }
+    if trial.scene.is_none() {
+        let need = "scene.indices.count >= 1000000".to_owned();
+        assumed.push(("a small scene".to_owned(), need, (*viewport, large)));
+        // Fewer lights were tried before.
+        let counts = match lights.len() {
+            1 => 2..=MOST_LIGHTS,
+            _ => 1..=1,
+        };
+        assumed.extend(counts.map(|count| {
+            let need = match lights.len() {
+                1 => format!("lights.count >= {count}"),
+                lights => format!("lights.count <= {}", lights - 1),
+            };
+            let host = (*viewport, lit(provider, lights, count));
+            (count_of(lights.len()), need, host)
+        }));
+    }
     let mut list: Vec<Diagnostic> = found.iter().cloned().collect();
-    let assumed = others.into_iter().filter(|((is_given, ..), _)| !is_given);
-    for ((_, words, need), host) in assumed {
+    for (words, need, host) in assumed {
+        let place = format!("for {words}: ");
         let there = match check(&host) {
             Err(found) if has(&found, Code::Need) || has(&found, Code::Light) => continue,
             Err(found) => found.iter().map(key).collect(),
             Ok(_) => Vec::new(),
         };
-        for fault in list.iter_mut().filter(|fault| !there.contains(&key(fault))) {
+        let is_of_it = |fault: &&mut Diagnostic| {
+            !there.contains(&key(fault)) && !fault.message.starts_with(&place)
+        };
+        for fault in list.iter_mut().filter(is_of_it) {
             let named = Diagnostic {
-                message: format!("for {words}: {}", fault.message),
+                message: format!("{place}{}", fault.message),
                 ..fault.clone()
             };
-            *fault = named.help(format!(
-                "`check` plans for others with --size, --scene and --light; if the document asks \
-                 for more, it says so: `needs: [\"{need}\"]`"
-            ));
+            *fault = named.help(format!("{FOR_OTHERS}: `needs: [\"{need}\"]`"));
         }
     }
     Diagnostics::new(list)

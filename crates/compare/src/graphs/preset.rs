@@ -17,7 +17,7 @@ use crate::files::picture_sources::PictureSources;
 use crate::graphs::argument::Assignment;
 use crate::graphs::argument::MethodArgument;
 use crate::graphs::faults::{GraphFaults, warn};
-use crate::graphs::planning::{self, Trial};
+use crate::graphs::planning::of_every_host;
 use crate::sink::Sink;
 use crate::wording::unknown;
 use itertools::Itertools;
@@ -269,10 +269,7 @@ pub fn load_each(
         let (graph, faults) = match load(argument, &recorded)? {
             (Ok(graph), _) => (graph, None),
             // Faults that only planning finds are shown in the same go.
-            (Err(found), path) => {
-                let all = planning::check(&path, &registry(), sources, &Trial::default()).err();
-                (empty()?, Some(all.unwrap_or(found)))
-            }
+            (Err(found), path) => (empty()?, Some(of_every_host(&path, sources, found))),
         };
         presets.push(Arc::new(Preset {
             name: argument.clone(),

@@ -83,7 +83,8 @@ pub fn load_methods(
 /// Tells which methods can be planned on an adapter, in any of several viewports or scenes.
 #[derive(Default)]
 pub struct PlanCheck {
-    /// The first refusal of each method, by its name and map size.
+    /// The first refusal of each method, by its name and map size; the first mistake, if there is
+    /// one.
     refusals: BTreeMap<MethodKey, Diagnostics>,
     planned: BTreeSet<MethodKey>,
     mistakes: Vec<Diagnostic>,
@@ -110,7 +111,15 @@ impl PlanCheck {
                     self.planned.insert(key);
                     diagnostics().err()
                 }
-                Err(refusal) => Some(self.refusals.entry(key).or_insert(refusal).clone()),
+                Err(refusal) => {
+                    let is_worse = |first: &Diagnostics| {
+                        is_mistake(refusal.iter()) && !is_mistake(first.iter())
+                    };
+                    if self.refusals.get(&key).is_none_or(is_worse) {
+                        self.refusals.insert(key, refusal.clone());
+                    }
+                    Some(refusal)
+                }
             };
             let mistake = mistake.filter(|found| is_mistake(found.iter()));
             let mistakes = mistake.iter().flat_map(Diagnostics::iter);
@@ -118,17 +127,15 @@ impl PlanCheck {
         }
     }
 
-    /// Tells the sink the mistakes of documents, each once, if any method can be planned.
-    ///
-    /// # Errors
-    /// The reasons why none can, if no method could be planned.
-    pub fn end(&self, sink: &dyn Sink) -> Result<(), CompareError> {
+    /// Tells the sink the mistakes of documents, each once, if any method can be planned. Otherwise
+    /// returns the reasons why none can.
+    pub fn end(&self, sink: &dyn Sink) -> GraphFaults {
+        let mut faults = GraphFaults::default();
         if self.planned.is_empty() {
-            let mut faults = GraphFaults::default();
             for ((name, _), refusal) in &self.refusals {
                 faults.add(name, refusal);
             }
-            return faults.none_or_error();
+            return faults;
         }
         let mistakes = self.mistakes.iter().cloned();
         let mistakes = mistakes.unique_by(|found| (found.brief(), found.help.clone()));
@@ -136,7 +143,12 @@ impl PlanCheck {
         if !mistakes.is_empty() {
             sink.warnings(&mistakes);
         }
-        Ok(())
+        faults
+    }
+
+    /// True if a document has mistakes, be it only in an output that describes its shadow map.
+    pub fn has_mistakes(&self) -> bool {
+        !self.mistakes.is_empty()
     }
 
     /// Returns why a method could nowhere be planned, and whether its document is at fault; `None`

@@ -458,6 +458,14 @@ impl<'a> Series<'a> {
                 return Ok(Err(run));
             }
         };
+        let (names, device) = (
+            method.preset.diagnostics(),
+            Capabilities::new(self.session.gpu),
+        );
+        let diagnostics = method.plan_of(&names, planned.viewport, device, &self.provider);
+        let wrong = diagnostics.err().filter(|found| is_mistake(found.iter()));
+        let wrong = wrong.map(|found| format!("`{}`: {}", planned.preset, reasons(found.iter())));
+        self.broken.extend(wrong);
         let name = conditions(method, context.view.name(), planned.viewport);
         let name = format!("{}, {name}", method.name);
         let step = Step::begin(self.session.sink, &name, frames, "frames");

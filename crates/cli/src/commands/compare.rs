@@ -274,6 +274,8 @@ struct Measured {
     worse: Vec<String>,
     /// Number of scenes that are done.
     finished: usize,
+    /// Folders of these, if there are several scenes.
+    folders: Vec<PathBuf>,
 }
 
 /// A scene with the views or paths that the arguments select.
@@ -333,12 +335,18 @@ fn measure(
     let file = folder.join("results.json");
     let written = |file: &Path| file.metadata().and_then(|file| file.modified()).ok();
     let (before, has_runs) = (written(&file), !series.results.runs.is_empty());
+    let scenes = scenes_finished(args, target, measured);
+    let (page, finished) = (args.out.join(page::FILE), measured.folders.clone());
     interrupt::on_end_in_the_middle(move || {
         let kept = if has_runs || written(&file) != before {
             format!("finished runs are kept in {}; {RESUME}", file.display())
-        } else {
+        } else if finished.is_empty() {
             NONE_FINISHED.into()
+        } else {
+            format!("{NONE_FINISHED}; {RESUME}")
         };
+        show_scenes(&finished, &page)?;
+        let kept = scenes + &kept;
         Err(CliError::Interrupted { kept })
     });
     write_graphs(comparison, folder, session)?;
@@ -346,7 +354,20 @@ fn measure(
     let results = finish(args, target, series, outcome, measured)?;
     judge(args, target, baseline, &results, measured)?;
     measured.finished += 1;
+    let is_one_of_several = target.name.is_some();
+    measured
+        .folders
+        .extend(is_one_of_several.then(|| folder.clone()));
     Ok(())
+}
+
+/// Says how many scenes are finished, in front of what is kept of one of several.
+fn scenes_finished(args: &CompareArgs, target: &Target, measured: &Measured) -> String {
+    let (finished, all) = (measured.finished, args.scene.scenes.len());
+    let name = target.name.as_deref();
+    name.map_or_else(String::new, |name| {
+        format!("scenes finished: {finished} of {all}; {name}: ")
+    })
 }
 
 /// Prints a note on the methods without a param `map_size`, unless `map_sizes` is empty.
@@ -487,9 +508,13 @@ fn overview(args: &CompareArgs, targets: &[Target], all: &[Results]) -> Result<(
     }
     let folders = targets.iter().map(|target| target.folder.clone());
     let folders: Vec<PathBuf> = folders.take(all.len()).collect();
+    show_scenes(&folders, &args.out.join(page::FILE))
+}
+
+/// Writes the page of several scenes, if any is finished.
+fn show_scenes(folders: &[PathBuf], page: &Path) -> Result<(), CliError> {
     if !folders.is_empty() {
-        let page = args.out.join(page::FILE);
-        page::write(&folders, &page, &Terminal)?;
+        page::write(folders, page, &Terminal)?;
         let scenes = plural(folders.len(), "scene");
         note(&format!("{} shows {scenes}", page.display()));
     }
@@ -522,7 +547,7 @@ fn finish(
         results, broken, ..
     } = series;
     let file = folder.join("results.json");
-    let mut kept = match results.runs.len() {
+    let kept = match results.runs.len() {
         0 if measured.finished > 0 => format!("{NONE_FINISHED}; {RESUME}"),
         0 => NONE_FINISHED.into(),
         done => format!(
@@ -530,10 +555,7 @@ fn finish(
             file.display()
         ),
     };
-    if let Some(name) = &target.name {
-        let (finished, all) = (measured.finished, args.scene.scenes.len());
-        kept = format!("scenes finished: {finished} of {all}; {name}: {kept}");
-    }
+    let kept = scenes_finished(args, target, measured) + &kept;
     match outcome {
         Ok(()) => {}
         Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),

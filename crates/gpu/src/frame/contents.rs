@@ -29,8 +29,8 @@ pub(super) struct Contents {
 /// A provided resource, and the copy of it that the next frame reads as `.previous`.
 pub(super) type HostCopy = (ResourceId, ResourceId);
 
-/// Latest content of a resource with two allocations: the index of its allocation, and the number of
-/// the frame that wrote it; 0 if none has.
+/// Latest content of a resource with two allocations: the index of its allocation, and the number
+/// of the frame that wrote it; 0 if none has.
 type Written = (usize, u64);
 
 /// Content of a `.previous` copy of a provided resource: its version, and the number of the frame

@@ -536,7 +536,9 @@ fn a_history_goes_on_from_what_was_written_last() {
         assert_eq!(numbers(&mut executor, "total"), [123], "{loss:?}");
         told(&mut executor);
         // Nor does a lost one take back what another has written that ran in its place.
+        on(&mut executor, false);
         let (late, held) = encoded(&mut executor);
+        on(&mut executor, true);
         seed(&mut executor, 4);
         let (early, commands) = encoded(&mut executor);
         run(commands);

@@ -1113,7 +1113,7 @@ impl Executor {
 /// The error of a panic while the host's encoder is written to.
 fn in_encoder(panicked: Panicked) -> ExecuteError {
     let name = "the encoder".to_owned();
-    if panicked.message.starts_with("Cannot get non-existent") {
+    if panicked.message.contains("Cannot get ") {
         let way_out = "make it by the executor's device";
         return ExecuteError::OtherDevice { name, way_out };
     }

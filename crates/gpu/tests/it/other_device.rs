@@ -380,8 +380,16 @@ fn an_encoder_of_another_device_at_rest_is_no_panic() {
     let (gpu, others) = devices();
     let make = compute("make", "run: OnChange,", r#""out": "made""#);
     let files = document("", &["made"], &[make], &["made"]).with("make.wgsl", writes("", "7u"));
-    for other in &others {
+    // The other instance first lacks numbers, and then has them for other things.
+    let [beside, stranger] = &others;
+    for (other, held) in [(beside, 0), (stranger, 0), (stranger, 256)] {
         other.device.on_uncaptured_error(Arc::new(|_| {}));
+        let buffers = |gpu: &Gpu| -> Vec<_> {
+            let buffers = (0..held).map(|_| buffer(&gpu.device, 0, false));
+            buffers.collect()
+        };
+        let _held = buffers(other);
+        drop(buffers(&gpu));
         let plan = right(load(&files)).plan(&PlanRequest::new([8, 8], &NoProvider));
         let mut executor = Executor::on(&gpu, right(plan), &mut NoProvider).unwrap();
         let read = Frame::new().with_read(&["made"]);

@@ -333,12 +333,12 @@ fn measure(
     let file = folder.join("results.json");
     let written = |file: &Path| file.metadata().and_then(|file| file.modified()).ok();
     let (before, has_runs) = (written(&file), !series.results.runs.is_empty());
+    let some = format!("finished runs are kept in {}", file.display());
+    let [none, some] =
+        [None, Some(some)].map(|runs| what_is_kept(args, target, measured.finished, runs));
     interrupt::on_end_in_the_middle(move || {
-        let kept = if has_runs || written(&file) != before {
-            format!("finished runs are kept in {}; {RESUME}", file.display())
-        } else {
-            NONE_FINISHED.into()
-        };
+        let is_some = has_runs || written(&file) != before;
+        let kept = if is_some { some } else { none };
         Err(CliError::Interrupted { kept })
     });
     write_graphs(comparison, folder, session)?;
@@ -502,6 +502,27 @@ const NONE_FINISHED: &str = "no run was finished";
 /// The way out after Ctrl-C.
 const RESUME: &str = "the same command with --resume goes on from there";
 
+/// Says what is kept after an early end: finished scenes, and the `runs` of the one under way.
+fn what_is_kept(
+    args: &CompareArgs,
+    target: &Target,
+    finished: usize,
+    runs: Option<String>,
+) -> String {
+    let has_any = finished > 0 || runs.is_some();
+    let mut kept = runs.unwrap_or_else(|| NONE_FINISHED.into());
+    if has_any {
+        kept += &format!("; {RESUME}");
+    }
+    match &target.name {
+        Some(name) => {
+            let all = args.scene.scenes.len();
+            format!("scenes finished: {finished} of {all}; {name}: {kept}")
+        }
+        None => kept,
+    }
+}
+
 /// Says what came of a scene, and returns its results.
 fn finish(
     args: &CompareArgs,
@@ -522,18 +543,9 @@ fn finish(
         results, broken, ..
     } = series;
     let file = folder.join("results.json");
-    let mut kept = match results.runs.len() {
-        0 if measured.finished > 0 => format!("{NONE_FINISHED}; {RESUME}"),
-        0 => NONE_FINISHED.into(),
-        done => format!(
-            "{done} of {planned} runs are kept in {}; {RESUME}",
-            file.display()
-        ),
-    };
-    if let Some(name) = &target.name {
-        let (finished, all) = (measured.finished, args.scene.scenes.len());
-        kept = format!("scenes finished: {finished} of {all}; {name}: {kept}");
-    }
+    let (done, file) = (results.runs.len(), file.display());
+    let runs = (done > 0).then(|| format!("{done} of {planned} runs are kept in {file}"));
+    let kept = what_is_kept(args, target, measured.finished, runs);
     match outcome {
         Ok(()) => {}
         Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),

@@ -335,18 +335,14 @@ fn measure(
     let file = folder.join("results.json");
     let written = |file: &Path| file.metadata().and_then(|file| file.modified()).ok();
     let (before, has_runs) = (written(&file), !series.results.runs.is_empty());
-    let scenes = scenes_finished(args, target, measured);
+    let some = format!("finished runs are kept in {}", file.display());
+    let [none, some] =
+        [None, Some(some)].map(|runs| what_is_kept(args, target, measured.finished, runs));
     let (page, finished) = (args.out.join(page::FILE), measured.folders.clone());
     interrupt::on_end_in_the_middle(move || {
-        let kept = if has_runs || written(&file) != before {
-            format!("finished runs are kept in {}; {RESUME}", file.display())
-        } else if finished.is_empty() {
-            NONE_FINISHED.into()
-        } else {
-            format!("{NONE_FINISHED}; {RESUME}")
-        };
         show_scenes(&finished, &page)?;
-        let kept = scenes + &kept;
+        let is_some = has_runs || written(&file) != before;
+        let kept = if is_some { some } else { none };
         Err(CliError::Interrupted { kept })
     });
     write_graphs(comparison, folder, session)?;
@@ -359,15 +355,6 @@ fn measure(
         .folders
         .extend(is_one_of_several.then(|| folder.clone()));
     Ok(())
-}
-
-/// Says how many scenes are finished, in front of what is kept of one of several.
-fn scenes_finished(args: &CompareArgs, target: &Target, measured: &Measured) -> String {
-    let (finished, all) = (measured.finished, args.scene.scenes.len());
-    let name = target.name.as_deref();
-    name.map_or_else(String::new, |name| {
-        format!("scenes finished: {finished} of {all}; {name}: ")
-    })
 }
 
 /// Prints a note on the methods without a param `map_size`, unless `map_sizes` is empty.
@@ -527,6 +514,27 @@ const NONE_FINISHED: &str = "no run was finished";
 /// The way out after Ctrl-C.
 const RESUME: &str = "the same command with --resume goes on from there";
 
+/// Says what is kept after an early end: finished scenes, and the `runs` of the one under way.
+fn what_is_kept(
+    args: &CompareArgs,
+    target: &Target,
+    finished: usize,
+    runs: Option<String>,
+) -> String {
+    let has_any = finished > 0 || runs.is_some();
+    let mut kept = runs.unwrap_or_else(|| NONE_FINISHED.into());
+    if has_any {
+        kept += &format!("; {RESUME}");
+    }
+    match &target.name {
+        Some(name) => {
+            let all = args.scene.scenes.len();
+            format!("scenes finished: {finished} of {all}; {name}: {kept}")
+        }
+        None => kept,
+    }
+}
+
 /// Says what came of a scene, and returns its results.
 fn finish(
     args: &CompareArgs,
@@ -547,15 +555,9 @@ fn finish(
         results, broken, ..
     } = series;
     let file = folder.join("results.json");
-    let kept = match results.runs.len() {
-        0 if measured.finished > 0 => format!("{NONE_FINISHED}; {RESUME}"),
-        0 => NONE_FINISHED.into(),
-        done => format!(
-            "{done} of {planned} runs are kept in {}; {RESUME}",
-            file.display()
-        ),
-    };
-    let kept = scenes_finished(args, target, measured) + &kept;
+    let (done, file) = (results.runs.len(), file.display());
+    let runs = (done > 0).then(|| format!("{done} of {planned} runs are kept in {file}"));
+    let kept = what_is_kept(args, target, measured.finished, runs);
     match outcome {
         Ok(()) => {}
         Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),

@@ -18,45 +18,28 @@
 use crate::error::{CompareError, explain, with_causes};
 use crate::sink::Sink;
 use crate::wording::plural;
+use itertools::Itertools;
 use skiagraph_graph::{Code, Diagnostic, Diagnostics, Graph, Severity};
-use std::collections::BTreeSet;
 
 /// Faults of several graphs, collected to be shown together, equal ones once.
 #[derive(Default)]
-pub struct GraphFaults {
-    rendered: Vec<String>,
-    faults: Vec<Vec<Diagnostic>>,
-    errors: usize,
-    graphs: BTreeSet<String>,
-}
+pub struct GraphFaults(Vec<(String, Diagnostics)>);
 
 impl GraphFaults {
     /// Adds the faults of the graph named `graph`. Faults equal to ones that were added before, for
-    /// example by planning for another viewport, are not repeated.
+    /// example by planning for another viewport, are not shown again.
     pub fn add(&mut self, graph: &str, diagnostics: &Diagnostics) {
-        self.append(Self {
-            rendered: vec![diagnostics.render(false)],
-            faults: vec![diagnostics.iter().cloned().collect()],
-            errors: 0,
-            graphs: [graph.into()].into(),
-        });
+        self.0.push((graph.into(), diagnostics.clone()));
     }
 
     /// True if no faults were added.
     pub fn is_empty(&self) -> bool {
-        self.graphs.is_empty()
+        self.0.is_empty()
     }
 
-    /// Adds all faults in `other`; those that were added before are not repeated.
+    /// Adds all faults in `other`.
     pub fn append(&mut self, other: Self) {
-        self.graphs.extend(other.graphs);
-        for (rendered, faults) in other.rendered.into_iter().zip(other.faults) {
-            if !self.rendered.contains(&rendered) {
-                self.errors += errors(&faults).count();
-                self.faults.push(faults);
-                self.rendered.push(rendered);
-            }
-        }
+        self.0.extend(other.0);
     }
 
     /// Returns the error that shows the faults of one graph named `graph`.
@@ -71,7 +54,7 @@ impl GraphFaults {
     /// # Errors
     /// [`CompareError::Diagnostics`] with all faults that were added.
     pub fn none_or_error(self) -> Result<(), CompareError> {
-        if self.graphs.is_empty() {
+        if self.is_empty() {
             Ok(())
         } else {
             Err(self.into_error())
@@ -79,15 +62,13 @@ impl GraphFaults {
     }
 
     fn into_error(self) -> CompareError {
-        let summary = format!(
-            "{} in {}",
-            plural(self.errors, "error"),
-            plural(self.graphs.len(), "graph")
-        );
-        CompareError::Diagnostics {
-            faults: self.faults,
-            summary,
-        }
+        let graphs = self.0.iter().map(|(graph, _)| graph).unique().count();
+        let faults = self.0.iter().map(|(_, faults)| faults);
+        let faults = faults.unique_by(|faults| faults.render(false));
+        let faults: Vec<Vec<_>> = faults.map(|of| of.iter().cloned().collect()).collect();
+        let found = plural(errors(faults.iter().flatten()).count(), "error");
+        let summary = format!("{found} in {}", plural(graphs, "graph"));
+        CompareError::Diagnostics { faults, summary }
     }
 }
 

@@ -25,7 +25,7 @@ use skiagraph_passes::{SceneProvider, registry};
 use skiagraph_scene::{
     DirectionalLight, Light, LightKind, Mesh, PointLight, Scene, SpotLight, View,
 };
-use std::sync::Arc;
+use std::{iter, sync::Arc};
 
 /// Capabilities of an adapter that a plan depends on.
 #[derive(Clone, Debug)]
@@ -278,30 +278,29 @@ fn for_which(
     let [_, (larger, triangles)] = HOSTS;
     let lights = provider.lights();
     let large = lit(&described(*viewport, triangles), lights, lights.len());
-    let mut assumed = Vec::new();
-    if trial.viewport.is_none() {
-        let need = "viewport.width >= 1024".to_owned();
-        assumed.push((pixels(*viewport), need, (larger, provider.clone())));
-    }
-    if trial.scene.is_none() {
-        let need = "scene.indices.count >= 1000000".to_owned();
-        assumed.push(("a small scene".to_owned(), need, (*viewport, large)));
-        // Fewer lights were tried before.
-        let counts = match lights.len() {
-            1 => 2..=MOST_LIGHTS,
-            _ => 1..=1,
+    let number = lights.len();
+    // Fewer lights were tried before.
+    let counts = if number == 1 { 2..=MOST_LIGHTS } else { 1..=1 };
+    let others = counts.map(|count| {
+        let need = match number {
+            1 => format!("lights.count >= {count}"),
+            _ => format!("lights.count <= {}", number - 1),
         };
-        assumed.extend(counts.map(|count| {
-            let need = match lights.len() {
-                1 => format!("lights.count >= {count}"),
-                lights => format!("lights.count <= {}", lights - 1),
-            };
-            let host = (*viewport, lit(provider, lights, count));
-            (count_of(lights.len()), need, host)
-        }));
-    }
+        (
+            count_of(number),
+            need,
+            (*viewport, lit(provider, lights, count)),
+        )
+    });
+    let width = "viewport.width >= 1024".to_owned();
+    let triangles = "scene.indices.count >= 1000000".to_owned();
+    let sized = (pixels(*viewport), width, (larger, provider.clone()));
+    let small = ("a small scene".to_owned(), triangles, (*viewport, large));
+    let sized = trial.viewport.is_none().then_some(sized);
+    let others = iter::once(small).chain(others);
+    let others = others.filter(|_| trial.scene.is_none());
     let mut list: Vec<Diagnostic> = found.iter().cloned().collect();
-    for (words, need, host) in assumed {
+    for (words, need, host) in sized.into_iter().chain(others) {
         let place = format!("for {words}: ");
         let there = match check(&host) {
             Err(found) if has(&found, Code::Need) || has(&found, Code::Light) => continue,

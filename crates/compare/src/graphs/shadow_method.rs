@@ -112,11 +112,10 @@ impl PlanCheck {
                     diagnostics().err()
                 }
                 Err(refusal) => {
-                    let is_worse = |first: &Diagnostics| {
-                        is_mistake(refusal.iter()) && !is_mistake(first.iter())
-                    };
-                    if self.refusals.get(&key).is_none_or(is_worse) {
-                        self.refusals.insert(key, refusal.clone());
+                    let first = self.refusals.entry(key);
+                    let first = first.or_insert_with(|| refusal.clone());
+                    if is_mistake(refusal.iter()) && !is_mistake(first.iter()) {
+                        first.clone_from(&refusal);
                     }
                     Some(refusal)
                 }

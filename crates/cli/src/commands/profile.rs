@@ -32,10 +32,9 @@ use std::{path::Path, sync::Arc};
 /// the command, or a file cannot be written.
 pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     check_writable(&files(args))?;
-    let old = match &args.baseline {
-        Some(path) => Some((path.as_path(), read_back::profile(path)?)),
-        None => None,
-    };
+    let old = args.baseline.as_deref();
+    let old = old.map(|path| Ok::<_, CliError>((path, read_back::profile(path)?)));
+    let old = old.transpose()?;
     let (words, sizes) = (&args.presets, &args.map_size);
     let sources = preset::sources(&Terminal);
     let methods = method::load(words, &args.params, sizes, &sources, preset::load_each)?;

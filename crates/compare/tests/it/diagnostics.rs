@@ -5,7 +5,10 @@ use crate::support::{
 };
 use glam::DVec3;
 use serde_json::Value;
-use skiagraph_compare::{measuring::resume::Kept, sink::Session};
+use skiagraph_compare::{
+    measuring::{resume::Kept, series},
+    sink::Session,
+};
 use skiagraph_scene::{DirectionalLight, View};
 use std::fs;
 
@@ -140,6 +143,7 @@ fn diagnostics_of_another_format_are_told_and_left_out() {
     ] {
         assert!(told.contains(part), "{told}");
     }
-    let run = &runs(&comparison)[0];
-    assert!(run["wrong"].is_object() && run["texels"].is_null(), "{run}");
+    // It is measured, and behind the results an error.
+    let error = series::run(&comparison, Session::new(gpu(), &heard)).unwrap_err();
+    assert!(error.to_string().contains("expected R32Float"), "{error}");
 }

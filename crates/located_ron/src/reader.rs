@@ -681,6 +681,7 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
                     | R::ExpectedMapEnd
                     | R::ExpectedOptionEnd
                     | R::ExpectedStructLikeEnd
+                    | R::UnexpectedChar(_)
             );
             let unclosed = is_unclosed.then(|| open_bracket(&span.file)).flatten();
             return unclosed

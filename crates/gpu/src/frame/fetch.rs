@@ -219,7 +219,7 @@ impl Fetch {
         let failed = || ExecuteError::Readback {
             name: readable.name.clone(),
         };
-        if staging.mapped.progress() != Progress::Done {
+        if staging.mapped.progress() == Progress::UnderWay {
             return Err(failed());
         }
         let mapped = staging.buffer.get_mapped_range(..).map_err(|_| failed())?;
@@ -243,7 +243,9 @@ impl Fetch {
     /// Returns the staging buffer of a frame that never ran to the pool. One that is mapped, as
     /// those of refused commands are, is dropped.
     pub fn give_up(self, pool: &mut StagingPool) {
-        if self.staging.mapped.progress() == Progress::Dropped {
+        let Staging { buffer, mapped } = &self.staging;
+        let is_unmapped = buffer.get_mapped_range(..).is_err();
+        if mapped.progress() == Progress::Dropped && is_unmapped {
             pool.0.push(self.staging);
         }
     }

@@ -119,7 +119,7 @@ impl Counters {
         let failed = || ExecuteError::Readback {
             name: "pipeline statistics".to_owned(),
         };
-        if self.mapped.progress() != Progress::Done {
+        if self.is_being_mapped() {
             return Err(failed());
         }
         let bytes = self.staging.get_mapped_range(..).map_err(|_| failed())?;

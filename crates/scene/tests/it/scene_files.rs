@@ -143,8 +143,7 @@ fn broken_files_are_explained_with_line_and_column() {
         \"a\": near is 1 and far is 1, expected 0 < near < far");
     assert_snapshot!(error("(0, 5, 0)", "(0, inf, 0)"), @"garden.ron:7:9: view \
         \"a\": the eye [0, inf, 0] is not finite");
-    assert_snapshot!(error("    ],\n)", "    ],"), @"garden.ron:8:6: the \
-        text ends too early");
+    assert_snapshot!(error("    ],\n)", "    ],"), @"garden.ron:1:1: `(` is not closed");
     let view = GOOD.lines().nth(6).unwrap();
     assert_snapshot!(error(view, ""), @"garden.ron:6:12: \
         `views` is empty; a scene needs one");

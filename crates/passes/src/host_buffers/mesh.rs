@@ -35,8 +35,8 @@ pub enum HostIndices<'a> {
 ///
 /// The host hands over the vertices at rest once, while loading, in the format that they have in
 /// the buffer. The mesh is welded from them, and its hierarchy is built, which any thread may do.
-/// What is on the CPU from then on is the welded mesh at rest, its hierarchy, and the numbers of
-/// the vertices that it came from.
+/// The CPU keeps the welded mesh at rest, its hierarchy, and the numbers of the vertices that it
+/// came from.
 ///
 /// Its triangles have no materials: they are opaque and single-sided. Masked and double-sided ones
 /// come by [`SceneProvider::add_part`](crate::SceneProvider::add_part).

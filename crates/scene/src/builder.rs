@@ -95,8 +95,7 @@ impl MeshBuilder {
             let mask = materials
                 .get(masked as usize)
                 .and_then(|of| of.mask.as_ref());
-            // One of a single texel needs no coordinates.
-            if mask.is_none_or(|mask| mask.size == [1, 1]) {
+            if mask.is_none_or(|mask| mask.is_uniform()) {
                 continue;
             }
             let (number, count, _) = opaque.entry(masked).or_insert_with(|| {

@@ -80,6 +80,11 @@ impl Mask {
         self.opaque[texel / 32] >> (texel % 32) & 1 == 1
     }
 
+    /// Returns true if the mask is a single texel, so that it needs no texture coordinates.
+    pub fn is_uniform(&self) -> bool {
+        self.size == [1, 1]
+    }
+
     /// Looks up the mask at the texture coordinates `uv`. `error` is the greatest error of u and of
     /// v. In both, 1 is the mask's whole width or height.
     pub fn ask(&self, uv: DVec2, error: DVec2) -> Asked {

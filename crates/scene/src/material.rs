@@ -31,6 +31,13 @@ impl Default for Material {
     }
 }
 
+impl Material {
+    /// Makes the material opaque, for triangles without texture coordinates.
+    fn lose_coordinates(&mut self) {
+        self.mask.take_if(|mask| !mask.is_uniform());
+    }
+}
+
 /// Materials of a mesh, and the material and texture coordinates of each triangle. All lists are
 /// empty for a mesh without materials. The argument `primitive` of methods is the index of a
 /// triangle in [`Mesh::triangles`](crate::Mesh::triangles).
@@ -39,7 +46,7 @@ pub struct Surfaces {
     /// Texture coordinates, v down: (0, 0) is the outer corner of the texture's first texel.
     pub uvs: Vec<Vec2>,
     /// Three indices into `uvs` per triangle, in the order of the mesh's triangles; empty for a
-    /// mesh without texture coordinates.
+    /// mesh without texture coordinates, whose masks then hide nothing.
     pub uv_indices: Vec<[u32; 3]>,
     /// Materials of the mesh; `of` holds indices into this list.
     pub materials: Vec<Material>,
@@ -54,6 +61,9 @@ impl Surfaces {
         if self.uv_indices.len() < self.of.len() {
             self.uv_indices = vec![[self.uvs.len() as u32; 3]; self.of.len()];
             self.uvs.push(Vec2::ZERO);
+            self.materials
+                .iter_mut()
+                .for_each(Material::lose_coordinates);
         }
         let [uv, material] = [self.uvs.len(), self.materials.len()].map(|count| count as u32);
         self.uvs.extend(&other.uvs);
@@ -68,6 +78,10 @@ impl Surfaces {
             self.of.extend(vec![material; triangles]);
         }
         self.materials.extend(other.materials.iter().cloned());
+        if other.uv_indices.is_empty() {
+            let appended = &mut self.materials[material as usize..];
+            appended.iter_mut().for_each(Material::lose_coordinates);
+        }
         self.of.extend(other.of.iter().map(|of| material + of));
     }
 
@@ -122,9 +136,18 @@ impl Surfaces {
         })
     }
 
-    /// Returns the mask of triangle `primitive`, or `None` if it is not masked.
+    /// Returns the mask of triangle `primitive`. `None` if it is not masked, or if it has no finite
+    /// texture coordinates by which its mask could be looked up.
     pub fn mask(&self, primitive: u32) -> Option<&Mask> {
-        self.material(primitive)?.mask.as_deref()
+        let mask = self.material(primitive)?.mask.as_deref()?;
+        let indices = self.uv_indices.get(primitive as usize);
+        let is_placed = indices.is_some_and(|indices| {
+            let uv = |index: &u32| self.uvs.get(*index as usize);
+            indices
+                .iter()
+                .all(|index| uv(index).is_some_and(|uv| uv.is_finite()))
+        });
+        (is_placed || mask.is_uniform()).then_some(mask)
     }
 
     /// Returns true if the back face of triangle `primitive` is visible, too.

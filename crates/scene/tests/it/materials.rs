@@ -215,3 +215,35 @@ fn surfaces_without_texture_coordinates_are_padded_and_replaced() {
     assert_eq!(bare.corner_uvs(1), leaf.corner_uvs(0));
     assert_eq!(bare.base_color(2, [0.2, 0.3, 0.5]), [1.0, 0.0, 0.0]);
 }
+
+/// Masks are looked up by texture coordinates: without these, all tracers and maps take the triangle
+/// for opaque, also once its mesh stands beside one that has some.
+#[test]
+fn masks_of_surfaces_without_texture_coordinates_hide_nothing() {
+    let folder = folder(Some("newmtl leaf\nmap_d textures/mask.tga\n"));
+    let (mesh, _) = load(folder.path(), ObjMaterials::All).unwrap();
+    let leaf = &mesh.surfaces;
+    let bare = Surfaces {
+        uvs: Vec::new(),
+        uv_indices: Vec::new(),
+        ..leaf.clone()
+    };
+    let broken = Surfaces {
+        uvs: vec![glam::Vec2::NAN; leaf.uvs.len()],
+        ..leaf.clone()
+    };
+    let is_masked = |surfaces: &Surfaces| [0, 1].map(|id| surfaces.mask(id).is_some());
+    assert_eq!(is_masked(leaf), [true; 2]);
+    assert_eq!(is_masked(&bare), [false; 2]);
+    assert_eq!(is_masked(&broken), [false; 2]);
+
+    let mut first = bare.clone();
+    first.of.resize(4, 0);
+    first.put(leaf, (2, 2), 4);
+    let mut last = leaf.clone();
+    last.pad(4);
+    last.put(&bare, (2, 2), 4);
+    let masked = |surfaces: &Surfaces| [0, 1, 2, 3].map(|id| surfaces.mask(id).is_some());
+    assert_eq!(masked(&first), [false, false, true, true]);
+    assert_eq!(masked(&last), [true, true, false, false]);
+}

@@ -107,7 +107,8 @@ fn the_options_that_pages_name_are_there() {
     let mut options = 0;
     for page in pages() {
         let text = fs::read_to_string(&page).unwrap().replace("\\\n", " ");
-        for rest in text.split("skiagraph ").skip(1) {
+        for (at, name) in text.match_indices("skiagraph ") {
+            let (before, rest) = (&text[..at], &text[at + name.len()..]);
             let line = rest.split(['`', '\n', '#', '|']).next().unwrap();
             let mut words = line.split_whitespace();
             let Some(command) = words
@@ -120,8 +121,12 @@ fn the_options_that_pages_name_are_there() {
                 let output = skiagraph(Path::new("."), &format!("{command} --help"));
                 String::from_utf8(output.stdout).unwrap()
             });
-            // A word of prose is no command.
+            // A word of prose is no command; one in a line of code, or in backticks, is.
             if help.is_empty() {
+                let indent = before.rsplit('\n').next().unwrap();
+                let is_code = indent.len() >= 4 && indent.trim().is_empty();
+                let is_told = is_code || before.ends_with('`');
+                assert!(!is_told, "{}: there is no `{command}`", page.display());
                 continue;
             }
             let known: Vec<&str> = help

@@ -125,7 +125,9 @@ def frame_ms(run):
 
 
 def longest_pass(run):
-    return max((timed["gpu_ms"]["p95"], timed["name"]) for timed in run["passes"])
+    """The 95th percentile of its time and its name; None without times of the GPU."""
+    timed = [(each["gpu_ms"]["p95"], each["name"]) for each in run["passes"] if each["gpu_ms"]]
+    return max(timed, default=None)
 
 
 def size(run):
@@ -286,7 +288,7 @@ def stages(adapter):
 
 
 def longest(adapter):
-    timed = [(longest_pass(run), run) for run in ran(adapter) if run["frame"]["gpu_ms"]]
+    timed = [(longest_pass(run), run) for run in ran(adapter) if longest_pass(run)]
     timed.sort(key=lambda it: it[0])
     # The longest of each pass, and of these the first three.
     each = {(run["preset"], name): (time, run) for (time, name), run in timed}

@@ -39,7 +39,8 @@ for folder in bin lib lib64; do # as here, where these are links
 done
 # Programs and libraries with all that they are linked with, each at its own place.
 linked() { ldd "$@" 2>/dev/null | sed -n 's/^[^/]*\(\/[^ :]*\)\( (.*\)$/\1/p'; }
-files=(/bin/sh "$(type -P dirname)" "$(type -P cat)" "$library" "$loader")
+files=(/bin/sh "$library" "$loader")
+for tool in cat cksum cp date dirname grep mkdir mv rm sed sleep; do files+=("$(type -P "$tool")"); done
 { printf '%s\n' "${files[@]}"; linked "${files[@]}" "$bundle/skiagraph"; } | sort -u |
     while read -r file; do
         mkdir -p "$root$(dirname "$file")"

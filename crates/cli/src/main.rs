@@ -69,7 +69,6 @@ fn main() -> ExitCode {
         Command::Schema(args) => commands::schema::schema(args),
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor(args) => commands::doctor::doctor(args, gpu),
-        Command::Adapter(args) => commands::adapter::adapter(args, gpu),
         Command::View(args) => commands::view::view(args, gpu),
     };
     // Where the process ends in the middle of work, that is what is told.

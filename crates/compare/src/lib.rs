@@ -37,7 +37,6 @@
 //! - [`records`]: holds measurements as plain data, and reads and writes their files.
 //! - [`pictures`]: writes texels as pictures.
 //! - [`foreign`]: judges pictures of other renderers.
-//! - [`adapters`]: tests how right and how fast methods are on one GPU adapter.
 //! - [`files`]: writes, locks and watches files.
 //!
 //! # Terms
@@ -72,7 +71,6 @@
 //!   frames. On a still view their pictures change at first and then repeat; the pictures that
 //!   repeat are the steady state.
 
-pub mod adapters;
 pub mod comparison;
 pub mod default_view;
 pub mod error;

@@ -10,7 +10,6 @@
 //! assert!(text.contains("nsm") && text.contains("12"));
 //! ```
 
-pub mod adapters;
 pub mod baseline_text;
 pub mod charts;
 pub mod gate;

@@ -1,13 +1,10 @@
 //! Writes `report.html`, the page of results, to a file, and joins results of several folders.
 
-use crate::adapters;
 use crate::html::page;
 use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::files::lock;
 use skiagraph_compare::files::write::{check_folder, write_whole};
-use skiagraph_compare::records::adapter::AdapterRecord;
 use skiagraph_compare::records::cell_files;
 use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::results_csv;
@@ -18,7 +15,6 @@ use skiagraph_compare::wording::plural;
 use std::{
     fs,
     path::{Path, PathBuf},
-    slice,
 };
 
 /// Name of the page's file in a folder of results.
@@ -60,8 +56,7 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
 }
 
 /// Joins the results in `places`, each as for [`write`](write()), and writes results.json,
-/// results.csv and the HTML page into the folder `out`, which is made if it is missing. Records of
-/// adapters in `places` go into adapters.json and [`adapters::FILE`] there. Results and adapters
+/// results.csv and the HTML page into the folder `out`, which is made if it is missing. Results
 /// that `out` holds already stay in it. Pictures are embedded in the page, but not copied into
 /// `out`. The sink is told which results are joined and which are kept apart.
 ///
@@ -72,14 +67,10 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
 /// the second case the measured cells are written first.
 pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     // All is read before anything is written.
-    let (mut places, records) = without_adapters(places)?;
-    read(&places, &Silent)?;
+    read(places, &Silent)?;
     check_folder(out)?;
     let _locked = lock::wait_for(out, lock::RESULTS, sink)?;
-    let is_of_adapters = join_adapters(records, out, sink)?;
-    if is_of_adapters && places.is_empty() {
-        return Ok(());
-    }
+    let mut places = places.to_vec();
     if out.join("results.json").exists() {
         places.insert(0, out.to_path_buf());
         let out = out.display();
@@ -91,9 +82,6 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
         missing,
     } = read(&places, sink)?;
     let Some(results) = merged(&sources, out) else {
-        if is_of_adapters {
-            return write_page(&sources, &matrices, &out.join(FILE), sink);
-        }
         let text = missing.unwrap_or_else(|| {
             "there is nothing to join: name folders that `skiagraph compare --out DIR` wrote".into()
         });
@@ -112,53 +100,6 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
     results_csv::save(&results, out)?;
     write_page(&sources, &matrices, &out.join(FILE), sink)?;
     missing.map_or(Ok(()), |missing| Err(CompareError::Input(missing)))
-}
-
-/// The places without those that are the adapter.json of an adapter alone, and the adapters of all.
-fn without_adapters(
-    places: &[PathBuf],
-) -> Result<(Vec<PathBuf>, Vec<AdapterRecord>), CompareError> {
-    let (mut others, mut records) = (Vec::new(), Vec::new());
-    for place in places {
-        let found = read_back::adapters(place)?;
-        if found.is_empty() || read_back::with_scenes(slice::from_ref(place)) != [place.clone()] {
-            others.push(place.clone());
-        }
-        records.extend(found);
-    }
-    Ok((others, records))
-}
-
-/// Writes the adapters, with those that `out` holds already, into adapters.json and their tables
-/// into adapters.md. Of one adapter the record that is named last counts. Returns false if there
-/// are none.
-fn join_adapters(
-    records: Vec<AdapterRecord>,
-    out: &Path,
-    sink: &dyn Sink,
-) -> Result<bool, CompareError> {
-    if records.is_empty() {
-        return Ok(false);
-    }
-    let mut joined: Vec<AdapterRecord> = Vec::new();
-    for record in read_back::adapters(out)?.into_iter().chain(records) {
-        let is_same = |it: &&mut AdapterRecord| {
-            (it.adapter(), it.is_small) == (record.adapter(), record.is_small)
-        };
-        match joined.iter_mut().find(is_same) {
-            Some(known) => *known = record,
-            None => joined.push(record),
-        }
-    }
-    write_whole(&out.join("adapters.json"), to_text(&joined).as_bytes())?;
-    write_whole(
-        &out.join(adapters::FILE),
-        adapters::markdown(&joined).as_bytes(),
-    )?;
-    let count = plural(joined.len(), "adapter");
-    let place = out.join(adapters::FILE);
-    sink.note(&format!("the tables of {count} are in {}", place.display()));
-    Ok(true)
 }
 
 /// Describes what was joined.

@@ -4,9 +4,9 @@
 
 use crate::args::{
     commands::{
-        AdapterArgs, ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, DoctorArgs, GraphArgs,
-        JudgeArgs, MergeArgs, NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs,
-        ShowArgs, StressArgs, TruthArgs, ViewArgs,
+        ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, DoctorArgs, GraphArgs, JudgeArgs,
+        MergeArgs, NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs, ShowArgs,
+        StressArgs, TruthArgs, ViewArgs,
     },
     shared::GpuArgs,
 };
@@ -184,13 +184,6 @@ pub enum Command {
     /// Show the GPUs with their limits and features, and the folders that are searched for meshes.
     #[command(after_help = "Example:\n  skiagraph doctor --adapter llvmpipe")]
     Doctor(DoctorArgs),
-    /// Ask one adapter everything that docs/adapters.md shows, within eight minutes: each row is a
-    /// process with a time limit, and a crash or a lost device is an answer. Goes on where it was
-    /// stopped. The folder is what `merge` takes.
-    #[command(
-        after_help = "Examples:\n  skiagraph adapter\n  skiagraph adapter --backend gl --out gl"
-    )]
-    Adapter(AdapterArgs),
     /// Show methods in a window: fly through the scene, turn the light, move params, look at any
     /// material, see where a method is wrong. Changed files are read again while it runs.
     #[command(after_help = "Examples:\n  skiagraph view\n  \

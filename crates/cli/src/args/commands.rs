@@ -445,28 +445,6 @@ pub struct DoctorArgs {
     pub format: RecordFormat,
 }
 
-/// Arguments of `skiagraph adapter`.
-#[derive(Args, Debug)]
-pub struct AdapterArgs {
-    /// Folder for the rows, which also goes on with those that it lacks. Without it: one in the
-    /// current folder, named by adapter, backend and driver.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Minutes for all rows; those that found no time are run by the next call.
-    #[arg(long, value_name = "N", default_value_t = 8,
-          value_parser = clap::value_parser!(u64).range(1..=1440))]
-    pub minutes: u64,
-    /// Small rows, which try the way and measure little.
-    #[arg(long)]
-    pub small: bool,
-    /// Rows to run, separated by commas. Without it: all.
-    #[arg(long, value_name = "ROW,…", value_delimiter = ',')]
-    pub only: Vec<String>,
-    /// Run rows once more that the folder holds already.
-    #[arg(long)]
-    pub again: bool,
-}
-
 /// Arguments of `skiagraph truth`.
 #[derive(Args, Debug)]
 pub struct TruthArgs {

@@ -52,19 +52,6 @@ impl GpuArgs {
         request.timeout = (self.timeout > 0).then(|| Duration::from_secs(self.timeout));
         request
     }
-
-    /// Returns the words that choose the same adapter in another command.
-    pub fn words(&self) -> Vec<String> {
-        let options = [
-            ("--adapter", self.adapter.clone()),
-            ("--backend", self.backend.clone()),
-            ("--memory-limit", self.memory_limit.map(|it| it.to_string())),
-        ];
-        let given = options
-            .into_iter()
-            .filter_map(|(name, value)| Some([name.into(), value?]));
-        given.flatten().collect()
-    }
 }
 
 /// A day: far above any frame, and far below what a clock can add.

@@ -1,6 +1,5 @@
 //! Runs the commands, one in each file. Each takes its arguments and may return an error.
 
-pub mod adapter;
 pub mod cells;
 pub mod chart;
 pub mod check;

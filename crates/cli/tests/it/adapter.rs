@@ -1,104 +1,239 @@
-//! `skiagraph adapter`: rows in processes of their own, kept and joined.
+//! `scripts/adapter.sh`: rows in processes of their own, kept and gone on with, and the tables that
+//! `scripts/adapters.py` makes of them.
 
 use crate::support::skiagraph;
-use serde_json::Value;
-use std::{fs, path::Path, process::Output};
+use std::{
+    fs,
+    os::unix::fs::PermissionsExt,
+    path::{Path, PathBuf},
+    process::Command,
+};
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-fn json(file: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
+fn script(name: &str) -> PathBuf {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    crates.parent().unwrap().join("scripts").join(name)
 }
 
-fn fine(output: Output) -> String {
-    let told = text(&output.stderr);
-    assert!(output.status.success(), "{told}");
-    told
+/// Runs a program with the words of a line in a folder: exit code, and both streams as one text.
+fn run(folder: &Path, program: &str, script: &Path, line: &str) -> (Option<i32>, String) {
+    let mut command = Command::new(program);
+    command.arg(script).args(line.split_whitespace());
+    let output = command.current_dir(folder).output().unwrap();
+    (
+        output.status.code(),
+        text(&output.stderr) + &text(&output.stdout),
+    )
+}
+
+/// Runs the script with the program of this build.
+fn survey(folder: &Path, line: &str) -> (Option<i32>, String) {
+    let line = format!("--program {} {line}", env!("CARGO_BIN_EXE_skiagraph"));
+    run(folder, "sh", &script("adapter.sh"), &line)
+}
+
+fn replace(file: &Path, old: &str, new: &str) {
+    let text = fs::read_to_string(file).unwrap();
+    assert!(text.contains(old), "{}", file.display());
+    fs::write(file, text.replacen(old, new, 1)).unwrap();
 }
 
 #[test]
 fn rows_are_kept_gone_on_with_and_joined() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
-    let line = "adapter --small --out one --only hard,park";
-    let told = fine(skiagraph(folder.path(), line));
+    let line = "--small --out one --only hard,park";
+    let (code, told) = survey(folder.path(), line);
     assert!(
-        told.contains("1/2 hard") && told.contains("2/2 park"),
+        code == Some(0) && told.contains("1/2 hard: is") && told.contains("2/2 park: are"),
         "{told}"
     );
-    let record = json(&place("one/adapter.json"));
-    assert_eq!(record["rows"][0]["outcome"], "done", "{record}");
-    assert!(record["abilities"]["machine"]["host"].is_null());
-    let hard = &record["rows"][0]["figures"]["hard"];
-    assert!(
-        hard.as_array().unwrap().iter().all(|it| it["failed"] == 0),
-        "{hard}"
-    );
-    let equal = record["rows"][1]["figures"]["equal"].as_array().unwrap();
-    assert_eq!(equal.len(), 2, "{equal:?}");
-    assert!(
-        equal
-            .iter()
-            .all(|it| it["differing"] == 0 && it["pixels"] == 48 * 48)
-    );
-    let cells = record["rows"][1]["figures"]["cells"].as_array().unwrap();
-    assert_eq!(cells.len(), 4);
-    let exact = cells.iter().filter(|cell| cell["is_exact"] == true);
-    assert!(exact.clone().count() == 3 && exact.clone().all(|it| it["wrong_outside"] == 0));
-    assert_eq!(json(&place("one/park/row.json")), record["rows"][1]);
+    for file in ["doctor.json", "hard/stress.json", "park/results.json"] {
+        let text = fs::read_to_string(place("one").join(file)).unwrap();
+        assert!(!text.contains("\"host\": \""), "{file}");
+    }
+    assert!(!place("one/park/report.html").exists(), "it names the host");
 
     // A row that was killed is run, one that is there is not.
-    let mut cut = record.clone();
-    cut["rows"].as_array_mut().unwrap().remove(0);
-    fs::write(place("one/adapter.json"), cut.to_string()).unwrap();
-    let told = fine(skiagraph(folder.path(), line));
+    fs::remove_file(place("one/hard/row.txt")).unwrap();
+    let (_, told) = survey(folder.path(), line);
     assert!(
-        told.contains("2/2 park: kept") && !told.contains("1/2 hard: kept"),
+        told.contains("1/2 hard: is") && told.contains("2/2 park: kept"),
         "{told}"
     );
 
-    // Another adapter's folder is not gone on with.
-    let mut other = record.clone();
-    other["abilities"]["adapter"]["driver"] = "some driver 1.2".into();
-    other["rows"][1]["figures"]["cells"][3]["wrong"] = 1.into();
-    fs::create_dir(place("two")).unwrap();
-    fs::write(place("two/adapter.json"), other.to_string()).unwrap();
-    let refused = skiagraph(folder.path(), "adapter --small --out two --only hard");
-    assert_eq!(refused.status.code(), Some(1));
+    // Another adapter's folder is not gone on with, nor one of other files.
+    let mut copy = Command::new("cp");
+    copy.args(["-r", "one", "two"]).current_dir(&folder);
+    assert!(copy.status().unwrap().success());
+    let kind = fs::read_to_string(place("two/survey.txt")).unwrap();
+    let driver = kind.lines().next().unwrap().rsplit(" · ").next().unwrap();
+    for file in ["survey.txt", "doctor.json"] {
+        let file = place("two").join(file);
+        let text = fs::read_to_string(&file).unwrap();
+        fs::write(file, text.replace(driver, "some driver 1.2")).unwrap();
+    }
+    let (code, told) = survey(folder.path(), "--small --out two --only hard");
     assert!(
-        text(&refused.stderr).contains("some driver 1.2"),
-        "{}",
-        text(&refused.stderr)
+        code == Some(1) && told.contains("some driver 1.2"),
+        "{told}"
+    );
+    let (code, told) = survey(folder.path(), "--small --out one/hard --only hard");
+    assert!(code == Some(1) && told.contains("other files"), "{told}");
+
+    let tables = script("adapters.py");
+    let (code, told) = run(folder.path(), "python3", &tables, "one two --out all");
+    assert!(
+        code == Some(0) && told.contains("4 cells, 0 faults"),
+        "{told}"
+    );
+    let page = fs::read_to_string(place("all/adapters.md")).unwrap();
+    // A view's pixels beside each of two methods, and every cell as on the first.
+    assert!(page.contains("| 0 of 4,608 |"), "{page}");
+    assert!(page.contains("some driver 1.2 | 4 | 4 | 0.0000 | nsm on park"));
+    replace(
+        &place("two/park/results.json"),
+        "\"in_band\": 0",
+        "\"in_band\": -9",
+    );
+    let (code, told) = run(folder.path(), "python3", &tables, "one two");
+    assert!(
+        code == Some(1) && told.contains("9 wrong pixels outside"),
+        "{told}"
     );
 
-    fine(skiagraph(
-        folder.path(),
-        "merge one two/adapter.json --out all",
-    ));
-    let page = fs::read_to_string(place("all/adapters.md")).unwrap();
-    assert!(
-        page.contains("some driver 1.2") && page.contains("| nsm on park"),
-        "{page}"
-    );
+    let merged = skiagraph(folder.path(), "merge one --out all");
+    assert!(merged.status.success(), "{}", text(&merged.stderr));
     assert!(place("all/report.html").exists() && place("all/results.json").exists());
-    // Again, of what is there.
-    fine(skiagraph(folder.path(), "merge two/adapter.json --out all"));
-    assert_eq!(fs::read_to_string(place("all/adapters.md")).unwrap(), page);
+}
+
+/// A folder as `scripts/bundle.sh` makes it, of a program that is a shell script: it runs on an
+/// adapter without ray queries, and each row of it ends as the file `end` says.
+fn bundle(folder: &Path, backend: &str) -> PathBuf {
+    let doctor = format!(
+        r#"{{
+  "adapter": {{
+    "name": "a",
+    "backend": "{backend}",
+    "driver": "c",
+    "device_type": "Cpu"
+  }},
+  "features": {{
+    "ray_query": false
+  }}
+}}"#
+    );
+    let program = format!(
+        "#!/bin/sh\ncase $1 in --version) echo p ;; doctor) echo '{doctor}' ;; *) . ./end ;; esac\n"
+    );
+    let place = folder.join("skiagraph");
+    fs::write(&place, program).unwrap();
+    fs::set_permissions(&place, fs::Permissions::from_mode(0o755)).unwrap();
+    fs::copy(script("adapter.sh"), folder.join("adapter.sh")).unwrap();
+    replace(&folder.join("adapter.sh"), "row hard 150", "row hard 3");
+    folder.join("adapter.sh")
+}
+
+#[test]
+fn every_end_is_told_from_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = bundle(folder.path(), "vulkan");
+    let row = folder.path().join("adapter-a-vulkan-c/hard/row.txt");
+    let turn = |end: &str| {
+        fs::write(folder.path().join("end"), end).unwrap();
+        let (code, told) = run(folder.path(), "sh", &script, "--only hard --again");
+        assert_eq!(code, Some(0), "{told}");
+        (told, fs::read_to_string(&row).unwrap_or_default())
+    };
+    for (end, outcome) in [
+        ("exit 0", "done\nexit: 0"),
+        ("echo said >&2; exit 1", "failed\nexit: 1"),
+        ("exit 3", "device lost\nexit: 3"),
+        ("exit 101", "crashed\nexit: 101"),
+        ("kill -SEGV $$", "crashed\nexit: 139"),
+        ("exec sleep 60", "timed out\nexit: 137"),
+    ] {
+        let (told, record) = turn(end);
+        assert!(
+            record.contains(&format!("outcome: {outcome}\n")),
+            "{record}"
+        );
+        assert_eq!(
+            told.contains("(exit 1): said"),
+            end.contains("said"),
+            "{told}"
+        );
+    }
+    // Not by SIGINT, which a shell's background jobs ignore.
+    for end in ["kill -TERM $$", "exit 130"] {
+        let (told, record) = turn(end);
+        assert!(told.contains("not finished: hard;"), "{told}");
+        assert_eq!(record, "", "it is run again");
+    }
+}
+
+#[test]
+fn rows_that_cannot_run_are_left_out() {
+    for (backend, row) in [("gl", "hard_area"), ("vulkan", "hard_ray_query")] {
+        let folder = tempfile::tempdir().unwrap();
+        let script = bundle(folder.path(), backend);
+        fs::write(folder.path().join("end"), "exit 1").unwrap();
+        let line = format!("--only hard_area,hard_ray_query --out {backend}");
+        let (code, told) = run(folder.path(), "sh", &script, &line);
+        assert_eq!(code, Some(0), "{told}");
+        let record = folder.path().join(backend).join(row).join("row.txt");
+        let record = fs::read_to_string(record).unwrap();
+        assert!(
+            record.contains("outcome: not on this adapter\n"),
+            "{record}"
+        );
+    }
+}
+
+#[test]
+fn a_survey_is_alone_in_its_folder_and_leaves_it_when_it_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = bundle(folder.path(), "vulkan");
+    let end = folder.path().join("end");
+    fs::write(&end, "touch began; exec sleep 60").unwrap();
+    let mut command = Command::new("sh");
+    command
+        .arg(&script)
+        .args(["--only", "hard_area", "--out", "o"]);
+    let mut first = command.current_dir(&folder).spawn().unwrap();
+    while !folder.path().join("began").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let again = || run(folder.path(), "sh", &script, "--only hard_area --out o");
+    let (code, told) = again();
+    assert!(code == Some(1) && told.contains("is at work in"), "{told}");
+    let id = first.id().to_string();
+    let killed = Command::new("kill").arg(id).status().unwrap();
+    assert!(killed.success());
+    assert_eq!(first.wait().unwrap().code(), Some(143));
+    assert!(!folder.path().join("o/hard_area/row.txt").exists());
+    // A survey that was killed leaves its lock.
+    fs::write(folder.path().join("o/adapter.lock"), "99999999\n").unwrap();
+    fs::write(&end, "exit 0").unwrap();
+    let (code, told) = again();
+    assert!(code == Some(0) && told.contains("done after"), "{told}");
+    assert!(!folder.path().join("o/adapter.lock").exists());
 }
 
 #[test]
 fn what_cannot_be_asked_is_told() {
     let folder = tempfile::tempdir().unwrap();
     for (line, code, words) in [
-        ("adapter --small --only hardd", 2, "hard"),
-        ("adapter --adapter nothing-like-it", 3, "nothing-like-it"),
-        ("adapter --minutes 0", 2, "1..=1440"),
+        ("--small --only hardd", 2, "hard_area"),
+        ("--adapter nothing-like-it", 3, "nothing-like-it"),
+        ("--minutes=0", 2, "1 to 1440"),
+        ("--fast", 2, "--fast"),
     ] {
-        let output = skiagraph(folder.path(), line);
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(code), "{line}: {told}");
+        let (ended, told) = survey(folder.path(), line);
+        assert_eq!(ended, Some(code), "{line}: {told}");
         assert!(told.contains(words), "{line}: {told}");
     }
 }

@@ -4,6 +4,7 @@
 
 mod support;
 
+#[cfg(unix)]
 mod adapter;
 mod backends;
 mod cannot_run;

@@ -31,10 +31,6 @@ pub const RESULTS: &str = ".skiagraph-results.lock";
 /// is held to the end of the command.
 pub const STRESS: &str = ".skiagraph-stress.lock";
 
-/// Name of the lock file for adapter.json, the rows of one adapter. The lock is held to the end of
-/// the command.
-pub const ADAPTER: &str = ".skiagraph-adapter.lock";
-
 /// A lock that this process holds until the value is dropped or the process ends. It locks nothing
 /// on a file system without locks.
 #[derive(Debug)]
@@ -48,9 +44,8 @@ const RETRY: Duration = Duration::from_millis(20);
 /// After so long it is said that something is waited for.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Locks the lock file named `files` ([`RESULTS`], [`STRESS`] or [`ADAPTER`]) in `folder`, which
-/// must exist, and waits while another process holds it. Tells the sink after two seconds of
-/// waiting.
+/// Locks the lock file named `files` ([`RESULTS`] or [`STRESS`]) in `folder`, which must exist, and
+/// waits while another process holds it. Tells the sink after two seconds of waiting.
 ///
 /// # Errors
 /// [`CompareError::Interrupted`] if the sink asks for an early end and the wait takes more than two
@@ -77,9 +72,9 @@ pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, C
     }
 }
 
-/// Locks the lock file named `files` ([`RESULTS`], [`STRESS`] or [`ADAPTER`]) in `folder`, which
-/// must exist, without waiting; `None` if it is held already, by this process or another. Tells the
-/// sink if the file system has no locks.
+/// Locks the lock file named `files` ([`RESULTS`] or [`STRESS`]) in `folder`, which must exist,
+/// without waiting; `None` if it is held already, by this process or another. Tells the sink if the
+/// file system has no locks.
 ///
 /// # Errors
 /// The lock file cannot be created or locked.

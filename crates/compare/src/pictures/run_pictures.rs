@@ -15,7 +15,7 @@ use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
 use crate::pictures::data::{self, DataFormat};
 use crate::pictures::png;
-use crate::records::results::{Images, Run};
+use crate::records::results::Images;
 use crate::wording::size;
 use skiagraph_reference::{Error, Footprint, GroundTruth, Image};
 use std::{
@@ -183,30 +183,16 @@ pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<
 /// Returns view, viewport and map size of a run as text for progress: `main 512x512 map1024`. The
 /// view's name is written as in file names.
 pub fn conditions(method: &Method, view: &str, viewport: [u32; 2]) -> String {
-    conditions_of(method.map_size, view, viewport)
-}
-
-fn conditions_of(map_size: Option<u32>, view: &str, viewport: [u32; 2]) -> String {
-    let map = map_size.map_or(String::new(), |size| format!(" map{size}"));
+    let map = method.map_size;
+    let map = map.map_or(String::new(), |size| format!(" map{size}"));
     format!("{} {}{map}", slug(view), size(viewport))
 }
 
 /// Returns the beginning of the file names of a run's pictures: `nsm-main-512x512-map1024`, without
 /// `-map1024` for a method without a map.
 pub fn stem(method: &Method, view: &str, viewport: [u32; 2]) -> String {
-    stem_of(&method.name, method.map_size, view, viewport)
-}
-
-fn stem_of(method: &str, map_size: Option<u32>, view: &str, viewport: [u32; 2]) -> String {
-    let conditions = conditions_of(map_size, view, viewport);
-    format!("{}-{}", slug(method), conditions.replace(' ', "-"))
-}
-
-/// Returns the file name of the array of a run's visibility on a still view, as `compare --data
-/// npy` writes it.
-pub fn visibility_npy(run: &Run) -> String {
-    let stem = stem_of(&run.preset, run.map_size, &run.view, run.viewport);
-    format!("{stem}-visibility.npy")
+    let conditions = conditions(method, view, viewport).replace(' ', "-");
+    format!("{}-{conditions}", slug(&method.name))
 }
 
 /// Returns the beginning of the file names of the [reference](crate#terms)'s picture and arrays:

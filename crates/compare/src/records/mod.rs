@@ -21,7 +21,6 @@
 //! ```
 
 pub mod abilities;
-pub mod adapter;
 mod assignments;
 pub mod baseline;
 pub mod budgets;

@@ -16,7 +16,6 @@
 
 use crate::error::CompareError;
 use crate::files::json::{Mistake, check_schema};
-use crate::records::adapter::AdapterRecord;
 use crate::records::profile::{KIND, Profile};
 use crate::records::results::{Results, Run};
 use crate::records::statistics::Series;
@@ -98,7 +97,7 @@ fn read(limit: &Limit, path: &Path) -> Result<Option<SourceFile>, String> {
 
 /// Returns the folders of results that `folders` stand for. A folder stands for itself, or if it
 /// holds no results itself, for the folders directly in it that do, sorted by name: `compare`
-/// writes these for several scenes, `adapter` for its rows.
+/// writes these for several scenes, `scripts/adapter.sh` for its rows.
 pub fn with_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
     let is_own = |folder: &Path| {
         let has = |file: &str| folder.join(file).is_file();
@@ -175,59 +174,6 @@ fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
         let summary = "the baseline cannot be used";
         mistake.in_file(file, "profile to compare with", help, summary)
     })
-}
-
-/// Reads a JSON file that this program wrote; `None` if it does not exist.
-///
-/// # Errors
-/// A file that cannot be read, or is not of this kind; the message shows the place.
-pub(crate) fn json<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, CompareError> {
-    let file = read(&KEPT, path).map_err(CompareError::Input)?;
-    let parsed = file.map(|file| {
-        parse(&file.text).map_err(|mistake| {
-            let help = "remove it, and run its command again";
-            mistake.in_file(&file, "file of this program", help, "it cannot be used")
-        })
-    });
-    parsed.transpose()
-}
-
-/// Reads the adapter.json in a folder; `None` if the file does not exist.
-///
-/// # Errors
-/// A file that cannot be read, or is not an adapter.json; the message shows the place.
-pub fn adapter(folder: &Path) -> Result<Option<AdapterRecord>, CompareError> {
-    json(&folder.join("adapter.json"))
-}
-
-/// Reads the adapters in `place`: the adapter.json or the adapters.json of a folder, or a file that
-/// is an adapter.json by another name. Those of adapters.json come first. The list is empty if
-/// `place` has none of these, also if it is another file.
-///
-/// # Errors
-/// An adapter.json or adapters.json of the folder that cannot be read, or is not what its name
-/// says; the message shows the place.
-pub fn adapters(place: &Path) -> Result<Vec<AdapterRecord>, CompareError> {
-    if place.is_dir() {
-        let joined: Option<Vec<AdapterRecord>> = json(&place.join("adapters.json"))?;
-        return Ok(joined
-            .into_iter()
-            .flatten()
-            .chain(adapter(place)?)
-            .collect());
-    }
-    #[derive(Deserialize)]
-    struct Head {
-        abilities: Option<Value>,
-        rows: Option<Value>,
-    }
-    match json::<Head>(place) {
-        Ok(Some(head)) if head.abilities.is_some() && head.rows.is_some() => {
-            Ok(json(place)?.into_iter().collect())
-        }
-        // Another kind of file, whose own reader says what is wrong with it.
-        _ => Ok(Vec::new()),
-    }
 }
 
 /// Parses the text of a results.json, to continue from its runs.

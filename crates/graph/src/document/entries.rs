@@ -50,16 +50,13 @@ pub(super) fn read(
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Header {
     /// Name of the entry; an include without one has the name of its file.
-    #[serde(default)]
     name: Option<Located<Name>>,
     /// Condition under which the entry exists.
     #[serde(default, rename = "if")]
     condition: Option<Expr>,
     /// How often it stands here one after another, each time with its `index`.
-    #[serde(default)]
     repeat: Option<Expr>,
     /// In which frames it runs; without it, as what is around it.
-    #[serde(default)]
     run: Option<Run>,
 }
 
@@ -68,7 +65,6 @@ pub(crate) struct Header {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct PassFields {
     /// The shader without folder and ending; the pass's name without it.
-    #[serde(default)]
     shader: Option<Located<String>>,
     /// Materials that are cleared to zero each time before it runs.
     #[serde(default)]
@@ -77,7 +73,6 @@ pub(crate) struct PassFields {
     #[serde(default)]
     overwrites: Vec<Reference>,
     /// The materials that it reads, all of them; those of the scene are left out.
-    #[serde(default)]
     reads: Option<Vec<Reference>>,
 }
 
@@ -90,7 +85,6 @@ pub(crate) struct IncludeFields {
     graph: Located<String>,
     /// Leaves the document open: a run may put another one under this name; without that it is
     /// `graph`.
-    #[serde(default)]
     open: Option<Located<Name>>,
     /// Its params that are params here, too: a list, or `All` that are not set.
     #[serde(default)]

@@ -21,23 +21,18 @@ pub(super) struct Raster {
     /// The number of vertices, or `Indirect("buffer")`: four u32 in a buffer.
     draw: Call,
     /// How often they are drawn; once without it.
-    #[serde(default)]
     instances: Option<Expr>,
     /// Colour attachments, in the order of the shader's locations.
     #[serde(default)]
     color: Vec<ColorEntry>,
     /// Depth attachment.
-    #[serde(default)]
     depth: Option<DepthEntry>,
     /// Stencil attachment.
-    #[serde(default)]
     stencil: Option<StencilEntry>,
     /// Width and height in texels, one number for a square, of a pass without attachments, whose
     /// fragment shader writes buffers or storage textures.
-    #[serde(default)]
     size: Option<Expr>,
     /// The texels that are drawn, `(x, y, width, height)`; all without it.
-    #[serde(default)]
     area: Option<Expr>,
     /// The triangles that are left out, none without it, or in quotes a `Choice` of `none`,
     /// `front`, `back`, or one of them by a condition.
@@ -57,10 +52,8 @@ pub(super) struct Raster {
     #[serde(default)]
     unclipped: bool,
     /// The vertex entry point, where the shader has several.
-    #[serde(default)]
     vertex: Option<EntryName>,
     /// The fragment entry point, where the shader has several; `none` draws depth alone.
-    #[serde(default)]
     fragment: Option<EntryName>,
 }
 
@@ -103,11 +96,8 @@ impl<'de> Deserialize<'de> for Call {
 
 /// Which triangles are left out.
 #[derive(Clone, Copy, Debug, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Cull")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Cull"))]
 enum Face {
     None,
     Front,

@@ -106,11 +106,8 @@ fn entry(
 ) -> Result<Entry, Diagnostic> {
     let is_composed = COMPOSITION.contains(&raw.tag.as_str());
     if !is_composed && registry.get(&raw.tag).is_none() {
-        let known = registry
-            .kinds()
-            .chain(COMPOSITION)
-            .map(str::to_owned)
-            .collect();
+        let kinds = registry.kinds().chain(COMPOSITION);
+        let known = kinds.map(str::to_owned).collect();
         return Err(DocumentError::UnknownKind(raw.tag, known).into());
     }
     if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
@@ -118,10 +115,8 @@ fn entry(
         let name = Located::new("passes".to_owned(), raw.tag.span);
         return Err(unknown_field(&name, OF_PASS));
     }
-    let (header, own): (Vec<Field>, Vec<Field>) = raw
-        .fields
-        .into_iter()
-        .partition(|field| HEADER.contains(&field.name.as_str()));
+    let is_of_header = |field: &Field| HEADER.contains(&field.name.as_str());
+    let (header, own): (Vec<Field>, Vec<Field>) = raw.fields.into_iter().partition(is_of_header);
     let header: Header = from_fields(&header, &raw.tag.span)?;
     let missing = |field| missing_field(&raw.tag, field);
     let (name, what) = match raw.tag.as_str() {
@@ -171,24 +166,17 @@ fn pass(
     registry: &Registry,
 ) -> Result<Pass, Diagnostic> {
     const COMMON: [&str; 4] = ["shader", "clear", "overwrites", "reads"];
-    let (common, own): (Vec<Field>, Vec<Field>) = own
-        .into_iter()
-        .partition(|field| COMMON.contains(&field.name.as_str()));
+    let is_common = |field: &Field| COMMON.contains(&field.name.as_str());
+    let (common, own): (Vec<Field>, Vec<Field>) = own.into_iter().partition(is_common);
     let common: PassFields = from_fields(&common, &tag.span)?;
-    let kind = registry
-        .get(tag)
-        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()))?;
+    let unknown = || DocumentError::UnknownKind(tag.clone(), Vec::new());
+    let kind = registry.get(tag).ok_or_else(unknown)?;
     Mentions::take();
     let body = (kind.parse)(&own, &tag.span)?;
     let mut mentions = Mentions::take();
-    mentions.references.extend(
-        common
-            .overwrites
-            .iter()
-            .chain(&common.clear)
-            .chain(common.reads.iter().flatten())
-            .cloned(),
-    );
+    let references = common.overwrites.iter().chain(&common.clear);
+    let references = references.chain(common.reads.iter().flatten());
+    mentions.references.extend(references.cloned());
     // Which shaders it names depends on nothing that has a value later.
     let mut lowering = Lowering::new(name, common.shader.as_ref(), &[], None);
     body.lower(&mut lowering);

@@ -65,10 +65,9 @@ impl Material {
             grow.counter.visit(each);
             grow.max.visit(each);
         }
-        exprs
-            .into_iter()
-            .flatten()
-            .for_each(|expr| expr.visit(each));
+        for expr in exprs.into_iter().flatten() {
+            expr.visit(each);
+        }
     }
 }
 

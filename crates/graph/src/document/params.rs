@@ -57,10 +57,8 @@ pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Param, Dia
         _ => return Err(DocumentError::UnknownParamType(tag.clone()).into()),
     };
     let mut different = HashSet::new();
-    let repeats = !fields
-        .words
-        .iter()
-        .all(|word| different.insert(&word.value));
+    let mut words = fields.words.iter();
+    let repeats = !words.all(|word| different.insert(&word.value));
     let is_choice = matches!(ty, ParamType::Choice(_));
     if is_choice == fields.words.is_empty() || repeats {
         let why = if is_choice {

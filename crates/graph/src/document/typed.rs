@@ -360,13 +360,10 @@ impl Document {
     /// expressions and references.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let params = self.params[..self.declared].iter();
+        let claims = self.claims.iter();
         let exprs = params
             .filter_map(|param| param.default.as_ref())
-            .chain(
-                self.claims
-                    .iter()
-                    .filter_map(|(_, of)| of.condition.as_ref()),
-            )
+            .chain(claims.filter_map(|(_, claim)| claim.condition.as_ref()))
             .chain(self.defaults.iter().map(|(_, value)| value))
             .chain(self.values.iter().map(|(_, value)| value))
             .chain(&self.needs)
@@ -408,9 +405,8 @@ impl Entry {
         };
         let exprs = [&self.condition, &self.repeat].into_iter().flatten();
         let exprs = exprs.chain(self.set.iter().map(|(_, value)| value));
-        let exprs = exprs
-            .chain(run)
-            .chain(mentions.iter().flat_map(|of| &of.exprs));
+        let exprs = exprs.chain(run);
+        let exprs = exprs.chain(mentions.iter().flat_map(|of| &of.exprs));
         exprs.for_each(|expr| expr.visit(each));
         let references = self.bind.iter().map(|(_, reference)| reference);
         let references = references.chain(mentions.iter().flat_map(|of| &of.references));

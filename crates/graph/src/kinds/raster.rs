@@ -137,13 +137,14 @@ impl PassKind for Raster {
         program.fragment = self.fragment.as_ref().and_then(|entry| entry.chosen(pass));
         program.no_fragment = self.fragment.is_some() && program.fragment.is_none();
         let call = match &self.draw {
-            Call::Vertices(count) => DrawCall::Direct {
-                vertices: pass.count32(count),
-                instances: self
-                    .instances
-                    .as_ref()
-                    .map_or(1, |count| pass.count32(count)),
-            },
+            Call::Vertices(count) => {
+                let vertices = pass.count32(count);
+                let instances = self.instances.as_ref();
+                DrawCall::Direct {
+                    vertices,
+                    instances: instances.map_or(1, |count| pass.count32(count)),
+                }
+            }
             Call::Indirect(buffer) => DrawCall::Indirect(Operand::from(buffer)),
         };
         let primitive = wgt::PrimitiveState {
@@ -166,15 +167,12 @@ impl PassKind for Raster {
             unclipped_depth: self.unclipped,
             ..wgt::PrimitiveState::default()
         };
-        let area = self.area.as_ref();
+        let (area, depth) = (self.area.as_ref(), self.depth.as_ref());
         let draw = Draw {
             program,
             fullscreen: false,
             colors: targets::colors(&self.color, area, pass),
-            depth: self
-                .depth
-                .as_ref()
-                .map(|depth| targets::depth(depth, area, pass)),
+            depth: depth.map(|depth| targets::depth(depth, area, pass)),
             stencil: targets::stencil(self.stencil.as_ref(), area, pass),
             canvas: self.size.as_ref().map(|size| targets::canvas(size, pass)),
             area: area.and_then(|area| targets::area(area, pass)),

@@ -43,9 +43,8 @@ impl Drawing {
     /// Maps the name of each material to the material.
     pub(crate) fn by_name(&self) -> HashMap<&str, &Material> {
         let materials = self.materials.iter();
-        materials
-            .map(|material| (&*material.name, material))
-            .collect()
+        let materials = materials.map(|material| (&*material.name, material));
+        materials.collect()
     }
 }
 

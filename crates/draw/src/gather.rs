@@ -33,9 +33,8 @@ pub fn from_plan(plan: &Plan) -> Drawing {
 
 fn drawn_passes(plan: &Plan, positions: &[Option<usize>]) -> Vec<Pass> {
     let culled = plan.culled().iter();
-    let culled: HashMap<&str, &String> = culled
-        .map(|pass| (pass.name.as_str(), &pass.reason))
-        .collect();
+    let culled = culled.map(|pass| (pass.name.as_str(), &pass.reason));
+    let culled: HashMap<&str, &String> = culled.collect();
     let drawn = |(pass, &position): (&LinkedPass, &Option<usize>)| Pass {
         name: pass.name.value.clone(),
         kind: pass.kind.to_owned(),

@@ -15,9 +15,8 @@ pub(crate) fn implied(nodes: usize, edges: &[[usize; 2]]) -> Vec<[usize; 2]> {
     }
     let (needed, _) = dag_transitive_reduction_closure(&graph);
     let edges = edges.iter().copied();
-    edges
-        .filter(|&[from, to]| !needed.contains_edge(from, to))
-        .collect()
+    let edges = edges.filter(|&[from, to]| !needed.contains_edge(from, to));
+    edges.collect()
 }
 
 #[cfg(test)]

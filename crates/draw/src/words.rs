@@ -162,9 +162,8 @@ pub(crate) fn narrowed<'a>(
         Aspect::Depth => (Unit::Depth, None),
         Aspect::Stencil => (Unit::Stencil, None),
     });
-    ranges
-        .map(|(unit, range)| (unit, range.as_ref()))
-        .chain(aspect)
+    let ranges = ranges.map(|(unit, range)| (unit, range.as_ref()));
+    ranges.chain(aspect)
 }
 
 fn numbers(range: &Range<u32>) -> String {
@@ -276,10 +275,8 @@ pub(crate) fn renamed(material: &Material) -> String {
 pub(crate) fn summary(drawing: &Drawing) -> String {
     let live = drawing.passes.iter().filter(|pass| pass.position.is_some());
     let live = live.count();
-    let made = drawing
-        .materials
-        .iter()
-        .filter(|material| material.lifetime.is_some() && material.origin.is_made());
+    let is_made = |it: &&Material| it.lifetime.is_some() && it.origin.is_made();
+    let made = drawing.materials.iter().filter(is_made);
     let mut parts = vec![format!(
         "{} in order of execution",
         plural(live, "pass", "passes")

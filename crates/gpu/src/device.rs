@@ -197,10 +197,8 @@ fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
 /// integrated ones, virtual ones, software adapters, others. Among adapters of one type, GL
 /// adapters come last; [`open`] skips them by default.
 pub fn adapters() -> Vec<wgpu::AdapterInfo> {
-    enumerate(&instance(wgpu::Backends::all()))
-        .iter()
-        .map(wgpu::Adapter::get_info)
-        .collect()
+    let adapters = enumerate(&instance(wgpu::Backends::all()));
+    adapters.iter().map(wgpu::Adapter::get_info).collect()
 }
 
 /// Opens a device on the first adapter of [`adapters`] whose name contains `name`, or else whose
@@ -225,9 +223,8 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
 pub fn open_with(wanted: &Wanted<'_>) -> Result<Gpu, GpuError> {
     let of_environment = std::env::var("WGPU_BACKEND").ok();
     let of_environment = of_environment.filter(|words| !words.trim().is_empty());
-    let listed = of_environment
-        .as_deref()
-        .map(wgpu::Backends::from_comma_list);
+    let words = of_environment.as_deref();
+    let listed = words.map(wgpu::Backends::from_comma_list);
     let asked = wanted.backends.or(listed);
     let instance = instance(asked.unwrap_or(BACKENDS));
     let adapters = enumerate(&instance);
@@ -309,10 +306,8 @@ fn no_such_backend(wanted: String, others: &[wgpu::AdapterInfo]) -> GpuError {
 fn names_of(backends: wgpu::Backends) -> String {
     let names = wgpu::Backend::ALL.into_iter();
     let names = names.filter(|backend| backends.contains((*backend).into()));
-    names
-        .map(wgpu::Backend::to_str)
-        .collect::<Vec<_>>()
-        .join(",")
+    let names = names.map(wgpu::Backend::to_str);
+    names.collect::<Vec<_>>().join(",")
 }
 
 /// Adapters for a message.

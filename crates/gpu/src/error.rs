@@ -294,11 +294,9 @@ pub(crate) fn scoped<T>(
     .map(|filter| device.push_error_scope(filter));
     let made = caught(make);
     // Scopes are a stack: the last one pushed is popped first.
-    let errors: Vec<wgpu::Error> = scopes
-        .into_iter()
-        .rev()
-        .filter_map(|scope| pollster::block_on(scope.pop()))
-        .collect();
+    let from_last = scopes.into_iter().rev();
+    let errors = from_last.filter_map(|scope| pollster::block_on(scope.pop()));
+    let errors: Vec<wgpu::Error> = errors.collect();
     let made = made.map_err(|panicked| ExecuteError::Panicked {
         name: format!("`{name}`"),
         panicked,

@@ -58,11 +58,11 @@ impl Presence {
     /// # Errors
     /// [`ExecuteError::OtherDevice`], or [`ExecuteError::DeviceLost`].
     pub fn check_provider(&mut self, provider: &dyn Provider) -> Result<(), ExecuteError> {
-        if let Some(of) = provider.device()
-            && self.provider != Some(of.number)
+        if let Some(identity) = provider.device()
+            && self.provider != Some(identity.number)
         {
-            self.check_own(of.is(&self.device), "the provider", MOVE)?;
-            self.provider = Some(of.number);
+            self.check_own(identity.is(&self.device), "the provider", MOVE)?;
+            self.provider = Some(identity.number);
         }
         Ok(())
     }

@@ -111,9 +111,8 @@ impl Content {
             ..
         } = self
         {
-            values
-                .chunks_exact_mut(4)
-                .for_each(|texel| texel.swap(0, 2));
+            let texels = values.chunks_exact_mut(4);
+            texels.for_each(|texel| texel.swap(0, 2));
         }
         Some(values)
     }
@@ -161,10 +160,8 @@ fn layout(format: wgpu::TextureFormat) -> Option<(Kind, usize)> {
 
 /// A little-endian integer of one, two or four bytes.
 fn unsigned(bytes: &[u8]) -> u32 {
-    bytes
-        .iter()
-        .rev()
-        .fold(0, |value, byte| value << 8 | u32::from(*byte))
+    let bytes = bytes.iter().rev();
+    bytes.fold(0, |value, byte| value << 8 | u32::from(*byte))
 }
 
 /// A little-endian two's complement integer of one, two or four bytes.

@@ -18,9 +18,8 @@ fn parse<T, E: serde::de::Error>(
     (text, span): (&str, &Span),
     parse: impl FnOnce(&SourceFile, Range<usize>) -> Result<T, SyntaxFault>,
 ) -> Result<T, E> {
-    let inner = text
-        .strip_prefix('"')
-        .and_then(|text| text.strip_suffix('"'));
+    let inner = text.strip_prefix('"');
+    let inner = inner.and_then(|text| text.strip_suffix('"'));
     let inner = inner.ok_or_else(|| refuse(DocumentError::NoString(span.clone())))?;
     let start = span.range.start + 1;
     if let Some(at) = inner.find('\\') {

@@ -222,20 +222,16 @@ impl Param {
         if !matches!(self.ty, ParamType::Choice(_)) {
             return Err(None);
         }
-        let unknown = kept
-            .iter()
-            .find(|word| self.words().all(|known| *known != word.value));
-        if let Some(word) = unknown {
+        let is_unknown = |word: &&Located<Name>| self.words().all(|known| *known != word.value);
+        if let Some(word) = kept.iter().find(is_unknown) {
             return Err(Some(word.clone()));
         }
-        let gone = self
-            .words()
-            .filter(|word| kept.iter().all(|kept| kept.value != **word));
+        let is_gone = |word: &&Name| kept.iter().all(|kept| kept.value != **word);
+        let gone = self.words().filter(is_gone);
         let gone: Vec<String> = gone.map(Name::to_string).collect();
-        self.tune.retain(|value| {
-            !gone
-                .iter()
-                .any(|word| *value == ParamValue::Choice(word.clone()))
+        self.tune.retain(|value| match value {
+            ParamValue::Choice(word) => !gone.contains(word),
+            _ => true,
         });
         if self.tune.len() < 2 {
             self.tune.clear();
@@ -302,10 +298,8 @@ impl Param {
     /// Returns a valid value to use where none is given: for a number `min`, else 1; for a bool
     /// false; for a choice its first word.
     pub(crate) fn stand_in(&self) -> ParamValue {
-        let number = self
-            .min
-            .unwrap_or(1.0)
-            .min(self.max.unwrap_or(f64::INFINITY));
+        let most = self.max.unwrap_or(f64::INFINITY);
+        let number = self.min.unwrap_or(1.0).min(most);
         let number = self.ty.with_number(number);
         number.unwrap_or_else(|| match &self.ty {
             ParamType::Choice(_) => {
@@ -428,10 +422,10 @@ impl Param {
                 return Err(ParamFault::Value(match (self.min, self.max) {
                     (Some(min), Some(max)) => format!("must lie in {min}..{max}, not {shown}"),
                     (Some(min), None) => format!("must be at least {min}, not {shown}"),
-                    (None, max) => format!(
-                        "must be at most {}, not {shown}",
-                        max.unwrap_or(f64::INFINITY)
-                    ),
+                    (None, max) => {
+                        let max = max.unwrap_or(f64::INFINITY);
+                        format!("must be at most {max}, not {shown}")
+                    }
                 }));
             }
         }

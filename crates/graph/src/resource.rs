@@ -213,9 +213,8 @@ impl Texture {
         // A host's limits may allow for more than 64 bits can count.
         let mip = |level: u32| {
             let edges = self.mip_size(level).map(u64::from);
-            [edges[0], edges[1], u64::from(self.mip_layers(level))]
-                .into_iter()
-                .fold(texel, u64::saturating_mul)
+            let edges = [edges[0], edges[1], u64::from(self.mip_layers(level))];
+            edges.into_iter().fold(texel, u64::saturating_mul)
         };
         (0..self.mips).map(mip).fold(0, u64::saturating_add)
     }

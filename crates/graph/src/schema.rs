@@ -320,10 +320,9 @@ fn joined(tag: &str, mut own: Value, common: &[&Value]) -> Value {
     }
     if !common.is_empty() && tag != "Include" {
         let required = fields.entry("required").or_insert_with(|| json!([]));
-        required
-            .as_array_mut()
-            .into_iter()
-            .for_each(|it| it.push("name".into()));
+        if let Some(required) = required.as_array_mut() {
+            required.push("name".into());
+        }
     }
     own
 }

@@ -402,20 +402,20 @@ pub fn from_some_fields<T: DeserializeOwned>(
     }
 }
 
-/// Deserialises a struct as [`from_some_fields`] does, but appends a diagnostic to `told` for every
-/// unknown or duplicate field and every field that cannot be read, not only for the first. If no
-/// other mistake is the cause, a missing field is told, too. Returns `None` if a field is unknown,
-/// missing or cannot be read. Of a duplicate field the first is read.
+/// Deserialises a struct as [`from_some_fields`] does, but appends an entry to `diagnostics` for
+/// every unknown or duplicate field and every field that cannot be read, not only for the first. If
+/// no other mistake is the cause, a missing field is reported, too. Returns `None` if a field is
+/// unknown, missing or cannot be read. Of a duplicate field the first is read.
 pub fn from_all_fields<T: DeserializeOwned>(
     mut fields: Vec<Field>,
     whole: &Span,
     more: &[&str],
-    told: &mut Vec<Diagnostic>,
+    diagnostics: &mut Vec<Diagnostic>,
 ) -> Option<T> {
     let mut seen = HashSet::new();
     fields.retain(|field| {
         let is_first = seen.insert(field.name.value.clone());
-        told.extend((!is_first).then(|| field_twice(&field.name)));
+        diagnostics.extend((!is_first).then(|| field_twice(&field.name)));
         is_first
     });
     let (mut left_out, mut is_misspelt) = (HashSet::new(), false);
@@ -429,12 +429,12 @@ pub fn from_all_fields<T: DeserializeOwned>(
             (Some((index, is_name)), _) => {
                 is_misspelt |= is_name;
                 left_out.insert(fields.remove(index).name.value);
-                told.push(error);
+                diagnostics.push(error);
             }
             // It is then the misspelt one, or one that could not be read.
             (None, Some(missing)) if is_misspelt || left_out.contains(missing) => return None,
             (None, _) => {
-                told.push(error);
+                diagnostics.push(error);
                 return None;
             }
         }
@@ -568,9 +568,9 @@ pub fn field_twice(field: &Located<String>) -> Diagnostic {
     Diagnostic::error(Code::DuplicateName, what).at(field, "the second one")
 }
 
-/// The bracket that a text does not close: its place, and the place of a closing bracket of another
-/// kind that stands instead; `None` of that at the end of the text.
-fn unclosed(text: &str) -> Option<(usize, Option<usize>)> {
+/// The bracket that a text does not close: its place, the sign that closes it, and the place of a
+/// closing bracket of another kind that stands instead; `None` of that at the end of the text.
+fn unclosed(text: &str) -> Option<(usize, char, Option<usize>)> {
     let mut open: Vec<(usize, char)> = Vec::new();
     let mut at = 0;
     while let Some(sign) = text[at..].chars().next() {
@@ -598,34 +598,23 @@ fn unclosed(text: &str) -> Option<(usize, Option<usize>)> {
             }
             ')' | ']' | '}' => match open.pop()? {
                 (_, expected) if expected == sign => 1,
-                (opened, _) => return Some((opened, Some(at))),
+                (opened, closing) => return Some((opened, closing, Some(at))),
             },
             _ => sign.len_utf8(),
         };
     }
-    open.pop().map(|(opened, _)| (opened, None))
+    open.pop().map(|(opened, closing)| (opened, closing, None))
 }
 
 /// A syntax error of a file in which a bracket is not closed; `None` if all are.
 fn open_bracket(file: &SourceFile) -> Option<Diagnostic> {
-    let (opened, closed) = unclosed(&file.text)?;
-    let bracket = &file.text[opened..=opened];
-    let closing = match bracket {
-        "(" => ")",
-        "[" => "]",
-        _ => "}",
-    };
-    let what = format!("`{bracket}` is not closed");
+    let (opened, closing, instead) = unclosed(&file.text)?;
     let place = |at: usize| file.span(at..at + 1);
-    Some(
-        Diagnostic::error(Code::Syntax, what)
-            .at(place(opened), "opened here")
-            .at_any(
-                closed.map(place),
-                format!("here `{closing}` is missing, or above"),
-            )
-            .help(format!("close it with `{closing}`")),
-    )
+    let what = format!("`{}` is not closed", &file.text[opened..=opened]);
+    let missing = format!("here `{closing}` is missing, or above");
+    let error = Diagnostic::error(Code::Syntax, what).at(place(opened), "opened here");
+    let error = error.at_any(instead.map(place), missing);
+    Some(error.help(format!("close it with `{closing}`")))
 }
 
 /// A ron error in our words.

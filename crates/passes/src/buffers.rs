@@ -159,10 +159,7 @@ impl Buffers {
     /// Keeps a buffer as the last one of that name.
     fn hold(&mut self, name: &str, buffer: wgpu::Buffer, version: u64) {
         let held = self.held.entry(name.to_owned()).or_default();
-        if held.len() >= kept_of(name) {
-            held.remove(0);
-        }
-        held.push((buffer, version));
+        remember(held, (buffer, version), kept_of(name));
     }
 
     /// Returns the buffer of that name that was made last, with the version of its content.
@@ -271,11 +268,8 @@ impl Buffers {
         let buffer = create(name, (count * stride) as u64, on.device);
         let encoder = self.record(name, on);
         encoder.copy_buffer_to_buffer(known, 0, &buffer, 0, known.size());
-        let staging = on.device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("changed items"),
-            contents: bytemuck::cast_slice(content),
-            usage: wgpu::BufferUsages::COPY_SRC,
-        });
+        let (content, usage) = (bytemuck::cast_slice(content), wgpu::BufferUsages::COPY_SRC);
+        let staging = upload(on.device, "changed items", content, usage);
         let mut from = 0;
         for range in ranges {
             let [to, size] = [range.start, range.len()].map(|items| (items * stride) as u64);
@@ -322,11 +316,8 @@ impl Buffers {
 /// Ranges in ascending order that hold all of `ranges`; those with less than `gap` between them are
 /// one.
 fn joined(ranges: &[Range<usize>], gap: usize) -> Vec<Range<usize>> {
-    let mut ranges: Vec<Range<usize>> = ranges
-        .iter()
-        .filter(|range| !range.is_empty())
-        .cloned()
-        .collect();
+    let ranges = ranges.iter().filter(|range| !range.is_empty());
+    let mut ranges: Vec<Range<usize>> = ranges.cloned().collect();
     ranges.sort_unstable_by_key(|range| range.start);
     let mut joined: Vec<Range<usize>> = Vec::new();
     for range in ranges {
@@ -349,6 +340,20 @@ pub(crate) fn refused<T>(device: &wgpu::Device, act: impl FnOnce() -> T) -> Resu
         std::task::Poll::Ready(Some(why)) => Err(why.to_string()),
         _ => Ok(done),
     }
+}
+
+/// Makes a buffer with a content.
+pub(crate) fn upload(
+    device: &wgpu::Device,
+    label: &str,
+    contents: &[u8],
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
+    device.create_buffer_init(&BufferInitDescriptor {
+        label: Some(label),
+        contents,
+        usage,
+    })
 }
 
 /// Makes a buffer as graphs and later contents need it.

@@ -63,9 +63,8 @@ impl Embree {
     /// An index beyond the mesh's positions, or Embree's own.
     pub fn build(scene: &Arc<Scene>) -> Result<Self, Error> {
         check_corners(&scene.mesh, 0..scene.mesh.triangles.len())?;
-        tree(scene)
-            .map(Self)
-            .map_err(|why| Error::Embree(format!("{why:?}")))
+        let tree = tree(scene).map_err(|why| Error::Embree(format!("{why:?}")))?;
+        Ok(Self(tree))
     }
 
     fn any(&self, rays: &[Ray], context: &mut IntersectContext) {

@@ -46,6 +46,13 @@ pub enum Error {
          with `engine: Hierarchy`"
     )]
     LightSpaceKind(&'static str),
+    /// The device refuses to build the acceleration structures, for example because it has no
+    /// memory for them.
+    #[error("`scene.tlas` could not be built: {0}")]
+    Structures(
+        /// Reason that wgpu gives.
+        String,
+    ),
     /// Embree could not build its hierarchy; the text is its reason.
     #[error("Embree could not build `scene.embree`: {0}")]
     Embree(String),

@@ -183,10 +183,8 @@ fn frustum(relative_from_clip: &DMat4, depth: Depth) -> Result<Camera, EyeError>
         reach.into_iter().fold(0.0, f64::max) / near
     });
     let numbers = [near, far, half[0], half[1], 1.0 / near];
-    let is_held = numbers
-        .iter()
-        .all(|&it| it > 0.0 && (it as f32).is_finite())
-        && near >= LEAST_DEPTH * far;
+    let is_finite = |it: &f64| *it > 0.0 && (*it as f32).is_finite();
+    let is_held = numbers.iter().all(is_finite) && near >= LEAST_DEPTH * far;
     if !(near < far && is_held && forward.is_finite()) {
         return Err(EyeError::Frustum { near, far });
     }

@@ -95,6 +95,16 @@ pub(crate) struct Change {
     pub is_grown: bool,
 }
 
+impl Change {
+    /// Corners have moved, and nothing else.
+    const MOVED: Self = Self {
+        is_elsewhere: true,
+        is_turned: false,
+        is_painted: false,
+        is_grown: false,
+    };
+}
+
 impl Geometry {
     /// Creates the geometry of a mesh without parts.
     pub fn whole() -> Self {
@@ -370,11 +380,8 @@ impl Geometry {
     ) -> Result<(PartId, Change), Error> {
         let host = HostPart::new(mesh, map);
         let host = host.map_err(|error| error.renumbered(self.parts.len()))?;
-        self.add_as(
-            (Arc::clone(mesh.movable()), Some(Box::new(host))),
-            map,
-            scene,
-        )
+        let part = (Arc::clone(mesh.movable()), Some(Box::new(host)));
+        self.add_as(part, map, scene)
     }
 
     fn add_as(
@@ -499,12 +506,11 @@ impl Geometry {
             Arc::make_mut(&mut kept.tree).remove(id.piece);
         }
         self.is_unplaced &= !self.has_places();
-        let change = Change {
-            is_elsewhere: true,
-            is_turned: true,
-            ..Change::default()
-        };
-        Ok(change)
+        let is_turned = true;
+        Ok(Change {
+            is_turned,
+            ..Change::MOVED
+        })
     }
 
     /// Notes that the host has rewritten the vertices of a part within these bounds.
@@ -532,10 +538,7 @@ impl Geometry {
         let positions = self.part(id)?.positions();
         self.work.moved += positions as u64;
         self.pieces[id.piece].moved = next_version();
-        Ok(Change {
-            is_elsewhere: true,
-            ..Change::default()
-        })
+        Ok(Change::MOVED)
     }
 
     /// Notes the device that the scene's buffers are on from now on, with its limits. Vertices in
@@ -579,11 +582,10 @@ impl Geometry {
                 parts += 1;
             }
         }
-        let change = Change {
-            is_elsewhere: parts > 0,
-            ..Change::default()
-        };
-        (parts, change)
+        match parts {
+            0 => (parts, Change::default()),
+            _ => (parts, Change::MOVED),
+        }
     }
 
     /// Returns a part whose vertices are in a buffer of the host, if there is one.
@@ -610,15 +612,10 @@ impl Geometry {
     fn clear(&mut self, triangles: Range<usize>) {
         if self.cleared.len() == CLEARED {
             // Rather one long range than ever more.
-            let ends =
-                self.cleared
-                    .drain(..)
-                    .fold(None, |ends: Option<Range<usize>>, (next, _)| {
-                        let ends = ends.unwrap_or(next.clone());
-                        Some(ends.start.min(next.start)..ends.end.max(next.end))
-                    });
-            let ends = ends.into_iter().map(|ends| (ends, next_version()));
-            self.cleared = ends.collect();
+            let ranges = self.cleared.drain(..).map(|(range, _)| range);
+            let whole = ranges.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
+            self.cleared
+                .extend(whole.map(|range| (range, next_version())));
         }
         self.cleared.push((triangles, next_version()));
     }
@@ -642,9 +639,8 @@ impl Geometry {
         let moved = self.pieces.iter();
         let moved = moved.filter(|piece| piece.moved > version && piece.host().is_none());
         let list = usize::from(name == NORMALS);
-        moved
-            .map(|piece| piece.ranges(mesh)[list].clone())
-            .collect()
+        let moved = moved.map(|piece| piece.ranges(mesh)[list].clone());
+        moved.collect()
     }
 
     /// The ranges of triangles that have other corners than in a version of the winding.
@@ -658,10 +654,8 @@ impl Geometry {
     }
 
     fn cleared_since(&self, version: u64) -> impl Iterator<Item = Range<usize>> {
-        let cleared = self
-            .cleared
-            .iter()
-            .filter(move |(_, number)| *number > version);
+        let cleared = self.cleared.iter();
+        let cleared = cleared.filter(move |(_, number)| *number > version);
         cleared.map(|(range, _)| range.clone())
     }
 
@@ -843,9 +837,8 @@ impl Geometry {
         let since = known.as_ref().map(|known| known.shape);
         let fitted = self.bvh(mesh, most, versions[0], since);
         let of = (space, near);
-        let parted = self
-            .hierarchies
-            .of_parts(known, of, &fitted, mesh, versions)?;
+        let hierarchies = &mut self.hierarchies;
+        let parted = hierarchies.of_parts(known, of, &fitted, mesh, versions)?;
         self.work.nodes += parted.fitted as u64;
         Ok(parted)
     }
@@ -858,11 +851,11 @@ impl Geometry {
         for (number, piece) in self.pieces.iter().enumerate() {
             let (triangles, of_piece) = (piece.triangles(mesh), piece.moved.max(piece.turned));
             if self.is_solid(piece, mesh, most) {
-                let piece = Some(number);
+                let (piece, changed) = (Some(number), of_piece);
                 solids.push(Solid {
                     piece,
                     triangles,
-                    changed: of_piece,
+                    changed,
                 });
             } else {
                 // Those of a piece that is gone may have been among these.

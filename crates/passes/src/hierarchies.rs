@@ -1,7 +1,7 @@
 //! The hierarchies over a mesh in light spaces: built, and fitted again when the mesh is deformed;
 //! over a mesh in parts, those of its parts, of which those are fitted that have moved.
 
-use crate::{built::How, error::Error};
+use crate::{built::How, error::Error, names::remember};
 use glam::Vec3;
 use skiagraph_scene::{Bvh, LightSpace, LightSpaceNode, Mesh, TwoLevelBvh};
 use std::{ops::Range, sync::Arc};
@@ -132,11 +132,8 @@ impl Hierarchies {
         changed[0].push(nodes.len()..nodes.len() + 1);
         nodes.push(LightSpaceNode::centre(kept.space.centre));
         (kept.shape, kept.version) = (shape, version);
-        if self.of_parts.len() == DIRECTIONS {
-            self.of_parts.remove(0);
-        }
         let nodes = Arc::clone(&kept.nodes);
-        self.of_parts.push(kept);
+        remember(&mut self.of_parts, kept, DIRECTIONS);
         Ok(Parted {
             nodes,
             tree: Arc::clone(tree),
@@ -186,10 +183,8 @@ impl Hierarchies {
         if keep && !bvh.nodes.is_empty() {
             // Its boxes are of the light's space; those of the world tell when it has become bad.
             bvh.refit(mesh);
-            if self.light_spaces.len() == DIRECTIONS {
-                self.light_spaces.remove(0);
-            }
-            self.light_spaces.push((space.direction, Kept::new(bvh)));
+            let kept = (space.direction, Kept::new(bvh));
+            remember(&mut self.light_spaces, kept, DIRECTIONS);
         }
         Ok(Tree {
             nodes,

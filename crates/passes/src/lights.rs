@@ -56,9 +56,8 @@ pub(crate) fn check(lights: &[LightKind]) -> Result<(), Error> {
         return Err(Error::NoLights);
     }
     for (number, light) in lights.iter().enumerate() {
-        light
-            .check()
-            .map_err(|why| Error::LightNumber { number, why })?;
+        let checked = light.check();
+        checked.map_err(|why| Error::LightNumber { number, why })?;
     }
     Ok(())
 }
@@ -114,9 +113,8 @@ pub(crate) fn content(
 /// The list that a name is of, if it is one of these.
 pub(crate) fn list_of(name: &str) -> Option<&'static str> {
     let (list, _) = parse(name)?;
-    [LIGHTS, LIGHT_AREAS]
-        .into_iter()
-        .find(|known| *known == list)
+    let mut lists = [LIGHTS, LIGHT_AREAS].into_iter();
+    lists.find(|known| *known == list)
 }
 
 /// The list of a name, and which of it.

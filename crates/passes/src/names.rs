@@ -80,6 +80,14 @@ pub(crate) fn next_version() -> u64 {
     LAST.fetch_add(1, Ordering::Relaxed) + 1
 }
 
+/// Appends an item to a list of at most `most`, of which the first one goes.
+pub(crate) fn remember<T>(list: &mut Vec<T>, item: T, most: usize) {
+    if list.len() >= most {
+        list.remove(0);
+    }
+    list.push(item);
+}
+
 /// Settings made lately, each with a number for its content. A setting made again gets the number
 /// that it had: executors that have seen it have nothing to do.
 #[derive(Clone, Debug)]
@@ -109,11 +117,8 @@ impl<T: PartialEq> Lately<T> {
         }
         let known = self.known.iter().position(|(known, _)| *known == value);
         let number = known.map_or_else(next_version, |at| self.known.remove(at).1);
-        if self.known.len() == Self::MOST {
-            self.known.remove(0);
-        }
         let before = std::mem::replace(&mut self.now, value);
-        self.known.push((before, self.number));
+        remember(&mut self.known, (before, self.number), Self::MOST);
         self.number = number;
     }
 }

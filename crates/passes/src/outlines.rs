@@ -140,10 +140,8 @@ impl Direction {
 
 /// Takes the outlines of a direction out of those that are kept.
 fn take(directions: &mut Vec<Direction>, direction: DVec3) -> Direction {
-    let at = directions
-        .iter()
-        .position(|known| known.direction == direction);
-    if let Some(at) = at {
+    let mut kept = directions.iter();
+    if let Some(at) = kept.position(|kept| kept.direction == direction) {
         return directions.remove(at);
     }
     if directions.len() == DIRECTIONS {

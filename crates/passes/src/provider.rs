@@ -171,7 +171,7 @@ impl SceneProvider {
     ///
     /// [`ExecuteError::OtherDevice`]: skiagraph_gpu::ExecuteError::OtherDevice
     pub fn move_to(&mut self, device: &wgpu::Device) {
-        if self.device.as_ref().is_some_and(|known| known.is(device)) {
+        if self.device.as_ref().is_some_and(|own| own.is(device)) {
             return;
         }
         let work = self.buffers.work;
@@ -184,7 +184,7 @@ impl SceneProvider {
     /// Checks that all is on `device`, which the first call decides.
     fn check_device(&mut self, device: &wgpu::Device) -> Result<(), Error> {
         match &self.device {
-            Some(known) if known.is(device) => {}
+            Some(identity) if identity.is(device) => {}
             Some(_) => return Err(Error::OtherDevice("the provider")),
             None => self.move_to(device),
         }
@@ -343,30 +343,18 @@ impl SceneProvider {
         on: On,
     ) -> Result<Bound, Error> {
         self.geometry.check_host_parts()?;
-        let primitives;
-        let [positions, indices] = match name {
-            POSITIONS => [buffer, buffer].map(Clone::clone),
-            _ => [self.buffer(POSITIONS, on)?, self.buffer(INDICES, on)?],
-        };
-        let (positions, indices) = (&positions, &indices);
-        let written = match name {
-            POSITIONS => Written::Positions { positions },
-            NORMALS => Written::Normals {
-                normals: buffer,
-                positions,
-                indices,
-            },
-            _ => {
-                primitives = self.buffer(BVH_PRIMITIVES, on)?;
-                Written::Nodes {
-                    nodes: buffer,
-                    positions,
-                    indices,
-                    primitives: &primitives,
-                }
-            }
-        };
-        self.kernels.bind(written, &writes, on.device)
+        if name == POSITIONS {
+            let written = Written::positions(buffer);
+            return self.kernels.bind(&written, &writes, on.device);
+        }
+        let [positions, indices] = [self.buffer(POSITIONS, on)?, self.buffer(INDICES, on)?];
+        if name == NORMALS {
+            let written = Written::normals(buffer, [&positions, &indices]);
+            return self.kernels.bind(&written, &writes, on.device);
+        }
+        let primitives = self.buffer(BVH_PRIMITIVES, on)?;
+        let written = Written::nodes(buffer, [&positions, &indices, &primitives]);
+        self.kernels.bind(&written, &writes, on.device)
     }
 
     /// Uploads the numbers of those triangles that have other corners than before.
@@ -378,9 +366,8 @@ impl SceneProvider {
     ) -> Result<How, Error> {
         let (version, known) = (self.version(name), self.buffers.version(name));
         let mesh = &self.scene.mesh;
-        let turned = self
-            .geometry
-            .triangles_since(known.unwrap_or_default(), mesh);
+        let known = known.unwrap_or_default();
+        let turned = self.geometry.triangles_since(known, mesh);
         let turned = turned.iter().map(|range| N * range.start..N * range.end);
         let (items, changed) = (items.as_flattened(), turned.collect::<Vec<_>>());
         self.buffers
@@ -467,9 +454,8 @@ impl SceneProvider {
     ) -> Result<How, Error> {
         let version = self.version(LIGHT_SPACE_NODES);
         let (mesh, versions) = (&self.scene.mesh, [self.versions.shape, version]);
-        let of = self
-            .geometry
-            .light_space_of_parts(space, mesh, most, versions)?;
+        let geometry = &mut self.geometry;
+        let of = geometry.light_space_of_parts(space, mesh, most, versions)?;
         let buffers = &mut self.buffers;
         let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
         let known = names.map(|name| buffers.take_up(name, of.since));
@@ -853,7 +839,7 @@ impl SceneProvider {
     /// Checks that a host's mesh is on the provider's device, if there is one yet.
     fn check_mesh(&self, mesh: &HostMesh) -> Result<(), Error> {
         match &self.device {
-            Some(known) if !mesh.is_on(known.device()) => {
+            Some(identity) if !mesh.is_on(identity.device()) => {
                 Err(Error::OtherDevice("the host's mesh"))
             }
             _ => Ok(()),

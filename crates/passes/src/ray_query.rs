@@ -3,7 +3,13 @@
 //! everything where it is. Where a piece has moved, it gets another bottom level; the others keep
 //! theirs.
 
-use crate::{error::Error, geometry::Geometry, names::next_version, piece::Solid};
+use crate::{
+    buffers::{refused, upload},
+    error::Error,
+    geometry::Geometry,
+    names::next_version,
+    piece::Solid,
+};
 use skiagraph_scene::Mesh;
 use std::{
     collections::BTreeMap,
@@ -13,10 +19,7 @@ use std::{
         atomic::{AtomicUsize, Ordering},
     },
 };
-use wgpu::{
-    AccelerationStructureFlags as Flags, BlasTriangleGeometrySizeDescriptor as Size,
-    util::{BufferInitDescriptor, DeviceExt},
-};
+use wgpu::{AccelerationStructureFlags as Flags, BlasTriangleGeometrySizeDescriptor as Size};
 
 /// Rows of the matrix that leaves everything where it is.
 const IDENTITY: [f32; 12] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0.];
@@ -102,7 +105,8 @@ impl Structures {
     /// No structure is built a second time, since frames that are encoded may read it.
     ///
     /// # Errors
-    /// More triangles than the device can take, or an index beyond the mesh's positions.
+    /// More triangles than the device can take, an index beyond the mesh's positions, or builds
+    /// that the device refuses; those structures are built again when they are next asked for.
     pub fn get(&mut self, of: Source<'_>) -> Result<(wgpu::Tlas, Option<usize>), Error> {
         let known = self.top.take();
         let is_same = known.as_ref().is_some_and(|top| top.shape == of.shape);
@@ -127,6 +131,7 @@ impl Structures {
         }
         let new = self.create(&solids, of)?;
         let tlas = self.build(&solids, &new, of);
+        let tlas = tlas.inspect_err(|_| self.bottoms.clear())?;
         for (solid, _) in new.iter().filter(|(_, is_first)| *is_first) {
             if let Some(bottom) = self.bottoms.get(&solid.piece) {
                 open.get_or_insert_with(Open::default).ask(&bottom.blas);
@@ -196,7 +201,12 @@ impl Structures {
     }
 
     /// Builds the new bottom levels, and a top level over all.
-    fn build(&self, solids: &[Solid], new: &[(&Solid, bool)], of: Source<'_>) -> wgpu::Tlas {
+    fn build(
+        &self,
+        solids: &[Solid],
+        new: &[(&Solid, bool)],
+        of: Source<'_>,
+    ) -> Result<wgpu::Tlas, Error> {
         let mut tlas = of.device.create_tlas(&wgpu::CreateTlasDescriptor {
             label: Some("scene.tlas"),
             max_instances: solids.len().max(1) as u32,
@@ -213,16 +223,16 @@ impl Structures {
         let together = new.iter().find(|(solid, _)| solid.piece.is_none());
         let together = together.map(|(solid, _)| {
             let corners = of.geometry.together(of.mesh, solid, most);
-            of.device.create_buffer_init(&BufferInitDescriptor {
-                label: Some("scene.blas"),
-                contents: bytemuck::cast_slice(corners.as_flattened()),
-                usage: wgpu::BufferUsages::BLAS_INPUT,
-            })
+            let corners = bytemuck::cast_slice(corners.as_flattened());
+            upload(
+                of.device,
+                "scene.blas",
+                corners,
+                wgpu::BufferUsages::BLAS_INPUT,
+            )
         });
-        let sizes: Vec<Size> = new
-            .iter()
-            .map(|(solid, _)| size_of(solid, of.mesh))
-            .collect();
+        let sizes = new.iter().map(|(solid, _)| size_of(solid, of.mesh));
+        let sizes: Vec<Size> = sizes.collect();
         let [positions, indices] = of.buffers;
         let entries = new.iter().zip(&sizes).filter_map(|((solid, _), size)| {
             let (index_buffer, first) = match (solid.piece, &together) {
@@ -249,8 +259,8 @@ impl Structures {
         };
         let mut encoder = of.device.create_command_encoder(&descriptor);
         encoder.build_acceleration_structures(entries.iter(), [&tlas]);
-        of.queue.submit([encoder.finish()]);
-        tlas
+        let submitted = refused(of.device, || of.queue.submit([encoder.finish()]));
+        submitted.map(|_| tlas).map_err(Error::Structures)
     }
 }
 

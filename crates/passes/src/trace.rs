@@ -125,10 +125,8 @@ pub struct Trace {
     count: Reference,
     /// Buffer of three u32, the workgroups of 64 rays, folded to two dimensions, that `count` comes
     /// to, as `dispatch_arguments.wgsl` makes them; without it the pass counts them once more.
-    #[serde(default)]
     groups: Option<Reference>,
     /// Buffer of one u32 per ray, the primitive that the ray does not see, such as its own.
-    #[serde(default)]
     skip: Option<Reference>,
     /// Which hit is recorded.
     mode: Mode,
@@ -139,7 +137,6 @@ pub struct Trace {
     engine: Chosen<Engine>,
     /// `Light` is your word that all rays go towards the light, without which `LightSpace` is
     /// refused. A ray that does not is recorded as a miss with t = −1.
-    #[serde(default)]
     direction: Option<Direction>,
 }
 

@@ -90,22 +90,21 @@ impl Contents {
         self.versions[id.index()] = self.clock;
     }
 
-    /// Gives a resource the version that the resource `of` has in `other`: it holds the same
+    /// Gives a resource the version that the resource `former` has in `other`: it holds the same
     /// content.
-    pub fn take_over(&mut self, id: ResourceId, other: &Self, of: ResourceId) {
-        self.versions[id.index()] = other.versions[of.index()];
-        let known = other.latest.iter().find(|(known, _)| *known == of);
+    pub fn take_over(&mut self, id: ResourceId, other: &Self, former: ResourceId) {
+        self.versions[id.index()] = other.versions[former.index()];
         let latest = self.latest.iter_mut().find(|(latest, _)| *latest == id);
-        if let (Some((_, latest)), Some((_, known))) = (latest, known) {
-            *latest = *known;
+        let before = other.latest.iter().find(|(latest, _)| *latest == former);
+        if let (Some((_, latest)), Some((_, before))) = (latest, before) {
+            *latest = *before;
         }
-        let known = other.host_copies.iter().find(|((_, copy), _)| *copy == of);
-        let copy = self
-            .host_copies
-            .iter_mut()
-            .find(|((_, copy), _)| *copy == id);
-        if let (Some((_, copied)), Some((_, known))) = (copy, known) {
-            *copied = *known;
+        let mut copies = self.host_copies.iter_mut();
+        let copied = copies.find(|((_, copy), _)| *copy == id);
+        let mut copies_before = other.host_copies.iter();
+        let before = copies_before.find(|((_, copy), _)| *copy == former);
+        if let (Some((_, copied)), Some((_, before))) = (copied, before) {
+            *copied = *before;
         }
     }
 
@@ -272,15 +271,15 @@ impl Contents {
 
     /// Forgets what passes have seen, so that all run again, and what lost frames have written: of
     /// resources with two allocations the latest is that which the last of the others has written.
-    /// `frames` has the number of each frame, the contents before it, in which the same is
-    /// forgotten, and true if the frame is lost.
-    pub fn forget(&mut self, frames: &mut [(u64, &mut Self, bool)]) {
+    /// `frames` has the number of each frame, true if the frame is lost, and the contents before
+    /// it, in which the same is forgotten.
+    pub fn forget(&mut self, frames: &mut [(u64, bool, &mut Self)]) {
         for at in 0..frames.len() {
             let (until, behind) = frames.split_at_mut(at + 1);
-            let (number, before, true) = &until[at] else {
+            let (number, true, before) = &until[at] else {
                 continue;
             };
-            let behind = behind.iter_mut().map(|(_, contents, _)| &mut **contents);
+            let behind = behind.iter_mut().map(|(_, _, contents)| &mut **contents);
             for contents in behind.chain([&mut *self]) {
                 for ((_, written), (_, before)) in contents.latest.iter_mut().zip(&before.latest) {
                     if written.1 == *number {
@@ -290,17 +289,17 @@ impl Contents {
             }
         }
         for at in 0..self.host_copies.len() {
-            let first = frames.first().map(|(_, first, _)| first.host_copies[at].1);
+            let first = frames.first().map(|(_, _, first)| first.host_copies[at].1);
             let first = first.unwrap_or(self.host_copies[at].1);
             let mut right = first.map(|_| (UNKNOWN, 0));
-            for (number, before, is_lost) in &mut *frames {
+            for (number, is_lost, before) in &mut *frames {
                 before.host_copies[at].1 = right;
                 right = right.or((!*is_lost).then_some((UNKNOWN, *number)));
             }
             self.host_copies[at].1 = right;
         }
         self.seen.fill(None);
-        for (_, before, _) in frames {
+        for (_, _, before) in frames {
             before.seen.fill(None);
         }
     }

@@ -117,9 +117,8 @@ impl CpuTurn<'_> {
         self.wait_for(&mapped)?;
         let taken = {
             let failed = |_| ExecuteError::DeviceLost("items could not be copied back".to_owned());
-            let views = places
-                .into_iter()
-                .map(|place| staging.get_mapped_range(place));
+            let places = places.into_iter();
+            let views = places.map(|place| staging.get_mapped_range(place));
             let views: Vec<_> = views.collect::<Result<_, _>>().map_err(failed)?;
             let views: Vec<&[u8]> = views.iter().map(|view| &**view).collect();
             take(&views)

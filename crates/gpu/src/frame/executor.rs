@@ -133,11 +133,7 @@ impl Executor {
         presence.check_queue(queue)?;
         presence.check_provider(provider)?;
         check_backend(device, &plan)?;
-        let mut factory = ResourceFactory {
-            device,
-            queue,
-            provider,
-        };
+        let mut factory = ResourceFactory::new((device, queue), provider);
         let state = State::new(plan, pipelines, &mut factory)?;
         let frames_in_flight =
             FramesInFlight::new(device).map_err(|error| with_table(error, &state.plan))?;
@@ -249,10 +245,9 @@ impl Executor {
         let is_measured = frame.timing || frame.statistics;
         let may_rest = !frame.all && !is_measured && self.knows_changes;
         self.state.decide(frame.all, may_rest, &mut self.decision);
-        let FrameDecision {
-            runs, ping_pong, ..
-        } = &self.decision;
-        self.state.bind(runs, ping_pong, &self.device)?;
+        let decision = &self.decision;
+        self.state
+            .bind(&decision.runs, &decision.ping_pong, &self.device)?;
         let mut frame_in_flight = self.frames_in_flight.begin();
         if let Err(error) = self.prepare(&mut frame_in_flight, frame) {
             self.frames_in_flight.recycle(frame_in_flight);
@@ -317,11 +312,8 @@ impl Executor {
         gives_up: Option<&dyn Fn() -> bool>,
     ) -> Result<(), ExecuteError> {
         let state = &mut self.state;
-        let FrameDecision {
-            runs,
-            rests,
-            ping_pong,
-        } = &self.decision;
+        let decision = &self.decision;
+        let ping_pong = &decision.ping_pong;
         let number = frame_in_flight.number;
         frame_in_flight.before.clone_from(&state.contents);
         if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
@@ -342,26 +334,22 @@ impl Executor {
             frame: frame_in_flight.index,
             has_submitted: false,
         });
-        let encoded = state.encode(&self.decision, frame_in_flight, encoder, cpu.as_mut());
+        let encoded = state.encode(decision, frame_in_flight, encoder, cpu.as_mut());
         if encoded.is_ok() || cpu.is_some_and(|cpu| cpu.has_submitted) {
             frame_in_flight.grown.append(&mut state.grown);
         }
         encoded?;
-        if let Some(timer) = frame_in_flight
-            .timer
-            .as_mut()
-            .filter(|_| frame_in_flight.is_timed)
-        {
+        let is_timed = frame_in_flight.is_timed;
+        if let Some(timer) = frame_in_flight.timer.as_mut().filter(|_| is_timed) {
             timer.resolve(encoder);
         }
         if let Some(counters) = &frame_in_flight.counters {
             counters.resolve(encoder);
         }
-        frame_in_flight
-            .fetches
-            .iter()
-            .for_each(|fetch| fetch.copy(encoder));
-        if !rests {
+        for fetch in &frame_in_flight.fetches {
+            fetch.copy(encoder);
+        }
+        if !decision.rests {
             let (mut is_counted, change) = (true, state.idle.changes());
             for readback in &mut state.growth_readbacks {
                 let (plan, memory) = (&state.plan, &state.memory);
@@ -372,8 +360,8 @@ impl Executor {
         }
         let (plan, passes) = (&state.plan, &state.passes);
         let before = (number, &frame_in_flight.before, ping_pong);
-        if !rests {
-            state.contents.ran(plan, passes, runs, before);
+        if !decision.rests {
+            state.contents.ran(plan, passes, &decision.runs, before);
         }
         let memory = &state.memory;
         let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
@@ -429,31 +417,19 @@ impl Executor {
         }
         if setback.is_lost || setback.forgets {
             state.idle.note_change();
-            for lost in frames
-                .under_way
-                .iter_mut()
-                .rev()
-                .filter(|frame| frame.is_lost())
-            {
+            let from_last = frames.under_way.iter_mut().rev();
+            for lost in from_last.filter(|frame| frame.is_lost()) {
                 self.host_changes.tell_again(lost.changed);
                 state.grown.splice(..0, lost.grown.drain(..));
-            }
-            let first = frames
-                .under_way
-                .iter()
-                .find(|it| Some(it.number) == setback.rewind);
-            if let Some(first) = first {
-                state.contents.rewind(&state.plan, &first.before);
+                if Some(lost.number) == setback.rewind {
+                    state.contents.rewind(&state.plan, &lost.before);
+                }
             }
             if setback.forgets {
-                let followed = frames
-                    .under_way
-                    .iter_mut()
-                    .filter(|frame| frame.is_followed);
-                let followed = followed.map(|frame| {
-                    let is_lost = frame.is_lost();
-                    (frame.number, &mut frame.before, is_lost)
-                });
+                let under_way = frames.under_way.iter_mut();
+                let followed = under_way.filter(|frame| frame.is_followed);
+                let followed =
+                    followed.map(|frame| (frame.number, frame.is_lost(), &mut frame.before));
                 state.contents.forget(&mut followed.collect::<Vec<_>>());
                 self.host_changes.note_new_memory();
             }
@@ -710,11 +686,7 @@ impl Executor {
         if built.is_empty() {
             return Ok(());
         }
-        let mut factory = ResourceFactory {
-            device: &self.device,
-            queue: &self.queue,
-            provider,
-        };
+        let mut factory = ResourceFactory::new((&self.device, &self.queue), provider);
         let submitted = factory.submit_built();
         if let Err(why) = &submitted {
             for &id in built {
@@ -742,11 +714,7 @@ impl Executor {
                 continue;
             }
             let before = state.memory.host(id).cloned();
-            let mut factory = ResourceFactory {
-                device: &self.device,
-                queue: &self.queue,
-                provider: &mut *provider,
-            };
+            let mut factory = ResourceFactory::new((&self.device, &self.queue), provider);
             built.push(id);
             state.memory.refresh(id, &state.plan, None, &mut factory)?;
             state.touch(id);
@@ -782,10 +750,8 @@ impl Executor {
             _ if target.part.layers.len() == 1 => wgpu::TextureViewDimension::D2,
             _ => wgpu::TextureViewDimension::D2Array,
         };
-        self.state
-            .memory
-            .view(target, dimension, &self.ping_pong)
-            .ok()
+        let view = self.state.memory.view(target, dimension, &self.ping_pong);
+        view.ok()
     }
 
     /// Returns the buffer of the output or capture `name` (see [`Executor`]) with the content of
@@ -794,11 +760,8 @@ impl Executor {
     /// not set. Fetch it anew when [`output_view`](Self::output_view) says so, and only read it.
     pub fn output_buffer(&self, name: &str) -> Option<wgpu::Buffer> {
         let target = self.plan().readable_target(name)?;
-        self.state
-            .memory
-            .buffer(target.id, &self.ping_pong)
-            .ok()
-            .cloned()
+        let buffer = self.state.memory.buffer(target.id, &self.ping_pong);
+        buffer.ok().cloned()
     }
 
     /// Changes the viewport to a width and height in pixels and plans the graph again. Textures
@@ -902,16 +865,9 @@ impl Executor {
         self.presence.check()?;
         self.presence.check_provider(provider)?;
         check_backend(&self.device, &plan)?;
-        let mut factory = ResourceFactory {
-            device: &self.device,
-            queue: &self.queue,
-            provider,
-        };
-        let memory = Memory::new(
-            &plan,
-            Some((&self.state.plan, &self.state.memory)),
-            &mut factory,
-        );
+        let mut factory = ResourceFactory::new((&self.device, &self.queue), provider);
+        let before = (&self.state.plan, &self.state.memory);
+        let memory = Memory::new(&plan, Some(before), &mut factory);
         let memory = memory.map_err(|error| with_table(error, &plan))?;
         let reused = Reused::new(&self.state, &plan, &memory);
         let made = reused.passes(&self.pipelines, &self.device);
@@ -1032,12 +988,8 @@ impl Executor {
         provider: &mut dyn Provider,
     ) -> Result<Option<ReplanReport>, ExecuteError> {
         self.presence.check()?;
-        if !self
-            .state
-            .growth_readbacks
-            .iter()
-            .any(GrowthReadback::is_asked)
-        {
+        let mut readbacks = self.state.growth_readbacks.iter();
+        if !readbacks.any(GrowthReadback::is_asked) {
             return Ok(None);
         }
         poll(&self.device, wgpu::PollType::Poll)?;

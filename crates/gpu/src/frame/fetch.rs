@@ -1,16 +1,16 @@
 //! Reads outputs back to the host: requested for a frame, copied after its passes, and mapped when
 //! the host submits it.
 
+use super::read_buffer::ReadBuffer;
 use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
+    error::ExecuteError,
     memory::{
         allocation::extent,
         memory::{Memory, bytes as byte_range},
         physical::PingPong,
     },
     readback::{Content, Readback},
-    signal::{Progress, Signal},
+    signal::Progress,
 };
 use skiagraph_graph::{Plan, Resource, ResourceKind, SubresourceRange, Target, Texture};
 use std::{ops::Range, sync::Arc};
@@ -118,25 +118,17 @@ enum Source {
 pub(super) struct Fetch {
     readable: Arc<Readable>,
     source: Source,
-    staging: Staging,
-}
-
-/// A buffer that the host can map, and the signal that it is mapped.
-struct Staging {
-    buffer: wgpu::Buffer,
-    mapped: Signal,
+    staging: ReadBuffer,
 }
 
 /// Staging buffers that wait for their next use.
 #[derive(Default)]
-pub(super) struct StagingPool(Vec<Staging>);
+pub(super) struct StagingPool(Vec<ReadBuffer>);
 
 impl StagingPool {
-    fn take(&mut self, size: u64) -> Option<Staging> {
-        let spare = self
-            .0
-            .iter()
-            .position(|spare| spare.buffer.size() == size)?;
+    fn take(&mut self, size: u64) -> Option<ReadBuffer> {
+        let mut spares = self.0.iter();
+        let spare = spares.position(|spare| spare.buffer.size() == size)?;
         Some(self.0.swap_remove(spare))
     }
 
@@ -167,14 +159,9 @@ impl Fetch {
             Source::Texture(_) => readable.mips.iter().map(MipCopy::bytes).sum(),
             Source::Buffer(_, bytes) => copied(bytes).end - copied(bytes).start,
         };
-        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        let make = || buffer::make(device, "readback", size, usage);
         let staging = match pool.take(size) {
             Some(spare) => spare,
-            None => Staging {
-                buffer: scoped(device, name, make)?,
-                mapped: Signal::default(),
-            },
+            None => ReadBuffer::new(device, name, "readback", size)?,
         };
         Ok(Self {
             readable: readable.clone(),
@@ -185,7 +172,7 @@ impl Fetch {
 
     /// Encodes the copy into the staging buffer, which is mapped when the encoder is submitted.
     pub fn copy(&self, encoder: &mut wgpu::CommandEncoder) {
-        let Staging { buffer, mapped } = &self.staging;
+        let buffer = &self.staging.buffer;
         match &self.source {
             Source::Texture(texture) => {
                 for copy in &self.readable.mips {
@@ -201,12 +188,12 @@ impl Fetch {
                 encoder.copy_buffer_to_buffer(source, start, buffer, 0, end - start);
             }
         }
-        mapped.when_mapped(buffer, wgpu::MapMode::Read, encoder);
+        self.staging.map(encoder);
     }
 
     /// True until the mapping of the staging buffer is known to be done or refused.
     pub fn is_being_mapped(&self) -> bool {
-        self.staging.mapped.progress() == Progress::UnderWay
+        self.staging.is_being_mapped()
     }
 
     /// Returns the content of a finished frame's output or capture.
@@ -219,20 +206,18 @@ impl Fetch {
         let failed = || ExecuteError::Readback {
             name: readable.name.clone(),
         };
-        if staging.mapped.progress() == Progress::UnderWay {
+        if staging.is_being_mapped() {
             return Err(failed());
         }
-        let mapped = staging.buffer.get_mapped_range(..).map_err(|_| failed())?;
-        let content = match source {
-            Source::Texture(texture) => unpadded(texture.format(), &readable.mips, &mapped),
+        let content = staging.take(|mapped| match source {
+            Source::Texture(texture) => unpadded(texture.format(), &readable.mips, mapped),
             Source::Buffer(_, asked) => {
                 let start = (asked.start - copied(&asked).start) as usize;
                 let length = (asked.end - asked.start) as usize;
                 Content::Buffer(mapped[start..][..length].to_vec())
             }
-        };
-        drop(mapped);
-        staging.buffer.unmap();
+        });
+        let content = content.ok_or_else(failed)?;
         pool.0.push(staging);
         Ok(Readback {
             name: readable.name.clone(),
@@ -243,9 +228,8 @@ impl Fetch {
     /// Returns the staging buffer of a frame that never ran to the pool. One that is mapped, as
     /// those of refused commands are, is dropped.
     pub fn give_up(self, pool: &mut StagingPool) {
-        let Staging { buffer, mapped } = &self.staging;
-        let is_unmapped = buffer.get_mapped_range(..).is_err();
-        if mapped.progress() == Progress::Dropped && is_unmapped {
+        let is_unmapped = self.staging.buffer.get_mapped_range(..).is_err();
+        if self.staging.progress() == Progress::Dropped && is_unmapped {
             pool.0.push(self.staging);
         }
     }

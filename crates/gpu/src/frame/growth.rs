@@ -25,11 +25,8 @@ impl Describe for Unchanged {
 
 impl Provider for Unchanged {
     fn version(&self, name: &str) -> u64 {
-        let known = self
-            .versions
-            .get(name)
-            .and_then(|known| known.as_ref().ok());
-        known.copied().unwrap_or_default()
+        let version = self.versions.get(name).cloned();
+        version.and_then(Result::ok).unwrap_or_default()
     }
 
     fn missing(&self, name: &str) -> Option<String> {

@@ -2,14 +2,14 @@
 //! is submitted, read when they have arrived. Each resource has at most one counter in flight; a
 //! need that is missed meanwhile shows in the next one, or has passed.
 
+use super::read_buffer::ReadBuffer;
 use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
+    error::ExecuteError,
     memory::{
         memory::{Memory, bytes},
         physical::PingPong,
     },
-    signal::{Progress, Signal},
+    signal::Progress,
 };
 use skiagraph_graph::{Growth, Plan, ResourceId, ResourceKind};
 
@@ -23,8 +23,7 @@ pub(super) struct GrowthReadback {
     /// Number of items or layers that the plan gives it.
     count: u64,
     growth: Growth,
-    staging: wgpu::Buffer,
-    mapped: Signal,
+    staging: ReadBuffer,
     /// True while a counter is in flight.
     is_asked: bool,
     /// Number of the last change before the frame of the last counter; `None` before the first one
@@ -45,16 +44,12 @@ impl GrowthReadback {
             if count >= growth.max {
                 return None;
             }
-            let staging = scoped(device, &resource.name, || {
-                let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-                buffer::make(device, "counter", COUNTER, usage)
-            });
+            let staging = ReadBuffer::new(device, &resource.name, "counter", COUNTER);
             Some(staging.map(|staging| Self {
                 name: resource.name.clone(),
                 count,
                 growth,
                 staging,
-                mapped: Signal::default(),
                 is_asked: false,
                 counted: None,
             }))
@@ -66,12 +61,9 @@ impl GrowthReadback {
     /// its plan in every frame would never see one.
     pub fn take_over(growth_readbacks: &mut [Self], before: Vec<Self>) {
         for old in before {
-            if let Some(readback) = growth_readbacks
-                .iter_mut()
-                .find(|readback| readback.name == old.name)
-            {
+            let mut readbacks = growth_readbacks.iter_mut();
+            if let Some(readback) = readbacks.find(|readback| readback.name == old.name) {
                 readback.staging = old.staging;
-                readback.mapped = old.mapped;
                 readback.is_asked = old.is_asked;
             }
         }
@@ -96,9 +88,8 @@ impl GrowthReadback {
             return false;
         };
         let part = bytes(plan.resource(counter.id), &counter.part, buffer.size());
-        encoder.copy_buffer_to_buffer(buffer, part.start, &self.staging, 0, COUNTER);
-        self.mapped
-            .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
+        encoder.copy_buffer_to_buffer(buffer, part.start, &self.staging.buffer, 0, COUNTER);
+        self.staging.map(encoder);
         self.is_asked = true;
         self.counted = Some(change);
         true
@@ -112,7 +103,7 @@ impl GrowthReadback {
     /// Returns the number of items or layers to grow to; `None` if the counter has not arrived or
     /// everything fits.
     pub fn wanted(&mut self) -> Option<u64> {
-        let progress = self.mapped.progress();
+        let progress = self.staging.progress();
         if !self.is_asked || progress == Progress::UnderWay {
             return None;
         }
@@ -121,11 +112,8 @@ impl GrowthReadback {
         if progress != Progress::Done {
             return None;
         }
-        let mapped = self.staging.get_mapped_range(..).ok()?;
-        let word: Option<[u8; 4]> = mapped.get(..4).and_then(|word| word.try_into().ok());
-        drop(mapped);
-        self.staging.unmap();
-        let needed = u64::from(u32::from_ne_bytes(word?));
+        let word = self.staging.take(|bytes| bytes.first_chunk().copied())??;
+        let needed = u64::from(u32::from_ne_bytes(word));
         // A quarter more, so that a moving camera does not make it anew in every frame.
         let wanted = needed.saturating_add(needed / 4).min(self.growth.max);
         (needed > self.count).then_some(wanted)

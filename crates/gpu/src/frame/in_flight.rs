@@ -383,16 +383,11 @@ impl FramesInFlight {
         if timing.is_err() {
             frame_in_flight.timer = None;
         }
-        let fetched: Result<Vec<_>, _> = frame_in_flight
-            .fetches
-            .drain(..)
-            .map(|fetch| fetch.take(&mut self.staging))
-            .collect();
-        let counted = frame_in_flight
-            .counters
-            .as_mut()
-            .map(Counters::take)
-            .transpose();
+        let fetches = frame_in_flight.fetches.drain(..);
+        let fetched = fetches.map(|fetch| fetch.take(&mut self.staging));
+        let fetched: Result<Vec<_>, _> = fetched.collect();
+        let counters = frame_in_flight.counters.as_mut();
+        let counted = counters.map(Counters::take).transpose();
         let report = fetched.and_then(|readbacks| {
             Ok(FrameReport {
                 index: frame_in_flight.index,
@@ -413,14 +408,11 @@ impl FramesInFlight {
     /// Gives up the GPU times of the oldest frame with requests, and waits for no mapping, if the
     /// GPU is done: they did not arrive.
     pub fn give_up(&mut self) {
-        if let Some(frame_in_flight) = self
-            .under_way
-            .iter_mut()
-            .find(|frame_in_flight| frame_in_flight.is_asked())
-            && frame_in_flight.fate != Fate::Pending
-        {
-            frame_in_flight.timer = None;
-            frame_in_flight.is_given_up = true;
+        let mut under_way = self.under_way.iter_mut();
+        let oldest = under_way.find(|frame| frame.is_asked());
+        if let Some(frame) = oldest.filter(|frame| frame.fate != Fate::Pending) {
+            frame.timer = None;
+            frame.is_given_up = true;
         }
     }
 }

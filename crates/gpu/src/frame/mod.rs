@@ -14,6 +14,7 @@ mod in_flight;
 mod pass;
 mod poison;
 mod prepare;
+mod read_buffer;
 mod replan;
 mod report;
 mod stamp;

@@ -121,10 +121,8 @@ impl GpuPass {
                 .collect::<Result<Vec<_>, _>>()
         })
         .map_err(refused)??;
-        let states = self.ping_pong.iter();
-        let state: Vec<Versions> = states
-            .map(|id| ping_pong.get(id).copied().unwrap_or_default())
-            .collect();
+        let versions = |id: &ResourceId| ping_pong.get(id).copied().unwrap_or_default();
+        let state: Vec<Versions> = self.ping_pong.iter().map(versions).collect();
         if !self.tried.contains(&state) {
             scoped(device, &pass.name, || {
                 let mut encoder =

@@ -100,10 +100,8 @@ impl<'a> Reused<'a> {
     /// Returns the former pass for the pass at position `at`; `None` if it is new.
     fn before(&self, at: usize) -> Option<(&'a LinkedPass, &'a GpuPass)> {
         let position = self.positions[at]?;
-        let linked = self
-            .old
-            .plan
-            .pass(self.old.plan.schedule().passes[position]);
+        let plan = &self.old.plan;
+        let linked = plan.pass(plan.schedule().passes[position]);
         Some((linked, &self.old.passes[position]))
     }
 
@@ -176,12 +174,9 @@ impl<'a> Reused<'a> {
     fn with_its_memory(&self, at: usize) -> Option<[&LinkedPass; 2]> {
         let pass = self.plan.pass(self.plan.schedule().passes[at]);
         let (old, _) = self.before(at)?;
+        let mut accesses = pass.accesses.iter().zip(&old.accesses);
         let is_there = pass.accesses.len() == old.accesses.len()
-            && pass
-                .accesses
-                .iter()
-                .zip(&old.accesses)
-                .all(|(new, old)| self.same.get(&new.resource) == Some(&old.resource));
+            && accesses.all(|(new, old)| self.same.get(&new.resource) == Some(&old.resource));
         is_there.then_some([pass, old])
     }
 
@@ -237,10 +232,8 @@ impl<'a> Reused<'a> {
     /// Returns the versions of the inputs that the pass at the position `former` of the former plan
     /// saw when it ran last; `None` if they are not known.
     fn seen(&self, inputs: &[ResourceId], former: usize, old: &Contents) -> Option<Vec<u64>> {
-        let seen = self.old.passes[former]
-            .inputs
-            .iter()
-            .zip(old.seen[former].as_ref()?);
+        let former_inputs = self.old.passes[former].inputs.iter();
+        let seen = former_inputs.zip(old.seen[former].as_ref()?);
         let seen: BTreeMap<ResourceId, u64> = seen.map(|(id, seen)| (*id, *seen)).collect();
         let of = |id: &ResourceId| seen.get(self.same.get(id)?).copied();
         let versions: Vec<u64> = inputs.iter().map(of).collect::<Option<_>>()?;

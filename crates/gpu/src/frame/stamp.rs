@@ -1,10 +1,10 @@
 //! Numbers that frames leave on the GPU. They tell which frames ran, and in which order: wgpu calls
 //! the callbacks of commands that it has refused, too.
 
+use super::read_buffer::ReadBuffer;
 use crate::{
     buffer,
     error::{ExecuteError, scoped},
-    signal::{Progress, Signal},
 };
 
 /// Bytes of a number.
@@ -73,19 +73,11 @@ pub(super) enum Fate {
 }
 
 /// Readback of a frame's number, and of that of the frame that ran before it.
-pub(super) struct Stamp {
-    staging: wgpu::Buffer,
-    mapped: Signal,
-}
+pub(super) struct Stamp(ReadBuffer);
 
 impl Stamp {
     pub fn new(device: &wgpu::Device) -> Result<Self, ExecuteError> {
-        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        let make = || buffer::make(device, NAME, 2 * BYTES, usage);
-        Ok(Self {
-            staging: scoped(device, NAME, make)?,
-            mapped: Signal::default(),
-        })
+        ReadBuffer::new(device, NAME, NAME, 2 * BYTES).map(Self)
     }
 
     /// Encodes the copies, behind all else of the frame. Later frames follow it if `is_followed` is
@@ -99,34 +91,29 @@ impl Stamp {
     ) {
         let Numbers { last, source, .. } = numbers;
         let at = (number - numbers.first) * BYTES;
-        encoder.copy_buffer_to_buffer(last, 0, &self.staging, 0, BYTES);
-        encoder.copy_buffer_to_buffer(source, at, &self.staging, BYTES, BYTES);
+        encoder.copy_buffer_to_buffer(last, 0, &self.0.buffer, 0, BYTES);
+        encoder.copy_buffer_to_buffer(source, at, &self.0.buffer, BYTES, BYTES);
         if is_followed {
             encoder.copy_buffer_to_buffer(source, at, last, 0, BYTES);
         }
-        self.mapped
-            .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
+        self.0.map(encoder);
     }
 
     /// Returns what is known of the frame with this number. After another answer than `Pending` the
     /// stamp can be used for another frame.
     pub fn fate(&self, number: u64) -> Fate {
-        if self.mapped.progress() == Progress::UnderWay {
+        if self.0.is_being_mapped() {
             return Fate::Pending;
         }
         // wgpu-core drops callbacks, too, where it panics in a wait (see `poll`): then the buffer
         // is mapped all the same.
-        let Ok(mapped) = self.staging.get_mapped_range(..) else {
-            return Fate::Lost;
-        };
-        let word = |bytes: &[u8]| bytes.first_chunk().map(|word| u64::from_ne_bytes(*word));
-        let (before, behind) = mapped.split_at(BYTES as usize);
-        let (before, own) = (word(before), word(behind));
-        drop(mapped);
-        self.staging.unmap();
+        let numbers = self.0.take(|bytes| {
+            let numbers = bytes.as_chunks().0.first_chunk();
+            numbers.map(|[before, own]| [*before, *own].map(u64::from_ne_bytes))
+        });
         // In a buffer that commands did not write, an earlier number stands.
-        match before {
-            Some(before) if own == Some(number) => Fate::RanAfter(before),
+        match numbers.flatten() {
+            Some([before, own]) if own == number => Fate::RanAfter(before),
             _ => Fate::Lost,
         }
     }

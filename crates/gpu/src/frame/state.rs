@@ -163,45 +163,37 @@ impl State {
     /// Binds every pass whose imports and provided resources exist, for a frame in which all passes
     /// run.
     pub fn bind_what_can_be(&mut self, device: &wgpu::Device) -> Result<(), ExecuteError> {
-        let ready: Vec<bool> = (0..self.passes.len())
-            .map(|at| missing(&self.plan, &self.memory, at).is_none())
-            .collect();
+        let is_ready = |at| missing(&self.plan, &self.memory, at).is_none();
+        let ready: Vec<bool> = (0..self.passes.len()).map(is_ready).collect();
         self.bind(&ready, &self.ping_pong(true), device)
     }
 
     /// Notes that a frame that began with the contents `before` has failed when some of its passes
     /// had run: all of them run again.
-    pub fn forget_frame(&mut self, FrameDecision { runs, .. }: &FrameDecision, before: &Contents) {
+    pub fn forget_frame(&mut self, decision: &FrameDecision, before: &Contents) {
         self.idle.note_change();
         self.contents.rewind(&self.plan, before);
-        for (at, _) in runs.iter().enumerate().filter(|(_, runs)| **runs) {
-            self.contents.seen[at] = None;
+        for (seen, runs) in self.contents.seen.iter_mut().zip(&decision.runs) {
+            seen.take_if(|_| *runs);
         }
     }
 
     /// Decides which passes run in the next frame, and which allocations they use. None runs if
     /// `may_rest` is set and nothing has changed since a frame that is done.
-    pub fn decide(
-        &mut self,
-        all: bool,
-        may_rest: bool,
-        FrameDecision {
-            runs,
-            rests,
-            ping_pong,
-        }: &mut FrameDecision,
-    ) {
+    pub fn decide(&mut self, all: bool, may_rest: bool, decision: &mut FrameDecision) {
         // Its content is another one in every frame.
         if let Some(uniform) = self.uniform {
             self.contents.touch(uniform);
         }
-        *rests = may_rest && self.idle.is_settled();
-        if *rests {
+        decision.rests = may_rest && self.idle.is_settled();
+        let runs = &mut decision.runs;
+        if decision.rests {
             runs.clear();
             runs.resize(self.passes.len(), false);
         } else {
             self.contents.running(&self.plan, &self.passes, all, runs);
         }
+        let ping_pong = &mut decision.ping_pong;
         self.contents.ping_pong(&self.plan, runs, ping_pong);
     }
 
@@ -223,10 +215,8 @@ impl State {
         encoder: &mut wgpu::CommandEncoder,
         mut cpu: Option<&mut CpuTurn<'_>>,
     ) -> Result<(), ExecuteError> {
-        let timer = frame_in_flight
-            .timer
-            .as_ref()
-            .filter(|_| frame_in_flight.is_timed);
+        let timer = frame_in_flight.timer.as_ref();
+        let timer = timer.filter(|_| frame_in_flight.is_timed);
         let counters = &mut frame_in_flight.counters;
         let is_measured = timer.is_some() || counters.is_some();
         let may_share = !is_measured && self.poison.is_none();
@@ -274,18 +264,17 @@ impl State {
     fn clear_ahead(
         &self,
         at: usize,
-        FrameDecision {
-            runs, ping_pong, ..
-        }: &FrameDecision,
+        decision: &FrameDecision,
         encoder: &mut wgpu::CommandEncoder,
     ) -> usize {
         let mut until = at;
-        for (pass, runs) in self.passes[at..].iter().zip(&runs[at..]) {
+        for (pass, runs) in self.passes[at..].iter().zip(&decision.runs[at..]) {
             if *runs {
                 if self.clears[until].is_none_or(|first| first > at) {
                     break;
                 }
-                clear_buffers(pass.steps(ping_pong).unwrap_or_default(), encoder);
+                let steps = pass.steps(&decision.ping_pong);
+                clear_buffers(steps.unwrap_or_default(), encoder);
             }
             until += 1;
         }

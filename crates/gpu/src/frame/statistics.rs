@@ -1,9 +1,9 @@
 //! Pipeline statistics of frames: how often the shaders of each pass ran.
 
+use super::read_buffer::ReadBuffer;
 use crate::{
     buffer,
     error::{ExecuteError, scoped},
-    signal::{Progress, Signal},
 };
 use skiagraph_graph::{Plan, step::Step};
 use std::{cell::Cell, mem::size_of, ops::Range, sync::Arc};
@@ -42,8 +42,7 @@ const BYTES: u64 = 4 * size_of::<u64>() as u64;
 pub(crate) struct Counters {
     set: wgpu::QuerySet,
     resolved: wgpu::Buffer,
-    staging: wgpu::Buffer,
-    mapped: Signal,
+    staging: ReadBuffer,
     count: u32,
     used: Cell<u32>,
     passes: Vec<(Arc<str>, Range<u32>)>,
@@ -61,16 +60,17 @@ impl Counters {
             return Ok(None);
         }
         let name = "pipeline statistics";
-        let buffer = |usage| buffer::make(device, name, u64::from(count) * BYTES, usage);
+        let bytes = u64::from(count) * BYTES;
+        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        let staging = ReadBuffer::new(device, name, name, bytes)?;
         let make = || Self {
             set: device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some(name),
                 ty: wgpu::QueryType::PipelineStatistics(COUNTED),
                 count,
             }),
-            resolved: buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC),
-            staging: buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
-            mapped: Signal::default(),
+            resolved: buffer::make(device, name, bytes, usage),
+            staging,
             count,
             used: Cell::new(0),
             passes: Vec::new(),
@@ -103,15 +103,14 @@ impl Counters {
         if used > 0 {
             encoder.resolve_query_set(&self.set, 0..used, &self.resolved, 0);
             let bytes = u64::from(used) * BYTES;
-            encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.staging, 0, bytes);
+            encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.staging.buffer, 0, bytes);
         }
-        self.mapped
-            .when_mapped(&self.staging, wgpu::MapMode::Read, encoder);
+        self.staging.map(encoder);
     }
 
     /// True until the mapping of the counts is known to be done or refused.
     pub fn is_being_mapped(&self) -> bool {
-        self.mapped.progress() == Progress::UnderWay
+        self.staging.is_being_mapped()
     }
 
     /// Returns the counts of a finished frame, in the order of its passes.
@@ -122,11 +121,13 @@ impl Counters {
         if self.is_being_mapped() {
             return Err(failed());
         }
-        let bytes = self.staging.get_mapped_range(..).map_err(|_| failed())?;
-        let words = bytes.chunks_exact(size_of::<u64>());
-        let words: Vec<u64> = words
-            .filter_map(|word| Some(u64::from_ne_bytes(word.try_into().ok()?)))
-            .collect();
+        let words = self.staging.take(|bytes| {
+            let words = bytes.as_chunks().0.iter();
+            words
+                .map(|word| u64::from_ne_bytes(*word))
+                .collect::<Vec<_>>()
+        });
+        let words = words.ok_or_else(failed)?;
         let sum = |queries: &Range<u32>, at: usize| -> u64 {
             let queries = queries.clone();
             queries.map(|query| words[4 * query as usize + at]).sum()
@@ -138,9 +139,6 @@ impl Counters {
             fragments: sum(queries, 2),
             threads: sum(queries, 3),
         });
-        let passes = passes.collect();
-        drop(bytes);
-        self.staging.unmap();
-        Ok(passes)
+        Ok(passes.collect())
     }
 }

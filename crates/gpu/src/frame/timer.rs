@@ -21,9 +21,8 @@ pub(crate) struct Timer {
 
 impl Timer {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, ExecuteError> {
-        let inside = device
-            .features()
-            .contains(wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES);
+        let inside = wgpu::Features::TIMESTAMP_QUERY_INSIDE_PASSES;
+        let inside = device.features().contains(inside);
         let spare = inside.then(|| {
             device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("spare timestamp"),
@@ -67,9 +66,8 @@ impl Timer {
         if self.is_ended {
             return Ok(false);
         }
-        self.profiler
-            .end_frame()
-            .map_err(|error| ExecuteError::Timing(error.to_string()))?;
+        let ended = self.profiler.end_frame();
+        ended.map_err(|error| ExecuteError::Timing(error.to_string()))?;
         self.is_ended = true;
         Ok(true)
     }

@@ -34,10 +34,8 @@ impl GpuAllocation {
         let id = aliases[0];
         let resource = plan.resource(id);
         let lifetime = &plan.schedule().lifetimes[&id];
-        let names: Vec<&str> = aliases
-            .iter()
-            .map(|id| plan.resource(*id).name.as_str())
-            .collect();
+        let aliases = aliases.iter();
+        let names: Vec<&str> = aliases.map(|id| plan.resource(*id).name.as_str()).collect();
         let label = names.join(" / ");
         let usage = (lifetime.textures, lifetime.buffers);
         let count = plan.versions(id);
@@ -55,9 +53,8 @@ impl GpuAllocation {
         let (versions, grown_from) = match reused {
             Some((_, allocation)) => (allocation.versions.clone(), None),
             None => {
-                let versions = (0..count)
-                    .map(|_| scoped(device, &label, make)?)
-                    .collect::<Result<Vec<_>, ExecuteError>>()?;
+                let versions = (0..count).map(|_| scoped(device, &label, make)?);
+                let versions = versions.collect::<Result<Vec<_>, ExecuteError>>()?;
                 for version in &versions {
                     fill(version, resource, queue);
                 }

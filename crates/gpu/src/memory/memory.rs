@@ -44,7 +44,18 @@ pub(crate) struct ResourceFactory<'a> {
     pub provider: &'a mut dyn Provider,
 }
 
-impl ResourceFactory<'_> {
+impl<'a> ResourceFactory<'a> {
+    pub fn new(
+        (device, queue): (&'a wgpu::Device, &'a wgpu::Queue),
+        provider: &'a mut dyn Provider,
+    ) -> Self {
+        Self {
+            device,
+            queue,
+            provider,
+        }
+    }
+
     /// Has the provider submit what it has recorded.
     pub fn submit_built(&mut self) -> Result<(), ExecuteError> {
         let name = "what the provider copies";
@@ -72,11 +83,8 @@ impl Memory {
         };
         let mut known = Known::new();
         if let Some((plan, old)) = old {
-            known.extend(
-                old.allocations
-                    .iter()
-                    .map(|made| (made.label.as_str(), (plan, made))),
-            );
+            let allocations = old.allocations.iter();
+            known.extend(allocations.map(|made| (made.label.as_str(), (plan, made))));
         }
         for allocation in &plan.schedule().aliases.list {
             let aliases = &allocation.aliases;
@@ -191,10 +199,8 @@ impl Memory {
             Some(base) => (*base, ping_pong.get(base)?.previous),
             None => (id, ping_pong.get(&id).map_or(0, |version| version.current)),
         };
-        self.allocations
-            .get(*self.of.get(&base)?)?
-            .versions
-            .get(version)
+        let allocation = self.allocations.get(*self.of.get(&base)?)?;
+        allocation.versions.get(version)
     }
 
     pub fn texture(
@@ -310,16 +316,17 @@ impl Memory {
             self.provided.insert(id, Err(why));
             return Ok(());
         }
-        let built = scoped(device, &resource.name, || match resource.kind {
-            ResourceKind::AccelerationStructure => provider
-                .build_acceleration_structure(&resource.name, device, factory.queue)
-                .map(Physical::AccelerationStructure),
-            ResourceKind::CpuWork => provider
-                .build_cpu_work(&resource.name)
-                .map(|work| Physical::CpuWork(Work(work))),
-            _ => provider
-                .build(&resource.name, device, factory.queue)
-                .map(Physical::Buffer),
+        let (name, queue) = (&resource.name, factory.queue);
+        let built = scoped(device, name, || match resource.kind {
+            ResourceKind::AccelerationStructure => {
+                let built = provider.build_acceleration_structure(name, device, queue);
+                built.map(Physical::AccelerationStructure)
+            }
+            ResourceKind::CpuWork => {
+                let work = provider.build_cpu_work(name);
+                work.map(|work| Physical::CpuWork(Work(work)))
+            }
+            _ => provider.build(name, device, queue).map(Physical::Buffer),
         })?;
         let refused = |why: ProviderError| ExecuteError::Provider {
             name: resource.name.clone(),

@@ -186,11 +186,8 @@ impl Store {
         unused.truncate(surplus);
         self.pipelines
             .retain(|_, (_, used)| unused.binary_search(used).is_err());
-        let shaders: Vec<_> = self
-            .pipelines
-            .keys()
-            .map(|key| key.shader.clone())
-            .collect();
+        let keys = self.pipelines.keys();
+        let shaders: Vec<_> = keys.map(|key| key.shader.clone()).collect();
         self.modules.retain(|shader, _| shaders.contains(shader));
     }
 }

@@ -80,11 +80,8 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
             frames.push((start.elapsed(), gpu));
         }
         // The first frame compiles shaders on some drivers.
-        let shortest = frames[1..]
-            .iter()
-            .map(|(wall, _)| *wall)
-            .min()
-            .unwrap_or_default();
+        let shortest = frames[1..].iter();
+        let shortest = shortest.map(|(wall, _)| *wall).min().unwrap_or_default();
         let is_last = rounds >= 1 << 30;
         let trust = judge(&frames[1..]);
         if trust == Trust::Trusted && (shortest >= LONG || is_last) {

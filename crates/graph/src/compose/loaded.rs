@@ -90,10 +90,8 @@ impl Loaded {
             let place = root.file.span(end.saturating_sub(1)..end);
             reports.report(ComposeError::NoOutputs(place));
         }
-        let documents: Vec<&Document> = [&root]
-            .into_iter()
-            .chain(included.iter().map(|d| &**d))
-            .collect();
+        let documents = [&root].into_iter();
+        let documents: Vec<&Document> = documents.chain(included.iter().map(|d| &**d)).collect();
         let shaders = store::load(&root, ShaderFiles::new(sources), &mut reports);
         let pictures = load_pictures(&documents, sources, &mut reports);
         let (required, asked_for) = (required(&documents), asked_for(&documents));

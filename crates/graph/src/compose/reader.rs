@@ -205,9 +205,8 @@ impl<'a> Reader<'a> {
         }
         if !self.read.contains_key(&path) {
             // Without its params nothing of the document has a size.
-            let document = self
-                .document(file, Some(span))
-                .and_then(|document| document.invalid_params.map_or(Ok(Arc::new(document)), Err));
+            let document = self.document(file, Some(span));
+            let document = document.and_then(|it| it.invalid_params.map_or(Ok(Arc::new(it)), Err));
             self.read.insert(path.clone(), document);
         }
         let document = self.read[&path].clone()?;
@@ -258,9 +257,8 @@ impl<'a> Reader<'a> {
                 Ok(None) => {}
                 Err(why) => {
                     let path = Located::new(path.clone(), graph.span.clone());
-                    return Err(self
-                        .reports
-                        .report(ComposeError::UnreadableInclude(path, why)));
+                    let error = ComposeError::UnreadableInclude(path, why);
+                    return Err(self.reports.report(error));
                 }
             }
         }
@@ -288,7 +286,7 @@ impl<'a> Reader<'a> {
             if let Err(word) = param.narrow(&narrow.words, &narrow.because) {
                 let declared = param.name.span.clone();
                 self.reports.report(match word {
-                    None => ComposeError::NarrowOfOther { name, declared },
+                    None => ComposeError::NarrowOfOther(name, declared),
                     Some(word) => {
                         let known = param.words().map(Name::to_string).collect();
                         ComposeError::NarrowWord(word, declared, known)
@@ -301,11 +299,7 @@ impl<'a> Reader<'a> {
     /// Adds the params of included documents that a document makes its own.
     fn expose(&mut self, document: &mut Document) {
         let own = document.params.iter().map(|param| param.name.value.clone());
-        let values = document
-            .values
-            .iter()
-            .map(|(name, _)| name.value.to_string());
-        let own = own.chain(values).collect();
+        let own = own.chain(names_of_values(document)).collect();
         expose_all(&mut document.entries, &own, &BTreeSet::new());
         let mut exposed: Vec<(Param, Span)> = Vec::new();
         for (entry, include, inner) in document.includes() {
@@ -417,13 +411,14 @@ fn expose_all(
     }
 }
 
+fn names_of_values(document: &Document) -> impl Iterator<Item = String> {
+    let values = document.values.iter();
+    values.map(|(name, _)| name.value.to_string())
+}
+
 /// The outputs of a document that are values: its own, or those of includes without a name.
 fn value_outputs(document: &Document) -> BTreeSet<String> {
-    let own = document
-        .values
-        .iter()
-        .map(|(name, _)| name.value.to_string());
-    let mut values: BTreeSet<String> = own.collect();
+    let mut values: BTreeSet<String> = names_of_values(document).collect();
     for (entry, include, inner) in document.includes() {
         let given = inner.gives_values.iter();
         values.extend(given.map(|name| entry.outer_name(include, name)));

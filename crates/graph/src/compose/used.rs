@@ -101,10 +101,8 @@ pub(crate) fn drop_unused(
         document.values.retain(|(name, _)| is_kept(name));
         document.params.retain(|param| {
             let is_kept = is_own(&param.name.span) || used.params.contains(&param.name.value);
-            let default = param
-                .default
-                .as_ref()
-                .filter(|it| !is_kept && is_own(&it.span));
+            let default = param.default.as_ref();
+            let default = default.filter(|it| !is_kept && is_own(&it.span));
             if let Some(default) = default {
                 let name = Located::new(param.name.value.clone(), default.span.clone());
                 reports.warn(ComposeError::UnusedParam(name));
@@ -117,7 +115,6 @@ pub(crate) fn drop_unused(
         }
     }
     let exposed = exposed.into_iter();
-    document
-        .params
-        .extend(exposed.filter(|param| given.contains(&param.name.span)));
+    let exposed = exposed.filter(|param| given.contains(&param.name.span));
+    document.params.extend(exposed);
 }

@@ -50,16 +50,13 @@ pub(super) fn read(
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct Header {
     /// Name of the entry; an include without one has the name of its file.
-    #[serde(default)]
     name: Option<Located<Name>>,
     /// Condition under which the entry exists.
     #[serde(default, rename = "if")]
     condition: Option<Expr>,
     /// How often it stands here one after another, each time with its `index`.
-    #[serde(default)]
     repeat: Option<Expr>,
     /// In which frames it runs; without it, as what is around it.
-    #[serde(default)]
     run: Option<Run>,
 }
 
@@ -68,7 +65,6 @@ pub(crate) struct Header {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub(crate) struct PassFields {
     /// The shader without folder and ending; the pass's name without it.
-    #[serde(default)]
     shader: Option<Located<String>>,
     /// Materials that are cleared to zero each time before it runs.
     #[serde(default)]
@@ -77,7 +73,6 @@ pub(crate) struct PassFields {
     #[serde(default)]
     overwrites: Vec<Reference>,
     /// The materials that it reads, all of them; those of the scene are left out.
-    #[serde(default)]
     reads: Option<Vec<Reference>>,
 }
 
@@ -90,7 +85,6 @@ pub(crate) struct IncludeFields {
     graph: Located<String>,
     /// Leaves the document open: a run may put another one under this name; without that it is
     /// `graph`.
-    #[serde(default)]
     open: Option<Located<Name>>,
     /// Its params that are params here, too: a list, or `All` that are not set.
     #[serde(default)]
@@ -112,11 +106,8 @@ fn entry(
 ) -> Result<Entry, Diagnostic> {
     let is_composed = COMPOSITION.contains(&raw.tag.as_str());
     if !is_composed && registry.get(&raw.tag).is_none() {
-        let known = registry
-            .kinds()
-            .chain(COMPOSITION)
-            .map(str::to_owned)
-            .collect();
+        let kinds = registry.kinds().chain(COMPOSITION);
+        let known = kinds.map(str::to_owned).collect();
         return Err(DocumentError::UnknownKind(raw.tag, known).into());
     }
     if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
@@ -124,10 +115,8 @@ fn entry(
         let name = Located::new("passes".to_owned(), raw.tag.span);
         return Err(unknown_field(&name, OF_PASS));
     }
-    let (header, own): (Vec<Field>, Vec<Field>) = raw
-        .fields
-        .into_iter()
-        .partition(|field| HEADER.contains(&field.name.as_str()));
+    let is_of_header = |field: &Field| HEADER.contains(&field.name.as_str());
+    let (header, own): (Vec<Field>, Vec<Field>) = raw.fields.into_iter().partition(is_of_header);
     let header: Header = from_fields(&header, &raw.tag.span)?;
     let missing = |field| missing_field(&raw.tag, field);
     let (name, what) = match raw.tag.as_str() {
@@ -177,24 +166,17 @@ fn pass(
     registry: &Registry,
 ) -> Result<Pass, Diagnostic> {
     const COMMON: [&str; 4] = ["shader", "clear", "overwrites", "reads"];
-    let (common, own): (Vec<Field>, Vec<Field>) = own
-        .into_iter()
-        .partition(|field| COMMON.contains(&field.name.as_str()));
+    let is_common = |field: &Field| COMMON.contains(&field.name.as_str());
+    let (common, own): (Vec<Field>, Vec<Field>) = own.into_iter().partition(is_common);
     let common: PassFields = from_fields(&common, &tag.span)?;
-    let kind = registry
-        .get(tag)
-        .ok_or_else(|| DocumentError::UnknownKind(tag.clone(), Vec::new()))?;
+    let unknown = || DocumentError::UnknownKind(tag.clone(), Vec::new());
+    let kind = registry.get(tag).ok_or_else(unknown)?;
     Mentions::take();
     let body = (kind.parse)(&own, &tag.span)?;
     let mut mentions = Mentions::take();
-    mentions.references.extend(
-        common
-            .overwrites
-            .iter()
-            .chain(&common.clear)
-            .chain(common.reads.iter().flatten())
-            .cloned(),
-    );
+    let references = common.overwrites.iter().chain(&common.clear);
+    let references = references.chain(common.reads.iter().flatten());
+    mentions.references.extend(references.cloned());
     // Which shaders it names depends on nothing that has a value later.
     let mut lowering = Lowering::new(name, common.shader.as_ref(), &[], None);
     body.lower(&mut lowering);

@@ -187,10 +187,8 @@ impl Edits<'_> {
     }
 
     fn insert(&mut self, entries: &mut Entries, mut entry: RawEntry) -> Result<(), EditError> {
-        let given: Vec<&str> = PLACES
-            .into_iter()
-            .filter(|place| entry.field(place).is_some())
-            .collect();
+        let given = PLACES.into_iter();
+        let given: Vec<&str> = given.filter(|place| entry.field(place).is_some()).collect();
         let above = self.above.take();
         let (place, mut path) = match (&given[..], above) {
             ([place], _) => (*place, path_of(&mut entry, place)?),
@@ -247,9 +245,8 @@ fn find<'e>(
     let mut walked: Vec<&str> = Vec::new();
     while let Some(name) = names.next() {
         let named = |entry: &Result<RawEntry, Invalid>| {
-            entry
-                .as_ref()
-                .is_ok_and(|entry| entry.name().as_deref() == Some(name))
+            let entry = entry.as_ref();
+            entry.is_ok_and(|entry| entry.name().as_deref() == Some(name))
         };
         let Some(at) = list.iter().position(named) else {
             let known = list.iter().flatten().filter_map(RawEntry::name).collect();
@@ -259,10 +256,8 @@ fn find<'e>(
             return Ok((list, at));
         }
         walked.push(name);
-        let inside = list[at]
-            .as_mut()
-            .ok()
-            .and_then(|entry| entry.passes.as_mut());
+        let inside = list[at].as_mut();
+        let inside = inside.ok().and_then(|entry| entry.passes.as_mut());
         list = inside.ok_or_else(|| EditError::Behind(path.clone(), walked.join(".")))?;
     }
     Err(EditError::NoString(path.span.clone()))
@@ -274,10 +269,8 @@ pub(crate) fn no_edits(entries: &mut Entries, reports: &mut Reports) {
         let Ok(entry) = slot else {
             continue;
         };
-        let place = entry
-            .fields
-            .iter()
-            .find(|field| PLACES.contains(&field.name.as_str()));
+        let mut fields = entry.fields.iter();
+        let place = fields.find(|field| PLACES.contains(&field.name.as_str()));
         let word = match (entry.tag.as_str(), place) {
             ("Change" | REMOVE, _) => Some(&entry.tag),
             (_, place) => place.map(|field| &field.name),

@@ -65,10 +65,9 @@ impl Material {
             grow.counter.visit(each);
             grow.max.visit(each);
         }
-        exprs
-            .into_iter()
-            .flatten()
-            .for_each(|expr| expr.visit(each));
+        for expr in exprs.into_iter().flatten() {
+            expr.visit(each);
+        }
     }
 }
 
@@ -83,22 +82,17 @@ pub(crate) struct TextureEntry {
     pub format: FormatEntry,
     /// Size of mip 0: one number (a square), two, or three (a 3D texture). Where none is given, the
     /// viewport's, or the file's.
-    #[serde(default)]
     pub size: Option<Expr>,
     /// Number of mips, one without it; `All` goes down to one texel.
     #[serde(default)]
     pub mips: Mips,
     /// Number of layers; with it the texture is an array.
-    #[serde(default)]
     pub layers: Option<Expr>,
     /// How its layers become more between frames.
-    #[serde(default)]
     pub grow: Option<Box<GrowEntry>>,
     /// Samples of a texel, one without it.
-    #[serde(default)]
     pub samples: Option<Expr>,
     /// The picture that the texture holds; it is never written then.
-    #[serde(default)]
     pub file: Option<Located<String>>,
     /// Keeps its content from frame to frame until a pass overwrites it; `false` without it.
     #[serde(default)]
@@ -152,13 +146,10 @@ pub(crate) struct BufferEntry {
     pub name: Located<Name>,
     /// Number of items of the runtime-sized array that the shaders see; none where they see a fixed
     /// size.
-    #[serde(default)]
     pub count: Option<Expr>,
     /// The items that the buffer holds; it is never written then.
-    #[serde(default)]
     pub data: Option<Located<Data>>,
     /// How it grows between frames.
-    #[serde(default)]
     pub grow: Option<GrowEntry>,
     /// Keeps its content from frame to frame until a pass overwrites it; `false` without it.
     #[serde(default)]
@@ -167,11 +158,8 @@ pub(crate) struct BufferEntry {
 
 /// How the items of a buffer or the layers of a texture become more between frames.
 #[derive(Clone, Debug, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Growth")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Growth"))]
 #[serde(deny_unknown_fields)]
 pub(crate) struct GrowEntry {
     /// The buffer, or item of one, whose first u32 says how many items or layers a frame would have
@@ -230,7 +218,6 @@ pub(crate) struct SamplerEntry {
     #[serde(default)]
     pub address: Address,
     /// Makes it a comparison sampler.
-    #[serde(default)]
     pub compare: Option<Compare>,
 }
 
@@ -303,7 +290,6 @@ pub(crate) struct TextureInput {
     /// Name of the input in this document.
     pub name: Located<Name>,
     /// The format that it must have; any without it.
-    #[serde(default)]
     pub format: Option<FormatEntry>,
 }
 

@@ -28,13 +28,10 @@ pub(crate) struct ParamFields {
     words: Vec<Located<Name>>,
     /// Value where nothing else is asked for. It may name the params above it and the viewport.
     /// Without it, a value must be given.
-    #[serde(default)]
     default: Option<Expr>,
     /// Least value of a number, or of each component of a vector.
-    #[serde(default)]
     min: Option<f64>,
     /// Greatest value of a number, or of each component of a vector.
-    #[serde(default)]
     max: Option<f64>,
     /// Values that `compare --tune` tries, two at least: words of a `Choice`, booleans or numbers.
     #[serde(default)]
@@ -60,10 +57,8 @@ pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Param, Dia
         _ => return Err(DocumentError::UnknownParamType(tag.clone()).into()),
     };
     let mut different = HashSet::new();
-    let repeats = !fields
-        .words
-        .iter()
-        .all(|word| different.insert(&word.value));
+    let mut words = fields.words.iter();
+    let repeats = !words.all(|word| different.insert(&word.value));
     let is_choice = matches!(ty, ParamType::Choice(_));
     if is_choice == fields.words.is_empty() || repeats {
         let why = if is_choice {

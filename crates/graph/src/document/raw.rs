@@ -223,10 +223,8 @@ fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> 
             reports.report(unknown_field(&field.name, SECTIONS.map(|(name, _)| name)));
             continue;
         }
-        if sections
-            .insert(field.name.value.clone(), field.node)
-            .is_some()
-        {
+        let before = sections.insert(field.name.value.clone(), field.node);
+        if before.is_some() {
             reports.report(field_twice(&field.name));
         }
     }

@@ -76,11 +76,8 @@ pub(crate) struct Document {
 
 /// Fewer words of a `Choice`: `(words: [scene, camera], because: "…")`.
 #[derive(Clone, Debug, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Narrow")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Narrow"))]
 #[serde(rename = "narrow", deny_unknown_fields)]
 pub(crate) struct Narrow {
     /// The words that stay, in any order.
@@ -92,11 +89,8 @@ pub(crate) struct Narrow {
 
 /// A module that shaders import in the place of another one.
 #[derive(Clone, Debug, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Import")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Import"))]
 #[serde(rename = "import", deny_unknown_fields)]
 pub(crate) struct ImportEntry {
     /// The module that shaders name, as an `#import` writes it.
@@ -162,7 +156,6 @@ pub(crate) struct OutputFields {
     /// Name for the includer and the host.
     name: Located<Name>,
     /// The material; the one of that name without it.
-    #[serde(default)]
     material: Option<Reference>,
     /// Condition under which it exists.
     #[serde(default, rename = "if")]
@@ -282,11 +275,8 @@ impl<'de> Deserialize<'de> for Expose {
 
 /// In which frames a pass runs.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Run")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Run"))]
 #[serde(rename = "run")]
 pub(crate) enum Run {
     /// In every frame that may compute something new.
@@ -370,13 +360,10 @@ impl Document {
     /// expressions and references.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let params = self.params[..self.declared].iter();
+        let claims = self.claims.iter();
         let exprs = params
             .filter_map(|param| param.default.as_ref())
-            .chain(
-                self.claims
-                    .iter()
-                    .filter_map(|(_, of)| of.condition.as_ref()),
-            )
+            .chain(claims.filter_map(|(_, claim)| claim.condition.as_ref()))
             .chain(self.defaults.iter().map(|(_, value)| value))
             .chain(self.values.iter().map(|(_, value)| value))
             .chain(&self.needs)
@@ -418,9 +405,8 @@ impl Entry {
         };
         let exprs = [&self.condition, &self.repeat].into_iter().flatten();
         let exprs = exprs.chain(self.set.iter().map(|(_, value)| value));
-        let exprs = exprs
-            .chain(run)
-            .chain(mentions.iter().flat_map(|of| &of.exprs));
+        let exprs = exprs.chain(run);
+        let exprs = exprs.chain(mentions.iter().flat_map(|of| &of.exprs));
         exprs.for_each(|expr| expr.visit(each));
         let references = self.bind.iter().map(|(_, reference)| reference);
         let references = references.chain(mentions.iter().flat_map(|of| &of.references));

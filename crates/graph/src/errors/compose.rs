@@ -82,7 +82,7 @@ mistakes! {
              `set: {{\"{name}\": \"{name}\"}}`"
         ));
 
-    NarrowOfOther { name: Located<String>, declared: Span } =>
+    NarrowOfOther(name: Located<String>, declared: Span) =>
         ParamValue("`{name}` is not a `Choice`: it has no words to narrow")
         .at(name, "").at(declared, "declared here")
         .help("give a number another `min` or `max` where it is declared");

@@ -34,7 +34,7 @@ mistakes! {
         .at(span, "here").help("name parts of the longer one, as `x.width` and `x.height`");
 
     /// A number below 0; `least` is the least one that has a use here.
-    Negative { place: Span, number: i64, least: u32 } =>
+    Negative(place: Span, number: i64, least: u32) =>
         Expression("{}", match place.text() {
             text if text == number.to_string() => format!("{number} is below 0"),
             text => format!("`{text}` is {number}, below 0"),
@@ -57,7 +57,7 @@ mistakes! {
         Expression("`{word}` is not one of the words")
         .at(span, "").suggest(&word, words.iter().map(Name::as_str));
 
-    Words { span: Span, expected: Vec<String>, found: Value } =>
+    Words(span: Span, expected: Vec<String>, found: Value) =>
         Expression("{}", match &found {
             Value::Word(_) => "not every word of this Choice may stand here".to_owned(),
             found => format!("a word is needed here, not {}", found.describe()),
@@ -68,8 +68,8 @@ mistakes! {
             expected.join(", ")
         ));
 
-    UnknownAttribute { span: Span, of: String, name: String } =>
-        Expression("`{of}` has no attribute `{name}`")
+    UnknownAttribute { span: Span, owner: String, name: String } =>
+        Expression("`{owner}` has no attribute `{name}`")
         .at(span, "").suggest(&name, Attribute::ALL.iter().map(|(name, _)| *name));
 
     NoAttribute(span: Span, of: String) =>
@@ -95,7 +95,7 @@ mistakes! {
         .at_all(ring.iter().take(ring.len() - 1).map(|name| (name, "asks for the next")))
         .help(format!("the ring is {}", names(&ring).join(" → ")));
 
-    DeepValue { name: Located<String>, most: usize } =>
+    DeepValue(name: Located<String>, most: usize) =>
         Value("values are made of each other more than {most} deep at `{name}`")
         .at(name, "").help("use fewer steps");
 
@@ -150,12 +150,12 @@ impl EvaluationError {
         is_material: impl Fn(&str) -> bool,
         known: Vec<String>,
     ) -> Self {
-        if let Some((of, attribute)) = name.rsplit_once('.')
-            && (of == "viewport" || is_material(of))
+        if let Some((owner, attribute)) = name.rsplit_once('.')
+            && (owner == "viewport" || is_material(owner))
         {
             return Self::UnknownAttribute {
                 span: span.clone(),
-                of: of.to_owned(),
+                owner: owner.to_owned(),
                 name: attribute.to_owned(),
             };
         }

@@ -83,7 +83,7 @@ mistakes! {
         ))
         .help(read_previous(name_within(&pass, &name), &read));
 
-    NeverWritten { name: String, pass: Located<String>, read: Span } =>
+    NeverWritten(name: String, pass: Located<String>, read: Span) =>
         ReadBeforeWrite("pass `{pass}` reads `{name}` of the frame before, but no pass writes it")
         .at(read, "read here").at(pass, "by this pass")
         .help(format!("let a pass write `{name}`"));

@@ -15,7 +15,7 @@ mistakes! {
     Asked { name: Located<String>, value: ParamValue, why: ParamFault } =>
         ParamValue("param `{name}` = {value}: {why}").at(name, "declared here");
 
-    QuotedWord { word: String, span: Span } =>
+    QuotedWord(word: String, span: Span) =>
         ParamValue("a word of a Choice stands without quotes")
         .at(span, "in quotes this is an expression").help(format!("write `default: {word}`"));
 
@@ -104,11 +104,11 @@ mistakes! {
              which takes the place of an extended document's input"
         );
 
-    Unused { document: String, name: Located<String>, known: Vec<String> } =>
+    Unused(document: String, name: Located<String>, known: Vec<String>) =>
         Unused("`{document}` has no input, output or param `{name}`")
         .at(&name, "").suggest(&name, known);
 
-    UnusedInGroup { group: String, name: Located<String> } =>
+    UnusedInGroup(group: String, name: Located<String>) =>
         Unused("nothing in the group `{group}` asks for `{name}`")
         .at(name, "")
         .help("one of its passes or includes must have this name free; check its spelling");
@@ -117,7 +117,7 @@ mistakes! {
         Output("no pass writes the output `{name}`")
         .at(name, "").help("let a pass write it, or name another `material`");
 
-    BoundOutput { name: Located<String>, why: String, declared: Span } =>
+    BoundOutput(name: Located<String>, why: String, declared: Span) =>
         Output("the output `{name}` cannot be written into a material here")
         .at(name, why).at(declared, "declared here");
 
@@ -127,7 +127,7 @@ mistakes! {
         .at(&name, format!("`{document}` declares no material or input of this name"))
         .suggest(&name, known);
 
-    Private { entry: String, name: Located<String>, known: Vec<String> } =>
+    Private(entry: String, name: Located<String>, known: Vec<String>) =>
         UnknownResource("`{entry}` gives no `{name}`")
         .at(&name, "only its outputs are seen from here").suggest(&name, known);
 
@@ -135,26 +135,25 @@ mistakes! {
         ResourceKind("`{name}` has no content of its own")
         .at(name, "name what it gives: `x.y`, or `x[0].y` where it is repeated");
 
-    Range { text: String, span: Span, what: String, declared: Option<Span> } =>
-        Range("`{text}` does not exist").at(span, what).at_any(declared, "declared here");
+    Range(part: Located<String>, what: String, declared: Option<Span>) =>
+        Range("`{part}` does not exist").at(part, what).at_any(declared, "declared here");
 
-    NoPart { text: String, span: Span, what: &'static str } =>
-        ResourceKind("`{text}` has no such part").at(span, what);
+    NoPart(part: Located<String>, what: &'static str) =>
+        ResourceKind("`{part}` has no such part").at(part, what);
 
-    NotOfMaterial { of: String, name: Located<String> } =>
+    NotOfMaterial(of: String, name: Located<String>) =>
         ResourceKind("`{of}` is a material, and gives no `{name}`")
         .at(name, "not a part of it")
         .help(format!("its parts are `{of}[0]`, `{of}.mip[0]`, `{of}.previous`"));
 
     NoPrevious {
-        name: String,
-        span: Span,
+        name: Located<String>,
         what: String,
         /// Name of the material, if it has `keep: true`; `None` otherwise.
         kept: Option<String>,
     } =>
         ResourceKind("`{name}` has no version of the frame before")
-        .at(span, format!("it is {what}"))
+        .at(name, format!("it is {what}"))
         .help(match kept {
             Some(name) => format!(
                 "read `{name}` above the passes that write it: there it holds what the frame \
@@ -163,7 +162,7 @@ mistakes! {
             None => "textures and buffers that the graph writes have one; copy it into one".into(),
         });
 
-    TooMany { most: usize, what: &'static str, at: Span } =>
+    TooMany(most: usize, what: &'static str, at: Span) =>
         Size("the graph has more than {most} {what}")
         .at(at, "counted up to here").help("repeat or include less");
 
@@ -172,7 +171,7 @@ mistakes! {
         .at(need, format!("here it is {here}"))
         .help("plan it for another viewport, scene or number of lights, which `needs` asks for");
 
-    Feature { document: String, feature: Located<String> } =>
+    Feature(document: String, feature: Located<String>) =>
         Feature("`{document}` cannot run without the feature `{feature}`")
         .at(feature, "the device does not have this feature")
         .help("run it on an adapter that has the feature, or ask `has(…)` in an `if`");

@@ -63,8 +63,7 @@ mistakes! {
 pub(crate) fn attributes() -> String {
     let all = Attribute::ALL.iter().map(|(_, of)| *of);
     let of_materials = all.filter(|of| *of != Attribute::Index);
-    let names: Vec<String> = of_materials
-        .map(|of| format!("`.{}`", of.as_str()))
-        .collect();
+    let of_materials = of_materials.map(|of| format!("`.{}`", of.as_str()));
+    let names: Vec<String> = of_materials.collect();
     names.join(", ")
 }

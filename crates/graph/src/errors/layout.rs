@@ -13,7 +13,7 @@ mistakes! {
         .at(&spans[0], format!("here it is at byte {}", offsets[0]))
         .help("declare the item type once, in a shared module that both import");
 
-    Disagreement { name: String, layouts: [String; 2], spans: [Span; 2] } =>
+    Disagreement(name: String, layouts: [String; 2], spans: [Span; 2]) =>
         LayoutMismatch("two shaders see `{name}` with different layouts")
         .at(&spans[1], format!("here it is {}", layouts[1]))
         .at(&spans[0], format!("here it is {}", layouts[0]))
@@ -27,11 +27,11 @@ mistakes! {
         LayoutMismatch("the import `{name}` has {have} bytes, {needed} are needed")
         .at(span, "needed here");
 
-    NoCount { name: String, span: Span, declared: Option<Span> } =>
+    NoCount(name: String, span: Span, declared: Option<Span>) =>
         Size("`{name}` does not say how many items it has")
         .at(span, "this shader sees an array of any length").at_any(declared, "give it a `count`");
 
-    IgnoredCount { name: String, span: Span, declared: Option<Span> } =>
+    IgnoredCount(name: String, span: Span, declared: Option<Span>) =>
         Size("the `count` of `{name}` has no effect")
         .at_any(declared, "leave `count` out here").at(span, "this shader sees a fixed size");
 

@@ -27,7 +27,7 @@ mistakes! {
     /// A shader that asks more of a device than it has, or than WGSL promises of any.
     LimitError:
 
-    Workgroup { entry: Entry, excess: Excess } =>
+    Workgroup(entry: Entry, excess: Excess) =>
         Limit(
             "workgroups of {entry} share {} bytes, more than the adapter has", excess.bytes
         )
@@ -37,7 +37,7 @@ mistakes! {
             excess.most
         ));
 
-    Private { entry: Entry, excess: Excess } =>
+    Private(entry: Entry, excess: Excess) =>
         Limit("the private variables of {entry} take {} bytes of each thread", excess.bytes)
         .at(&excess.largest, largest(&excess)).help(promised(excess.most));
 
@@ -47,7 +47,7 @@ mistakes! {
         )
         .at(&excess.largest, largest(&excess)).help(promised(excess.most));
 
-    Functions { entry: Entry, excess: Excess } =>
+    Functions(entry: Entry, excess: Excess) =>
         Limit(
             "the functions that {entry} runs take {} bytes of each thread together", excess.bytes
         )
@@ -96,7 +96,7 @@ mistakes! {
         ))
         .at_any(vertex, "the vertex shader");
 
-    Attribute { entry: Entry, location: u32 } =>
+    Attribute(entry: Entry, location: u32) =>
         StageInterface("{entry} reads the vertex attribute @location({location})")
         .at(entry.span, "")
         .help("a graph has no vertex buffers: read a storage buffer at @builtin(vertex_index)");

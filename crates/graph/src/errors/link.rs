@@ -12,11 +12,11 @@ mistakes! {
     /// A pass whose shaders, attachments, copies or dispatches do not fit.
     LinkError:
 
-    ReadsNot { pass: String, name: Located<String> } =>
+    ReadsNot(pass: String, name: Located<String>) =>
         ResourceKind("`{pass}` does not read `{name}`")
         .at(name, "said to be read").help("take it out of `reads`");
 
-    ReadsMore { pass: Located<String>, name: String, read: Span } =>
+    ReadsMore(pass: Located<String>, name: String, read: Span) =>
         ResourceKind("`{pass}` reads `{name}`, too")
         .at(read, "read here").at(pass, "by this pass")
         .help(format!("add `{name}` to its `reads`, as the document calls it"));
@@ -28,26 +28,26 @@ mistakes! {
         MissingFile("the shader `{name}` was not loaded with the document")
         .at(name, "a pass kind must not choose its shaders by values");
 
-    WritesPrevious { of: String, span: Span } =>
+    WritesPrevious(of: String, span: Span) =>
         ResourceKind("last frame's version of `{of}` cannot be written")
         .at(span, "written here")
         .help(format!("write `{of}`: the next frame finds it as `{of}.previous`"));
 
-    WritesConstant { name: String, span: Span } =>
+    WritesConstant(name: String, span: Span) =>
         ResourceKind("`{name}` holds what stands in the document, and is never written")
         .at(span, "written here")
         .help("write another material; a `Copy` above brings the content there");
 
-    WritesProvided { name: String, span: Span } =>
+    WritesProvided(name: String, span: Span) =>
         ResourceKind("`{name}` belongs to the host and cannot be written")
         .at(span, "declare it `var<storage, read>`, or name a material of the document");
 
-    VertexWrites { global: String, span: Span } =>
+    VertexWrites(global: Located<String>) =>
         Feature("the vertex shader writes `{global}`, which most devices cannot")
-        .at(span, "")
+        .at(global, "")
         .help("say `requires: [\"VERTEX_WRITABLE_STORAGE\"]`, or write it elsewhere");
 
-    RayQuery { pass: Located<String>, span: Span } =>
+    RayQuery(pass: Located<String>, span: Span) =>
         Feature("pass `{pass}` asks the device for ray queries, which it does not have")
         .at(pass, "").at(span, "needs the feature EXPERIMENTAL_RAY_QUERY")
         .help(
@@ -69,7 +69,7 @@ mistakes! {
         .help("read a copy, or a part that this pass does not write")
         .help_any(previous.map(|name| read_previous(&name, &reader)));
 
-    Overwrites { pass: String, name: Located<String> } =>
+    Overwrites(pass: String, name: Located<String>) =>
         ResourceKind("pass `{pass}` does not write `{name}`").at(name, "said to be overwritten");
 
     UnusedSet { shader: String, name: Located<String>, known: Vec<String> } =>
@@ -84,15 +84,15 @@ mistakes! {
         .at(span, format!("its groups are 0 to {}", most.saturating_sub(1)))
         .help("leave the numbers out: the graph gives them");
 
-    TooManyBindings { pass: Located<String>, what: &'static str, number: usize, most: u32 } =>
+    TooManyBindings(pass: Located<String>, what: &'static str, number: usize, most: u32) =>
         Limit("pass `{pass}` binds {number} {what}")
         .at(pass, "")
         .help(format!(
             "the adapter's limit is {most} per shader stage: split the pass or pack what it binds"
         ));
 
-    Unsupported { global: String, what: &'static str, span: Span } =>
-        Binding("`{global}` is {what}, which a graph cannot bind").at(span, "");
+    Unsupported(global: Located<String>, what: &'static str) =>
+        Binding("`{global}` is {what}, which a graph cannot bind").at(global, "");
 
     ParamsUniform { what: &'static str, size: u64, span: Span } =>
         Binding("the uniform `params` {what}")
@@ -104,27 +104,27 @@ mistakes! {
              `var<uniform> params: Params;`"
         });
 
-    UnknownGlobal { global: String, span: Span, pass: Located<String>, known: Vec<String> } =>
+    UnknownGlobal { global: Located<String>, pass: Located<String>, known: Vec<String> } =>
         UnknownResource("pass `{pass}` binds the unknown material `{global}`")
-        .at(span, "no material, input or provided resource has this name")
+        .at(&global, "no material, input or provided resource has this name")
         .at(pass, "bound by this pass")
         .suggest(&global, known)
         .help(format!("bind what is meant: `bind: {{\"{global}\": \"…\"}}`"));
 
     WrongKind {
-        global: String, span: Span, needed: &'static str, name: String, found: &'static str,
+        global: Located<String>, needed: &'static str, name: String, found: &'static str,
         declared: Option<Span>,
     } =>
         ResourceKind("the shader's `{global}` needs {needed}, but `{name}` is {found}")
-        .at(span, format!("the shader declares {needed}")).at_any(declared, found);
+        .at(global, format!("the shader declares {needed}")).at_any(declared, found);
 
     UniformSize { name: String, have: u64, size: u64, span: Span } =>
         LayoutMismatch("`{name}` has {have} bytes, the shader's type {size}")
         .at(span, "import its type from the module that declares it");
 
-    UniformLimit { global: String, size: u64, most: u64, span: Span } =>
+    UniformLimit { global: Located<String>, size: u64, most: u64 } =>
         Limit("the uniform `{global}` has {size} bytes, more than the adapter can bind")
-        .at(span, "").help(format!("its limit is {most}: use a storage buffer"));
+        .at(global, "").help(format!("its limit is {most}: use a storage buffer"));
 
     Alignment { name: String, stride: u64, alignment: u64, span: Span } =>
         Alignment("items of `{name}` are {stride} bytes apart, and cannot be bound alone")
@@ -132,11 +132,11 @@ mistakes! {
         .help(format!("the device binds at multiples of {alignment} bytes"));
 
     Texture {
-        name: String, format: TextureFormat, global: String, span: Span, declared: Option<Span>,
+        name: String, format: TextureFormat, global: Located<String>, declared: Option<Span>,
         misfit: Box<TextureMisfit>,
     } =>
         FormatMismatch("the texture `{name}` cannot be the shader's `{global}`")
-        .because(span, *misfit).at_any(declared, format!("{format:?}"));
+        .because(global, *misfit).at_any(declared, format!("{format:?}"));
 
     OverrideWithout(name: Located<String>) =>
         UnknownParam("the override `{name}` has no value")
@@ -184,7 +184,7 @@ mistakes! {
         LayoutMismatch("`params.index` is the number of the repetition, a u32")
         .at(place, "in this uniform");
 
-    MemberIsNoVector { member: String, span: Span } =>
+    MemberIsNoVector(member: String, span: Span) =>
         LayoutMismatch("`params.{member}` cannot be set: it is neither a number nor a vector")
         .at(span, "in this uniform").help(in_a_buffer(&member));
 
@@ -213,11 +213,11 @@ mistakes! {
             format!("or declare the param so: `{ty}(name: \"{}\", …)`", param.name)
         }));
 
-    NoArguments { name: Located<String>, found: &'static str } =>
+    NoArguments(name: Located<String>, found: &'static str) =>
         ResourceKind("`{name}` cannot hold indirect arguments")
         .at(name, format!("this is {found}, a buffer of the document is needed"));
 
-    WorkgroupOverride { at: Span, pass: Located<String> } =>
+    WorkgroupOverride(at: Span, pass: Located<String>) =>
         Shader("a workgroup size that is an override is not supported")
         .at(at, "").at(pass, "run by this pass")
         .help("write the size as a number or `const`");
@@ -233,7 +233,7 @@ mistakes! {
             "its limits are {}×{}×{} and {threads} invocations in all", most[0], most[1], most[2]
         ));
 
-    Workgroups { groups: [u64; 3], most: u32, pass: Located<String> } =>
+    Workgroups(groups: [u64; 3], most: u32, pass: Located<String>) =>
         Limit(
             "{}×{}×{} workgroups are more than the adapter can run", groups[0], groups[1], groups[2]
         )
@@ -256,10 +256,10 @@ mistakes! {
     NoCpuWork(name: Located<String>, found: &'static str) =>
         ResourceKind("`{name}` does no work on the CPU").at(name, format!("this is {found}"));
 
-    CpuItems { name: Located<String>, found: &'static str } =>
+    CpuItems(name: Located<String>, found: &'static str) =>
         ResourceKind("`{name}` has no items for the CPU").at(name, format!("this is {found}"));
 
-    ClearFormat { name: Located<String>, format: TextureFormat } =>
+    ClearFormat(name: Located<String>, format: TextureFormat) =>
         FormatMismatch("a texture of format {format:?} cannot be cleared")
         .at(name, "wgpu clears what can be drawn to")
         .help("write it whole by a Compute pass instead");
@@ -268,7 +268,7 @@ mistakes! {
         ResourceKind("the buffer `{name}` can only be cleared to zero")
         .at(name, "").help("leave `value` out, or write the buffer by a Compute pass");
 
-    ClearKind { name: Located<String>, found: &'static str } =>
+    ClearKind(name: Located<String>, found: &'static str) =>
         ResourceKind("`{name}` cannot be cleared").at(name, format!("this is {found}"));
 
     ClearValue {
@@ -285,7 +285,7 @@ mistakes! {
              it"
         ));
 
-    TooManyTargets { pass: Located<String>, count: usize, most: u32 } =>
+    TooManyTargets(pass: Located<String>, count: usize, most: u32) =>
         Limit("{count} colour targets are more than the adapter can draw to")
         .at(pass, "").help(format!("its limit is {most}"));
 
@@ -294,22 +294,22 @@ mistakes! {
         .at(pass, "")
         .help(format!("the adapter's limit is {most}: use smaller formats or two passes"));
 
-    NotDrawable { name: Located<String>, format: TextureFormat } =>
+    NotDrawable(name: Located<String>, format: TextureFormat) =>
         FormatMismatch("a texture of format {format:?} cannot be a colour target")
         .at(name, "").help("use a colour format that can be drawn to, or `depth: \"…\"`");
 
-    NotBlendable { name: Located<String>, format: TextureFormat } =>
+    NotBlendable(name: Located<String>, format: TextureFormat) =>
         FormatMismatch("a target of format {format:?} cannot be blended").at(name, "");
 
-    Resolve { name: Located<String>, why: &'static str } =>
+    Resolve(name: Located<String>, why: &'static str) =>
         ResourceKind("nothing can be resolved into `{name}`").at(name, why);
 
-    NoFragmentOutput { name: Located<String>, location: u32, entry: Span } =>
+    NoFragmentOutput(name: Located<String>, location: u32, entry: Span) =>
         FormatMismatch("the fragment shader writes nothing to `{name}`")
         .at(name, format!("this target has location {location}"))
         .at(entry, format!("no output @location({location}) here"));
 
-    NoTarget { pass: Located<String>, location: u32, entry: Span } =>
+    NoTarget(pass: Located<String>, location: u32, entry: Span) =>
         Unused("pass `{pass}` has no target for @location({location}) of its fragment shader")
         .at(pass, "what it writes there is lost").at(entry, "written by this")
         .help("add a texture to `color`, or take the output out of the shader");
@@ -322,16 +322,16 @@ mistakes! {
         .at(name, format!("needs {needed} × {expected}"))
         .at(entry, format!("writes {written} at @location({location})"));
 
-    NoDepth { name: Located<String>, format: TextureFormat } =>
+    NoDepth(name: Located<String>, format: TextureFormat) =>
         FormatMismatch("a texture of format {format:?} cannot be a depth target")
         .at(name, "")
         .help("use Depth32Float, Depth24Plus, Depth16Unorm, or one of them with Stencil8");
 
-    NoStencil { name: Located<String>, format: TextureFormat } =>
+    NoStencil(name: Located<String>, format: TextureFormat) =>
         FormatMismatch("a texture of format {format:?} cannot be a stencil target")
         .at(name, "").help("use Depth24PlusStencil8, Depth32FloatStencil8 or Stencil8");
 
-    NoTexture { pass: String, name: Located<String>, found: &'static str } =>
+    NoTexture(pass: String, name: Located<String>, found: &'static str) =>
         ResourceKind("pass `{pass}` cannot draw to `{name}`")
         .at(name, format!("this is {found}, a texture is needed"));
 
@@ -340,7 +340,7 @@ mistakes! {
         .at(&name, "a pass draws to one mip of one layer")
         .help(format!("name one: `{name}[0]`, `{name}.mip[0]`, `{name}[0].mip[0]`"));
 
-    NoTargets { pass: Located<String>, fullscreen: bool } =>
+    NoTargets(pass: Located<String>, fullscreen: bool) =>
         MissingField("pass `{pass}` draws to nothing")
         .at(pass, if fullscreen {
             "give it `color: […]` or `stencil: (…)`"
@@ -358,7 +358,7 @@ mistakes! {
         .at(target, "the pass is as large as this")
         .help("leave `size` out");
 
-    CanvasWithoutFragment { pass: Located<String>, size: Span } =>
+    CanvasWithoutFragment(pass: Located<String>, size: Span) =>
         MissingField("pass `{pass}` has neither a target nor a fragment shader")
         .at(pass, "").at(size, "a pass without targets")
         .help("give it a fragment shader that writes buffers or storage textures");
@@ -387,7 +387,7 @@ mistakes! {
             "`{}` has {}, `{}` {}", names[0], samples[0], names[1], samples[1]
         ));
 
-    AreaOutside { pass: Located<String>, area: [u32; 4], whole: [u32; 2] } =>
+    AreaOutside(pass: Located<String>, area: [u32; 4], whole: [u32; 2]) =>
         Size("the area of pass `{pass}` does not lie in what it draws to")
         .at(pass, format!(
             "{}×{} texels at ({}, {}), of {}×{}",
@@ -399,14 +399,14 @@ mistakes! {
     /// Reason why a texture cannot be bound as a shader declares it; part of another diagnostic.
     TextureMisfit:
 
-    Scalar { reads: ScalarClass, holds: Option<ScalarClass>, depth: bool } =>
+    Scalar(reads: ScalarClass, holds: Option<ScalarClass>, depth: bool) =>
         FormatMismatch("{}", match holds {
             _ if depth => "the shader declares a depth texture".to_owned(),
             Some(holds) => format!("the shader reads {reads}, the texture holds {holds}"),
             None => format!("the shader reads {reads}"),
         });
 
-    Filtered { sampler: String, by_feature: bool } =>
+    Filtered(sampler: String, by_feature: bool) =>
         FormatMismatch("sampled through `{sampler}`, but the format cannot be filtered")
         .help(if by_feature {
             "list `requires: [\"FLOAT32_FILTERABLE\"]`, or use a sampler with `filter: Nearest`, \

@@ -12,7 +12,7 @@ mistakes! {
     NoMaterial { graph: String, name: String, known: Vec<String> } =>
         Output("`{graph}` has no material `{name}` to read back").suggest(&name, known);
 
-    NoPass { name: String, known: Vec<String> } =>
+    NoPass(name: String, known: Vec<String>) =>
         Output("unknown pass `{name}` to read a material after").suggest(&name, known);
 
     Unsized(name: String) =>

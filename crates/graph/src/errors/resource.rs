@@ -6,7 +6,7 @@ mistakes! {
     /// A size or content that a material cannot have.
     SizeError:
 
-    Absurd { name: Located<String> } =>
+    Absurd(name: Located<String>) =>
         Size("`{name}`: no texture has so many texels").at(name, "");
 
     NoTexels { name: Located<String>, size: [u32; 2], layers: u32, mips: u32, samples: u32 } =>
@@ -17,7 +17,7 @@ mistakes! {
         )
         .at(name, "").help("give it one at least");
 
-    Texels { name: Located<String>, size: [u32; 2], most: u32 } =>
+    Texels(name: Located<String>, size: [u32; 2], most: u32) =>
         Size("`{name}`: {}×{} texels are more than the adapter can hold", size[0], size[1])
         .at(name, "").help(format!("its limit is {most} in each direction"));
 
@@ -29,11 +29,11 @@ mistakes! {
         Size("`{name}`: {mips} mips are too many")
         .at(name, "").help(format!("it can have {full}: `mips: All`"));
 
-    Samples { name: Located<String>, format: wgt::TextureFormat, samples: u32, known: Vec<u32> } =>
+    Samples(name: Located<String>, format: wgt::TextureFormat, samples: u32, known: Vec<u32>) =>
         FormatMismatch("`{name}`: a texture of {format:?} cannot have {samples} samples")
         .at(name, "").help(format!("it can have {}", list(known.iter().map(u32::to_string), ", ")));
 
-    FormatFeature { name: Located<String>, format: wgt::TextureFormat, feature: wgt::Features } =>
+    FormatFeature(name: Located<String>, format: wgt::TextureFormat, feature: wgt::Features) =>
         Feature("`{name}`: not every device has {format:?}")
         .at(name, "")
         .help(format!(
@@ -98,7 +98,7 @@ mistakes! {
     GrowToNothing(name: Located<String>) =>
         Size("`{name}` grows to nothing: its `max` is 0").at(name, "").help("give it one at least");
 
-    Counter { name: Located<String>, what: &'static str } =>
+    Counter(name: Located<String>, what: &'static str) =>
         Size("`{name}` is {what}: it cannot count items")
         .at(name, "")
         .help("name a buffer whose first u32 a pass makes the number of items needed");

@@ -81,16 +81,11 @@ pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> 
         ExprKind::Has(feature) => Ok(Value::Bool(env.has(*feature))),
         ExprKind::Unary(Unary::Not, of) => Ok(Value::Bool(!boolean(of, env)?)),
         ExprKind::Unary(Unary::Minus, of) => {
-            let value = value(of, env)?;
-            each(
-                expr,
-                [value, Value::whole(0)],
-                env,
-                |value, _| match value {
-                    Scalar::Whole(whole) => whole.checked_neg().map(Scalar::Whole),
-                    Scalar::Number(number) => Some(Scalar::Number(-number)),
-                },
-            )
+            let values = [value(of, env)?, Value::whole(0)];
+            each(expr, values, env, |value, _| match value {
+                Scalar::Whole(whole) => whole.checked_neg().map(Scalar::Whole),
+                Scalar::Number(number) => Some(Scalar::Number(-number)),
+            })
         }
         ExprKind::Binary(operator, sides) => binary(expr, *operator, sides, env),
         ExprKind::Ternary(of) => {
@@ -108,11 +103,10 @@ pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> 
 fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> Evaluated<Value> {
     let [width, height] = env.viewport();
     Ok(match attribute {
-        Attribute::Size => Value::List(
-            [width, height]
-                .map(|edge| Scalar::Whole(edge.into()))
-                .to_vec(),
-        ),
+        Attribute::Size => {
+            let edges = [width, height].map(|edge| Scalar::Whole(edge.into()));
+            Value::List(edges.to_vec())
+        }
         Attribute::Width => Value::whole(width),
         Attribute::Height => Value::whole(height),
         Attribute::Count => Value::count(u64::from(width) * u64::from(height)),
@@ -130,11 +124,8 @@ fn wrong(
     found: &Value,
     env: &mut dyn Environment,
 ) -> ErrorGuaranteed {
-    env.report(EvaluationError::Type(
-        expr.span.clone(),
-        expected,
-        found.clone(),
-    ))
+    let error = EvaluationError::Type(expr.span.clone(), expected, found.clone());
+    env.report(error)
 }
 
 pub(crate) fn boolean(expr: &Expr, env: &mut dyn Environment) -> Evaluated<bool> {
@@ -169,14 +160,8 @@ pub(crate) fn count(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u64> {
 }
 
 fn not_negative(expr: &Expr, number: i64, least: u32, env: &mut dyn Environment) -> Evaluated<u64> {
-    let place = expr.span.clone();
-    u64::try_from(number).map_err(|_| {
-        env.report(EvaluationError::Negative {
-            place,
-            number,
-            least,
-        })
-    })
+    let negative = || EvaluationError::Negative(expr.span.clone(), number, least);
+    u64::try_from(number).map_err(|_| env.report(negative()))
 }
 
 /// Evaluates an expression that must be an integer from 0 to `u32::MAX`.
@@ -254,9 +239,8 @@ fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool
         ) => match words.iter().find(|word| ***word == *name) {
             Some(word) => word_alone(word),
             None => {
-                let known = Name::new(name)
-                    .ok()
-                    .and_then(|name| env.word_or_param(&name));
+                let known = Name::new(name).ok();
+                let known = known.and_then(|name| env.word_or_param(&name));
                 let (span, word) = (right.span.clone(), name.to_owned());
                 let unknown = || EvaluationError::NoSuchWord(span, word, words.to_vec());
                 known.ok_or_else(|| env.report(unknown()))?

@@ -111,21 +111,16 @@ pub(crate) fn conditions(
             continue;
         }
         let is_overwritten = |(at, access): &&(usize, &Access)| {
-            access.writes
-                || writers
-                    .iter()
-                    .any(|(later, other)| later > at && other.part.overlaps(&access.part))
+            let mut later = writers.iter().filter(|(later, _)| later > at);
+            access.writes || later.any(|(_, other)| other.part.overlaps(&access.part))
         };
         let mut joined = uses.iter().filter(is_overwritten);
         let Some((first, _)) = joined.next() else {
             continue;
         };
         for (other, _) in joined {
-            check(
-                [first, other].map(|at| view.pass(schedule[*at])),
-                &view.resource(*id).name,
-                reports,
-            );
+            let passes = [first, other].map(|at| view.pass(schedule[*at]));
+            check(passes, &view.resource(*id).name, reports);
             joint.union(*first, *other);
         }
     }
@@ -150,11 +145,11 @@ pub(crate) fn conditions(
         Run::Once => When::Once,
         Run::OnChange => When::OnChange,
     };
-    let mut written: Vec<(usize, ResourceId)> = uses
-        .iter()
-        .flat_map(|(id, uses)| uses.iter().map(|(at, access)| (*at, *id, access.writes)))
-        .filter_map(|(at, id, writes)| writes.then_some((at, id)))
-        .collect();
+    let writes = uses.iter().flat_map(|(id, uses)| {
+        let writes = uses.iter().filter(|(_, access)| access.writes);
+        writes.map(|(at, _)| (*at, *id))
+    });
+    let mut written: Vec<(usize, ResourceId)> = writes.collect();
     written.sort();
     let when = group.iter().zip(schedule).map(when).collect();
     Conditions {

@@ -18,14 +18,10 @@ pub(crate) fn live<K: IntoIterator<Item = PassId>>(
         if std::mem::replace(&mut live[pass.0], true) {
             continue;
         }
-        let needed = order
-            .edges
-            .edges_directed(NodeIndex::new(pass.0), Direction::Incoming);
-        open.extend(
-            needed
-                .filter(|edge| *edge.weight() == Hazard::ReadAfterWrite)
-                .map(|edge| PassId(edge.source().index())),
-        );
+        let (edges, node) = (&order.edges, NodeIndex::new(pass.0));
+        let needed = edges.edges_directed(node, Direction::Incoming);
+        let needed = needed.filter(|edge| *edge.weight() == Hazard::ReadAfterWrite);
+        open.extend(needed.map(|edge| PassId(edge.source().index())));
         open.extend(keeps(pass));
     }
     live

@@ -52,9 +52,8 @@ impl Order {
     /// items in the part, the last pass in the order of the document that writes it.
     pub fn final_writers(&self, target: &Target) -> BTreeSet<PassId> {
         let parts = self.subresources.within(target.id, &target.part);
-        parts
-            .filter_map(|part| self.last.get(&(target.id, part)).copied())
-            .collect()
+        let writers = parts.filter_map(|part| self.last.get(&(target.id, part)));
+        writers.copied().collect()
     }
 }
 
@@ -68,20 +67,12 @@ struct State {
 /// write is reported only for the first `first_invalid` passes: below a pass with a mistake, that
 /// pass might have written the content.
 pub(crate) fn order(view: GraphView<'_>, first_invalid: usize, reports: &mut Reports) -> Order {
-    let (order, uninitialized) = walk(view, |_| true);
-    for (pass, access) in uninitialized
-        .into_iter()
-        .filter(|(pass, _)| pass.0 < first_invalid)
-    {
+    let (order, mut uninitialized) = walk(view, |_| true);
+    uninitialized.retain(|(pass, _)| pass.0 < first_invalid);
+    for (pass, access) in uninitialized {
         reports.report(explain(pass, access, view, &order));
     }
     order
-}
-
-/// Finds the dependences of the live passes alone. A chain of overwrites may lead through a culled
-/// pass; without that pass a direct edge must keep the first overwrite before the last.
-pub(crate) fn order_of_live(view: GraphView<'_>, live: &[bool]) -> Order {
-    walk(view, |pass| live[pass.0]).0
 }
 
 /// Finds the dependences between the passes for which `runs` is true, as if no others existed.
@@ -91,7 +82,7 @@ pub(crate) fn dependences(view: GraphView<'_>, runs: impl Fn(PassId) -> bool) ->
 
 /// Reads the passes for which `runs` is true as a sequential program. Returns their dependences,
 /// and the reads that come before any write.
-fn walk<'p>(
+pub(super) fn walk<'p>(
     view: GraphView<'p>,
     runs: impl Fn(PassId) -> bool,
 ) -> (Order, Vec<(PassId, &'p Access)>) {
@@ -150,9 +141,8 @@ fn walk<'p>(
     for &(from, to, hazard) in dependences.keys() {
         graph.add_edge(nodes[from.0], nodes[to.0], hazard);
     }
-    let last = states
-        .into_iter()
-        .filter_map(|(part, state)| Some((part, state.writer?)));
+    let states = states.into_iter();
+    let last = states.filter_map(|(part, state)| Some((part, state.writer?)));
     let order = Order {
         edges: graph,
         dependences,
@@ -174,11 +164,9 @@ fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) 
     };
     // A pass that changes its own input depends on no pass below, even if one changes it there: it
     // lacks a beginning.
-    let itself = access.writes
-        || pass
-            .accesses
-            .iter()
-            .any(|other| other.writes && other.resource == access.resource);
+    let mut accesses = pass.accesses.iter();
+    let itself =
+        access.writes || accesses.any(|other| other.writes && other.resource == access.resource);
     let below = view.ids().skip(reader.0 + 1).find(|(_, pass)| writes(pass));
     if pass.is_capture() {
         return OrderError::Capture {
@@ -201,23 +189,19 @@ fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) 
     let needs = EdgeFiltered::from_fn(&order.edges, |edge| {
         *edge.weight() == Hazard::ReadAfterWrite
     });
-    let path = petgraph::algo::astar(
-        &needs,
-        NodeIndex::new(reader.0),
-        |node| node.index() == writer.0,
-        |_| 1u64,
-        |_| 0,
-    );
+    let from = NodeIndex::new(reader.0);
+    let is_writer = |node: NodeIndex| node.index() == writer.0;
+    let path = petgraph::algo::astar(&needs, from, is_writer, |_| 1u64, |_| 0);
     match path {
-        Some((_, path)) => OrderError::Cycle {
-            name,
-            pass: pass_name,
-            writer: below.name.clone(),
-            path: path
-                .iter()
-                .map(|node| view.passes[node.index()].name.value.clone())
-                .collect(),
-        },
+        Some((_, path)) => {
+            let name_of = |node: &NodeIndex| view.passes[node.index()].name.value.clone();
+            OrderError::Cycle {
+                name,
+                pass: pass_name,
+                writer: below.name.clone(),
+                path: path.iter().map(name_of).collect(),
+            }
+        }
         None => OrderError::WrittenBelow {
             name,
             pass: pass_name,
@@ -239,10 +223,8 @@ fn clear_above(pass: &LinkedPass, access: &Access, view: GraphView<'_>) -> [Stri
         }
         _ => (name.to_owned(), ""),
     };
-    let word: String = name
-        .chars()
-        .filter(|c| c.is_alphanumeric() || *c == '_')
-        .collect();
+    let is_letter = |sign: &char| sign.is_alphanumeric() || *sign == '_';
+    let word: String = name.chars().filter(is_letter).collect();
     let word = ["clear", "reset", "begin"].map(|verb| format!("{verb}_{word}"));
     let is_free = |word: &&String| !view.passes.iter().any(|pass| pass.name.ends_with(*word));
     let word = word.iter().find(is_free).unwrap_or(&word[0]);
@@ -257,11 +239,8 @@ fn cleared_depth(pass: &LinkedPass, access: &Access, format: wgt::TextureFormat)
         Some(Step::Draw(draw)) => draw.depth.as_ref(),
         _ => None,
     };
-    let compare = depth.map(|depth| depth.compare);
-    let is_reversed = matches!(
-        compare,
-        Some(wgt::CompareFunction::Greater | wgt::CompareFunction::GreaterEqual)
-    );
+    use wgt::CompareFunction::{Greater, GreaterEqual};
+    let is_reversed = depth.is_some_and(|depth| matches!(depth.compare, Greater | GreaterEqual));
     match (format.has_depth_aspect(), format.has_stencil_aspect()) {
         (false, _) => "",
         (true, _) if is_reversed => ", value: 0",

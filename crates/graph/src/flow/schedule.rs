@@ -1,13 +1,9 @@
 //! Order of the live passes that respects every dependence. Dependences run from a pass to one
 //! below it, so this is the order of the document.
 
-use super::{aliases::Aliases, conditions::Conditions, lifetimes::Lifetimes, order::Order};
+use super::{aliases::Aliases, conditions::Conditions, lifetimes::Lifetimes};
 use crate::{link::pass::PassId, resource::ResourceId};
-use petgraph::{Direction, graph::NodeIndex};
-use std::{
-    cmp::Reverse,
-    collections::{BTreeSet, BinaryHeap},
-};
+use std::collections::BTreeSet;
 
 /// The [live](crate#terms) passes of a plan in the order in which they run, with the lifetimes, run
 /// conditions and allocations that follow from this order.
@@ -32,32 +28,8 @@ pub struct Schedule {
     pub ping_pong: BTreeSet<ResourceId>,
 }
 
-/// Orders the live passes by Kahn's algorithm; of the passes that could come next, the first in the
-/// document is taken. (petgraph's own topological sort does not keep this order.)
-pub(crate) fn sequence(order: &Order, live: &[bool]) -> Vec<PassId> {
-    let live_neighbours = |pass: usize, direction| {
-        order
-            .edges
-            .neighbors_directed(NodeIndex::new(pass), direction)
-            .map(NodeIndex::index)
-            .filter(|&other| live[other])
-    };
-    let mut waiting: Vec<usize> = (0..live.len())
-        .map(|pass| live_neighbours(pass, Direction::Incoming).count())
-        .collect();
-    let mut ready: BinaryHeap<Reverse<usize>> = (0..live.len())
-        .filter(|&pass| live[pass] && waiting[pass] == 0)
-        .map(Reverse)
-        .collect();
-    let mut schedule = Vec::new();
-    while let Some(Reverse(pass)) = ready.pop() {
-        schedule.push(PassId(pass));
-        for next in live_neighbours(pass, Direction::Outgoing) {
-            waiting[next] -= 1;
-            if waiting[next] == 0 {
-                ready.push(Reverse(next));
-            }
-        }
-    }
-    schedule
+/// Returns the live passes in the order of the document: each depends on passes above it alone.
+pub(crate) fn sequence(live: &[bool]) -> Vec<PassId> {
+    let passes = (0..live.len()).filter(|pass| live[*pass]);
+    passes.map(PassId).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::{
     cull,
-    order::{Hazard, Order, order, order_of_live},
+    order::{Hazard, Order, order, walk},
     schedule::sequence,
     view::GraphView,
 };
@@ -137,13 +137,13 @@ impl Case {
             passes: &self.passes,
             resources: &self.resources,
         };
-        let order = order_of_live(view, &live);
+        let (order, _) = walk(view, |pass| live[pass.0]);
         (live, order)
     }
 
     fn schedule(&self, wanted: &[Use]) -> Vec<usize> {
-        let (live, order) = self.live(wanted);
-        let sequence = sequence(&order, &live);
+        let (live, _) = self.live(wanted);
+        let sequence = sequence(&live);
         sequence.into_iter().map(PassId::index).collect()
     }
 

@@ -60,9 +60,7 @@ impl Reach {
             }
             // Without a count the end of a buffer's items is not known.
             ResourceKind::Buffer(buffer) => {
-                let items = buffer
-                    .count
-                    .map(|items| u32::try_from(items).unwrap_or(u32::MAX));
+                let items = buffer.count.and_then(|items| u32::try_from(items).ok());
                 (items.unwrap_or(u32::MAX), false, false)
             }
             _ => (u32::MAX, false, false),
@@ -89,9 +87,8 @@ impl Subresources {
         let mut cuts: BTreeMap<ResourceId, Vec<u32>> = BTreeMap::new();
         for access in view.passes.iter().flat_map(|pass| &pass.accesses) {
             let layers = &access.part.layers;
-            cuts.entry(access.resource)
-                .or_default()
-                .extend([layers.start, layers.end]);
+            let cuts = cuts.entry(access.resource).or_default();
+            cuts.extend([layers.start, layers.end]);
         }
         for cuts in cuts.values_mut() {
             cuts.sort_unstable();
@@ -126,10 +123,8 @@ impl Subresources {
         let stretches = stretches.filter(move |(begin, end)| covers(begin, end));
         stretches.flat_map(move |(begin, _)| {
             let (begin, aspects) = (*begin, aspects.clone());
-            let mips = part
-                .mips
-                .clone()
-                .filter(move |mip| begin < reach.layers(*mip));
+            let mips = part.mips.clone();
+            let mips = mips.filter(move |mip| begin < reach.layers(*mip));
             mips.flat_map(move |mip| aspects.clone().map(move |aspect| [mip, begin, aspect]))
         })
     }

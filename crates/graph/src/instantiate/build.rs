@@ -86,10 +86,8 @@ pub(crate) fn flatten<'a>(
         replaced: Replaced::new(),
         incomplete: None,
     });
-    let scope = builder
-        .symbols
-        .scopes
-        .add_scope(instance, None, String::new(), None);
+    let scopes = &mut builder.symbols.scopes;
+    let scope = scopes.add_scope(instance, None, String::new(), None);
     builder.require(document);
     builder.imports(document, scope);
     builder.document(document, &EntryContext::new(scope));
@@ -102,10 +100,8 @@ impl<'a> Builder<'a> {
     pub fn require(&mut self, document: &Document) {
         for (feature, flag) in &document.requires {
             if !self.symbols.request.features.contains(*flag) {
-                let error = InterfaceError::Feature {
-                    document: document.file.name.to_string(),
-                    feature: feature.clone(),
-                };
+                let document = document.file.name.to_string();
+                let error = InterfaceError::Feature(document, feature.clone());
                 // The report suffices: nothing here depends on the result.
                 let _ = self.symbols.reports.unsupported(error);
             }
@@ -278,10 +274,8 @@ impl<'a> Builder<'a> {
         }
         let scope = context.scope;
         let mut at = self.symbols.at(scope.begin(), None);
-        if !self
-            .plan_inputs
-            .is_there(entry.condition.as_ref(), &mut at)?
-        {
+        let condition = entry.condition.as_ref();
+        if !self.plan_inputs.is_there(condition, &mut at)? {
             return Ok(());
         }
         let count = match &entry.repeat {
@@ -304,9 +298,8 @@ impl<'a> Builder<'a> {
         let wrong = given.as_ref().err().copied();
         if !matches!(entry.what, What::Pass(_)) {
             let symbol = given.map_or_else(Symbol::Invalid, Symbol::Repeated);
-            self.symbols
-                .scopes
-                .declare(scope, &entry.name.value, symbol);
+            let scopes = &mut self.symbols.scopes;
+            scopes.declare(scope, &entry.name.value, symbol);
         }
         wrong.map_or(Ok(()), Err)
     }
@@ -314,9 +307,8 @@ impl<'a> Builder<'a> {
     /// Notes the params that decide the form of a pass, such as its engine.
     fn note_choices(&mut self, pass: &Pass, scope: ScopeId) {
         let roots = pass.mentions.exprs.iter();
-        let roots: BTreeSet<String> = roots
-            .flat_map(|expr| self.symbols.roots(scope, expr))
-            .collect();
+        let roots = roots.flat_map(|expr| self.symbols.roots(scope, expr));
+        let roots: BTreeSet<String> = roots.collect();
         let params = self.symbols.graph.document.params.iter();
         let choices = params
             .filter(|param| matches!(param.ty, ParamType::Choice(_) | ParamType::Bool))
@@ -431,14 +423,12 @@ impl<'a> Builder<'a> {
         let replaced = self.symbols.scopes.instance(around).replaced.clone();
         // With a name, or in a repetition, an include is one of its own; so is one that writes into
         // what it is given.
+        let mut given = document.inputs.iter();
         let may_merge = self.merges
             && !call.has_namespace
             && overrides.is_empty()
             && self.symbols.scopes.index(position, None).is_none()
-            && !document
-                .inputs
-                .iter()
-                .any(|it| include::is_output(document, it));
+            && !given.any(|input| include::is_output(document, input));
         let content = may_merge.then(|| {
             let mut bound = self.symbols.scopes.bound_scene(around);
             bound.extend(scene.clone());
@@ -539,10 +529,8 @@ impl<'a> Builder<'a> {
     ) -> Vec<Inherited<'a, T>> {
         let mut said = Vec::new();
         for (name, value) in own {
-            let known = self
-                .said
-                .iter()
-                .position(|(_, known, _)| std::ptr::eq(*known, name));
+            let mut settings = self.said.iter();
+            let known = settings.position(|(_, known, _)| std::ptr::eq(*known, name));
             let number = known.unwrap_or_else(|| {
                 self.said.push((&group.name, name, false));
                 self.said.len() - 1
@@ -565,10 +553,8 @@ impl<'a> Builder<'a> {
         said: &[Inherited<'a, T>],
         asks: impl Fn(&str) -> bool,
     ) -> Vec<Inherited<'a, T>> {
-        said.iter()
-            .copied()
-            .filter(|said| asks(said.name))
-            .collect()
+        let asked = said.iter().filter(|said| asks(said.name));
+        asked.copied().collect()
     }
 
     /// Notes that an entry uses these bindings and values of groups, so that they are not reported
@@ -617,11 +603,8 @@ impl<'a> Builder<'a> {
     fn is_full(&mut self, at: &Span, what: &'static str) {
         self.broken();
         if self.full.is_none() {
-            self.full = Some(self.symbols.reports.report(InterfaceError::TooMany {
-                most: MOST,
-                what,
-                at: at.clone(),
-            }));
+            let error = InterfaceError::TooMany(MOST, what, at.clone());
+            self.full = Some(self.symbols.reports.report(error));
         }
     }
 
@@ -637,10 +620,9 @@ impl<'a> Builder<'a> {
         }
         for (group, name, is_asked) in std::mem::take(&mut self.said) {
             if !is_asked && self.first_invalid.is_none() {
-                self.symbols.reports.report(InterfaceError::UnusedInGroup {
-                    group: group.value.to_string(),
-                    name: name.clone(),
-                });
+                let group = group.value.to_string();
+                let error = InterfaceError::UnusedInGroup(group, name.clone());
+                self.symbols.reports.report(error);
             }
         }
         Flat {

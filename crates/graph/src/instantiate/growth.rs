@@ -73,7 +73,7 @@ fn growth(name: &str, grow: &GrowEntry, at: &mut impl Sizing) -> Reported<Growth
             "not made by this graph"
         };
         let name = grow.counter.located();
-        return Err(at.reports().report(SizeError::Counter { name, what }));
+        return Err(at.reports().report(SizeError::Counter(name, what)));
     }
     let max = match eval::count(&grow.max, at)? {
         0 if grow.max.is_taken() => 1,

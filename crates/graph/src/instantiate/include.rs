@@ -111,11 +111,8 @@ pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Rep
             return Ok(target);
         }
         let why = format!("this is {}", found.describe());
-        Err(at.report(InterfaceError::BoundOutput {
-            name,
-            why,
-            declared: material.name().span.clone(),
-        }))
+        let declared = material.name().span.clone();
+        Err(at.report(InterfaceError::BoundOutput(name, why, declared)))
     }))
 }
 
@@ -153,10 +150,8 @@ impl<'e> Call<'e> {
         Outer {
             scope: self.position.scope,
             namespace: self.has_namespace.then(|| {
-                let suffix = self
-                    .position
-                    .index
-                    .map_or(String::new(), |index| format!("[{index}]"));
+                let index = self.position.index;
+                let suffix = index.map_or(String::new(), |index| format!("[{index}]"));
                 format!("{}{suffix}.", self.entry.name.value)
             }),
             private: context.prefix.clone(),
@@ -248,14 +243,10 @@ impl<'e> Call<'e> {
     fn values_asked(&self, set: &mut BTreeMap<String, SetParam>, at: &mut At<'_, '_>) {
         for param in &self.document.params {
             let name = &param.name.value;
+            let mut exposed = self.include.expose.names.iter();
             let is_asked = param.default.is_none()
                 && !set.contains_key(name)
-                && self
-                    .include
-                    .expose
-                    .names
-                    .iter()
-                    .all(|exposed| **exposed != *name);
+                && exposed.all(|exposed| **exposed != *name);
             let outer = &at.instance().params;
             if !is_asked || outer.bound(name).is_some() {
                 continue;
@@ -283,11 +274,8 @@ impl<'e> Call<'e> {
         at: &mut At<'_, '_>,
     ) {
         let known = at.reports().known(known);
-        at.report(InterfaceError::Unused {
-            document: self.document.file.name.to_string(),
-            name: name.clone(),
-            known,
-        });
+        let document = self.document.file.name.to_string();
+        at.report(InterfaceError::Unused(document, name.clone(), known));
     }
 
     /// Returns the bindings of the include that are not for inputs: first those for names of
@@ -306,11 +294,8 @@ impl<'e> Call<'e> {
             let output = outputs.find(|output| output.name.as_str() == name.as_str());
             if output.is_none() && at.find_scene(name).is_none() {
                 let inputs = self.document.inputs.iter().map(|input| &input.name.value);
-                let outputs = self
-                    .document
-                    .outputs
-                    .iter()
-                    .map(|output| &output.name.value);
+                let outputs = self.document.outputs.iter();
+                let outputs = outputs.map(|output| &output.name.value);
                 self.unused(name, inputs.chain(outputs).map(ToString::to_string), at);
                 continue;
             }

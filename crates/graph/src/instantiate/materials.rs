@@ -83,9 +83,7 @@ fn texture(
     let (layers, samples) = (one(&entry.layers)?, one(&entry.samples)?);
     let name = entry.name.value.clone();
     let span = size_span(entry);
-    let too_large = || SizeError::Absurd {
-        name: Located::new(name.to_string(), span.clone()),
-    };
+    let too_large = || SizeError::Absurd(Located::new(name.to_string(), span.clone()));
     let narrow = |edge: &u64| u32::try_from(*edge).ok();
     let narrow: Option<Vec<u32>> = edges.iter().map(narrow).collect();
     let narrow = narrow.ok_or_else(|| at.reports().report(too_large()))?;
@@ -184,11 +182,7 @@ fn check_texture(
     let feature = format.required_features() - graph.features();
     if !feature.is_empty() {
         let name = entry.name.text();
-        return Err(reports.report(SizeError::FormatFeature {
-            name,
-            format,
-            feature,
-        }));
+        return Err(reports.report(SizeError::FormatFeature(name, format, feature)));
     }
     let limits = &request.limits;
     let Texture {
@@ -220,7 +214,7 @@ fn check_texture(
     if width > most || height > most {
         let size = [width, height];
         let name = name(sized);
-        reports.unsupported(SizeError::Texels { name, size, most })?;
+        reports.unsupported(SizeError::Texels(name, size, most))?;
     }
     if layers > third {
         reports.unsupported(SizeError::Layers {
@@ -229,9 +223,8 @@ fn check_texture(
             most: third,
         })?;
     }
-    let longest = width
-        .max(height)
-        .max(if texture.is_3d { layers } else { 1 });
+    let depth = if texture.is_3d { layers } else { 1 };
+    let longest = width.max(height).max(depth);
     let full = longest.ilog2() + 1;
     if mips > full {
         return Err(reports.report(SizeError::Mips {
@@ -258,19 +251,13 @@ fn check_samples(
     let format = texture.format;
     let flags = format.guaranteed_format_features(features).flags;
     let counts = [1, 2, 4, 8, 16];
-    let known = counts
-        .into_iter()
-        .filter(|count| flags.sample_count_supported(*count));
+    let counts = counts.into_iter();
+    let known = counts.filter(|count| flags.sample_count_supported(*count));
     let known: Vec<u32> = known.collect();
     if known.contains(&texture.samples) {
         Ok(())
     } else {
-        reports.unsupported(SizeError::Samples {
-            name,
-            format,
-            samples: texture.samples,
-            known,
-        })
+        reports.unsupported(SizeError::Samples(name, format, texture.samples, known))
     }
 }
 

@@ -76,9 +76,8 @@ impl Content {
             let value = bound.value.clone().ok()?;
             Some((value, bound.root.clone(), bound.roots.clone()))
         });
-        let scene = scene
-            .into_iter()
-            .map(|(name, target)| Some((name, target.ok()?)));
+        let scene = scene.into_iter();
+        let scene = scene.map(|(name, target)| Some((name, target.ok()?)));
         Some(Self {
             document: Arc::as_ptr(document),
             params: params.collect::<Option<_>>()?,

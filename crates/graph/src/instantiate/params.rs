@@ -55,18 +55,15 @@ pub(crate) struct BoundParam {
 
 impl BoundParam {
     fn in_expression(&self) -> Reported<Value> {
-        let value = self.value.as_ref();
-        value
-            .map(|value| self.param.value(value))
-            .map_err(|reported| *reported)
+        let value = self.value.as_ref().map_err(|reported| *reported)?;
+        Ok(self.param.value(value))
     }
 }
 
 impl Params {
     pub fn bound(&self, name: &str) -> Option<&BoundParam> {
-        self.list
-            .iter()
-            .find(|bound| bound.param.name.value == name)
+        let mut list = self.list.iter();
+        list.find(|bound| bound.param.name.value == name)
     }
 
     /// Returns the param that a shader finds under this WGSL identifier: of the same name, or with
@@ -187,7 +184,7 @@ fn default(
         && param.words().any(|known| **known == *word)
     {
         let (word, span) = (word.to_owned(), default.span.clone());
-        return Err(reports.report(ParamError::QuotedWord { word, span }));
+        return Err(reports.report(ParamError::QuotedWord(word, span)));
     }
     let mut environment = ParamsAlone {
         params,
@@ -257,10 +254,8 @@ impl Given<'_> {
         SetParam { expr, value, roots }: &SetParam,
         reports: &mut Reports,
     ) -> BoundParam {
-        let source = expr
-            .value
-            .as_param()
-            .and_then(|name| self.outer.bound(name));
+        let source = expr.value.as_param();
+        let source = source.and_then(|name| self.outer.bound(name));
         let misfit = source.filter(|source| !param.holds_all_of(&source.param));
         let value = match (value, misfit) {
             (Err(reported), _) => Err(*reported),

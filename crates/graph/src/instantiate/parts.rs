@@ -28,12 +28,8 @@ pub(super) fn layers(
         | ResourceKind::AccelerationStructure
         | ResourceKind::CpuWork
         | ResourceKind::Frame => {
-            let error = InterfaceError::NoPart {
-                text: reference.text().to_owned(),
-                span: reference.span.clone(),
-                what: "only textures and buffers have parts",
-            };
-            return Err(error.into());
+            let what = "only textures and buffers have parts";
+            return Err(InterfaceError::NoPart(reference.located(), what).into());
         }
     };
     let count = items(resource, target);
@@ -42,7 +38,7 @@ pub(super) fn layers(
 
 /// Returns the error for a buffer whose number of items is asked for but not known.
 pub(super) fn uncounted(resource: &Resource, reference: &Reference) -> EvaluationError {
-    let name = Located::new(reference.path(), reference.span.clone());
+    let name = reference.located_path();
     match &resource.kind {
         ResourceKind::Provided(_) => EvaluationError::Uncounted(name),
         _ => EvaluationError::NoCount(name),
@@ -57,11 +53,10 @@ pub(super) fn mips(
 ) -> Result<(&'static str, u64), InterfaceError> {
     match resource.kind {
         ResourceKind::Texture(_) => Ok(("mips", target.part.mips.len() as u64)),
-        _ => Err(InterfaceError::NoPart {
-            text: reference.path(),
-            span: reference.span.clone(),
-            what: "only textures have mips",
-        }),
+        _ => {
+            let what = "only textures have mips";
+            Err(InterfaceError::NoPart(reference.located_path(), what))
+        }
     }
 }
 
@@ -79,11 +74,8 @@ pub(super) fn select_mips(
     {
         let layers = texture.mip_layers(target.part.mips.start);
         if target.part.layers.start >= layers {
-            return Err(InterfaceError::NoPart {
-                text: reference.text().to_owned(),
-                span: reference.span.clone(),
-                what: "this mip has fewer slices",
-            });
+            let what = "this mip has fewer slices";
+            return Err(InterfaceError::NoPart(reference.located(), what));
         }
         target.part.layers.end = target.part.layers.end.min(layers);
     }
@@ -100,16 +92,13 @@ pub(super) fn narrow(
     let fits = range.start < range.end && range.end <= count;
     let narrow = || Some(u32::try_from(range.start).ok()?..u32::try_from(range.end).ok()?);
     narrow().filter(|_| fits).ok_or_else(|| {
-        let last = count.saturating_sub(1);
-        InterfaceError::Range {
-            text: reference.text().to_owned(),
-            span: span.clone(),
-            what: match count {
-                1 => format!("its {what} are [0] alone, this is [{}]", range.start),
-                _ => format!("its {what} are [0] to [{last}], this is [{}]", range.start),
-            },
-            declared: resource.declared.clone(),
-        }
+        let (start, last) = (range.start, count.saturating_sub(1));
+        let what = match count {
+            1 => format!("its {what} are [0] alone, this is [{start}]"),
+            _ => format!("its {what} are [0] to [{last}], this is [{start}]"),
+        };
+        let part = Located::new(reference.text().to_owned(), span.clone());
+        InterfaceError::Range(part, what, resource.declared.clone())
     })
 }
 
@@ -133,9 +122,8 @@ pub(super) fn attribute(
     };
     let [width, height] = texture.mip_size(part.mips.start);
     let layers = if texture.is_3d {
-        part.layers
-            .len()
-            .min(texture.mip_layers(part.mips.start) as usize)
+        let slices = texture.mip_layers(part.mips.start) as usize;
+        part.layers.len().min(slices)
     } else {
         part.layers.len()
     };

@@ -326,10 +326,8 @@ impl Scopes {
 fn spell(scope: &mut Scope, spelling: &str, symbol: &Symbol) {
     match symbol {
         Symbol::Target(target) => {
-            scope
-                .wgsl_name
-                .entry(spelling.to_owned())
-                .or_insert_with(|| Ok(target.clone()));
+            let names = scope.wgsl_name.entry(spelling.to_owned());
+            names.or_insert_with(|| Ok(target.clone()));
         }
         Symbol::Value(id) => {
             scope.wgsl_values.entry(spelling.to_owned()).or_insert(*id);

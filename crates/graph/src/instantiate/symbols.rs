@@ -76,11 +76,8 @@ pub(crate) struct SymbolTable<'a> {
 
 impl<'a> SymbolTable<'a> {
     pub fn new(graph: &'a Loaded, request: &'a PlanRequest<'a>, reports: Reports) -> Self {
-        let names = request
-            .provider
-            .names()
-            .into_iter()
-            .chain([FRAME.to_owned()]);
+        let names = request.provider.names().into_iter();
+        let names = names.chain([FRAME.to_owned()]);
         Self {
             graph,
             request,
@@ -184,10 +181,8 @@ impl<'a> SymbolTable<'a> {
         }
         if self.resolving.len() == DEEPEST_VALUE {
             let name = declared.name().text();
-            return Err(self.reports.report(EvaluationError::DeepValue {
-                name,
-                most: DEEPEST_VALUE,
-            }));
+            let error = EvaluationError::DeepValue(name, DEEPEST_VALUE);
+            return Err(self.reports.report(error));
         }
         declared.state = ValueState::Resolving;
         let position = declared.scope.begin();
@@ -217,8 +212,8 @@ impl<'a> SymbolTable<'a> {
         let ring = self.resolving.iter().skip_while(|other| **other != id);
         let ring = ring.chain([&id]);
         let ring = ring.map(|id| self.values[id.0].name().text());
-        self.reports
-            .report(EvaluationError::CircularValue(ring.collect()))
+        let error = EvaluationError::CircularValue(ring.collect());
+        self.reports.report(error)
     }
 
     /// Returns the place of a value's expression, for messages.
@@ -375,10 +370,8 @@ impl<'a> SymbolTable<'a> {
     /// Finds the output or capture that a request names: a resource by its full name, or a part of
     /// one that the root document knows. `None` if the name is unknown.
     pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
-        let known = self
-            .resources
-            .iter()
-            .position(|resource| resource.name == name);
+        let mut resources = self.resources.iter();
+        let known = resources.position(|resource| resource.name == name);
         if let Some(number) = known {
             let id = ResourceId(number);
             return Some(self.resolve_size(id).map(|()| self.whole(id)));
@@ -397,12 +390,8 @@ impl<'a> SymbolTable<'a> {
     pub fn full_names(&self) -> Vec<String> {
         let mut names: Vec<String> = self.resources.iter().map(|r| r.name.clone()).collect();
         names.sort();
-        let scene = self.request.provider.names();
-        names.extend(
-            scene
-                .into_iter()
-                .filter(|name| !self.scene.contains_key(name)),
-        );
+        let scene = self.request.provider.names().into_iter();
+        names.extend(scene.filter(|name| !self.scene.contains_key(name)));
         names
     }
 
@@ -491,10 +480,8 @@ impl<'a> SymbolTable<'a> {
         let resource = self.get(found.nth(1).copied().unwrap_or(id));
         let span = resource.declared.clone();
         let span = span.unwrap_or_else(|| self.graph.place());
-        self.reports.report(EvaluationError::Circular(Located::new(
-            resource.name.clone(),
-            span,
-        )))
+        let name = Located::new(resource.name.clone(), span);
+        self.reports.report(EvaluationError::Circular(name))
     }
 
     fn resolve_sizes_of_parts(&mut self, id: ResourceId) {
@@ -658,12 +645,8 @@ impl<'a> At<'_, 'a> {
             let kept = self.symbols.kept(target.id);
             let id = self.symbols.previous(target.id);
             target.id = id.map_err(|what| {
-                self.report(InterfaceError::NoPrevious {
-                    name: reference.text().to_owned(),
-                    span: reference.span.clone(),
-                    what,
-                    kept,
-                })
+                let name = reference.located();
+                self.report(InterfaceError::NoPrevious { name, what, kept })
             })?;
         }
         Ok(target)
@@ -690,10 +673,10 @@ impl<'a> At<'_, 'a> {
                 Symbol::Target(target) => {
                     return match segments.peek() {
                         None => Ok((target, segment.selection.as_ref())),
-                        Some(next) => Err(self.report(InterfaceError::NotOfMaterial {
-                            of: walked,
-                            name: next.name.text(),
-                        })),
+                        Some(next) => {
+                            let error = InterfaceError::NotOfMaterial(walked, next.name.text());
+                            Err(self.report(error))
+                        }
                     };
                 }
                 Symbol::Namespace(names) => names,
@@ -709,11 +692,7 @@ impl<'a> At<'_, 'a> {
             let Some(found) = names.get(&next.name.value) else {
                 let known = names.keys().map(|name| name.to_string());
                 let known = self.symbols.reports.known(known);
-                return Err(self.report(InterfaceError::Private {
-                    entry: walked,
-                    name: next.name.text(),
-                    known,
-                }));
+                return Err(self.report(InterfaceError::Private(walked, next.name.text(), known)));
             };
             walked = format!("{walked}.{}", next.name.value);
             symbol = found.clone();
@@ -730,12 +709,10 @@ impl<'a> At<'_, 'a> {
         let index = eval::count(expr, self)?;
         let index = usize::try_from(index).ok().filter(|index| *index < count);
         index.ok_or_else(|| {
-            self.report(InterfaceError::Range {
-                text: format!("{}[{}]", name.value, expr.text()),
-                span: expr.span.clone(),
-                what: format!("it is repeated {count} times, counted from 0"),
-                declared: None,
-            })
+            let part = format!("{}[{}]", name.value, expr.text());
+            let part = Located::new(part, expr.span.clone());
+            let what = format!("it is repeated {count} times, counted from 0");
+            self.report(InterfaceError::Range(part, what, None))
         })
     }
 
@@ -782,16 +759,10 @@ impl<'a> At<'_, 'a> {
             Ok(number) => number,
             Err(reported) => return Some(Err(reported)),
         };
-        let found = self
-            .symbols
-            .find_scene(&format!("{list}.{number}"), self.position.scope);
+        let found = self.find_scene(&format!("{list}.{number}"));
         Some(found.unwrap_or_else(|| {
-            Err(self.report(InterfaceError::Range {
-                text: reference.text().to_owned(),
-                span: reference.span.clone(),
-                what: format!("there are {count} of them, counted from 0; this is [{number}]"),
-                declared: None,
-            }))
+            let what = format!("there are {count} of them, counted from 0; this is [{number}]");
+            Err(self.report(InterfaceError::Range(reference.located(), what, None)))
         }))
     }
 
@@ -801,12 +772,10 @@ impl<'a> At<'_, 'a> {
         if let Some(reported) = instance.incomplete {
             return reported;
         }
-        let known = self
-            .symbols
-            .reports
-            .known(self.symbols.known(self.position.scope));
+        let known = self.symbols.known(self.position.scope);
+        let known = self.symbols.reports.known(known);
         self.report(InterfaceError::Unknown {
-            name: Located::new(reference.path(), reference.span.clone()),
+            name: reference.located_path(),
             document: instance.document.file.name.to_string(),
             known,
         })
@@ -828,16 +797,13 @@ impl<'a> At<'_, 'a> {
             }
             Selection::Range(ends) => {
                 let [first, end] = &**ends;
-                (
-                    eval::count(first, self)?..eval::count(end, self)?,
-                    &end.span,
-                )
+                let range = eval::count(first, self)?..eval::count(end, self)?;
+                (range, &end.span)
             }
         };
         let resource = self.symbols.get(target.id);
-        self.symbols
-            .reports
-            .check(parts::narrow(selected, have, reference, resource))
+        let narrowed = parts::narrow(selected, have, reference, resource);
+        self.symbols.reports.check(narrowed)
     }
 }
 
@@ -883,15 +849,10 @@ impl Environment for At<'_, '_> {
             own.is_some_and(|symbol| matches!(symbol, Symbol::Target(_)))
                 || self.symbols.request.provider.describe(name).is_some()
         };
-        let values = instance
-            .document
-            .values
-            .iter()
-            .map(|(name, _)| name.as_str());
-        let known = self
-            .symbols
-            .reports
-            .known(instance.params.names().chain(values));
+        let values = instance.document.values.iter();
+        let names = instance.params.names();
+        let names = names.chain(values.map(|(name, _)| name.as_str()));
+        let known = self.symbols.reports.known(names);
         let error = EvaluationError::param(name, span, is_material, known);
         Err(self.report(error))
     }

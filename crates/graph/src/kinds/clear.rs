@@ -15,7 +15,6 @@ pub(super) struct Clear {
     /// The texture or buffer, or a part of one.
     target: Reference,
     /// One value for all channels; four; a depth and a stencil. 0 without it, of a depth, too.
-    #[serde(default)]
     value: Option<Expr>,
 }
 

@@ -16,17 +16,13 @@ pub(super) struct Compute {
     /// How many threads or workgroups.
     dispatch: Size,
     /// The entry point, where the shader has several.
-    #[serde(default)]
     entry: Option<EntryName>,
 }
 
 /// How many threads or workgroups a dispatch has.
 #[derive(Clone, Debug, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Dispatch")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Dispatch"))]
 #[serde(rename = "dispatch")]
 enum Size {
     /// A thread for each of so many items, or for each texel of a size.

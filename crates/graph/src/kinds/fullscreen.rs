@@ -18,13 +18,10 @@ pub(super) struct Fullscreen {
     #[serde(default)]
     color: Vec<ColorEntry>,
     /// Stencil attachment.
-    #[serde(default)]
     stencil: Option<StencilEntry>,
     /// The texels that are drawn, `(x, y, width, height)`; all without it.
-    #[serde(default)]
     area: Option<Expr>,
     /// The fragment entry point, where the shader has several.
-    #[serde(default)]
     fragment: Option<EntryName>,
 }
 

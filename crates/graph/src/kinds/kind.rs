@@ -190,9 +190,8 @@ impl<'a> Lowering<'a> {
     /// while a document is loaded.
     pub fn provided_items(&self, name: &str) -> u64 {
         let environment = self.environment.as_ref();
-        environment
-            .and_then(|it| it.provided_items(name))
-            .unwrap_or(0)
+        let items = environment.and_then(|it| it.provided_items(name));
+        items.unwrap_or(0)
     }
 
     /// True if the provider has a resource of this name, also if an include binds a material to the
@@ -295,21 +294,13 @@ impl<'a> Lowering<'a> {
         self.evaluate(words[0].1, |environment| {
             let value = eval::value(expr, environment)?;
             if let Value::Word(word) = &value
-                && word
-                    .of
-                    .iter()
-                    .flat_map(|of| of.iter())
-                    .all(|word| known(word).is_some())
+                && (word.of.iter().flat_map(|of| of.iter())).all(|word| known(word).is_some())
                 && let Some((_, value)) = known(&word.word)
             {
                 return Ok(*value);
             }
             let expected = words.iter().map(|(word, _)| (*word).to_owned()).collect();
-            Err(environment.report(EvaluationError::Words {
-                span: expr.span.clone(),
-                expected,
-                found: value,
-            }))
+            Err(environment.report(EvaluationError::Words(expr.span.clone(), expected, value)))
         })
     }
 }

@@ -21,23 +21,18 @@ pub(super) struct Raster {
     /// The number of vertices, or `Indirect("buffer")`: four u32 in a buffer.
     draw: Call,
     /// How often they are drawn; once without it.
-    #[serde(default)]
     instances: Option<Expr>,
     /// Colour attachments, in the order of the shader's locations.
     #[serde(default)]
     color: Vec<ColorEntry>,
     /// Depth attachment.
-    #[serde(default)]
     depth: Option<DepthEntry>,
     /// Stencil attachment.
-    #[serde(default)]
     stencil: Option<StencilEntry>,
     /// Width and height in texels, one number for a square, of a pass without attachments, whose
     /// fragment shader writes buffers or storage textures.
-    #[serde(default)]
     size: Option<Expr>,
     /// The texels that are drawn, `(x, y, width, height)`; all without it.
-    #[serde(default)]
     area: Option<Expr>,
     /// The triangles that are left out, none without it, or in quotes a `Choice` of `none`,
     /// `front`, `back`, or one of them by a condition.
@@ -57,10 +52,8 @@ pub(super) struct Raster {
     #[serde(default)]
     unclipped: bool,
     /// The vertex entry point, where the shader has several.
-    #[serde(default)]
     vertex: Option<EntryName>,
     /// The fragment entry point, where the shader has several; `none` draws depth alone.
-    #[serde(default)]
     fragment: Option<EntryName>,
 }
 
@@ -103,11 +96,8 @@ impl<'de> Deserialize<'de> for Call {
 
 /// Which triangles are left out.
 #[derive(Clone, Copy, Debug, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Cull")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Cull"))]
 enum Face {
     None,
     Front,
@@ -147,13 +137,14 @@ impl PassKind for Raster {
         program.fragment = self.fragment.as_ref().and_then(|entry| entry.chosen(pass));
         program.no_fragment = self.fragment.is_some() && program.fragment.is_none();
         let call = match &self.draw {
-            Call::Vertices(count) => DrawCall::Direct {
-                vertices: pass.count32(count),
-                instances: self
-                    .instances
-                    .as_ref()
-                    .map_or(1, |count| pass.count32(count)),
-            },
+            Call::Vertices(count) => {
+                let vertices = pass.count32(count);
+                let instances = self.instances.as_ref();
+                DrawCall::Direct {
+                    vertices,
+                    instances: instances.map_or(1, |count| pass.count32(count)),
+                }
+            }
             Call::Indirect(buffer) => DrawCall::Indirect(Operand::from(buffer)),
         };
         let primitive = wgt::PrimitiveState {
@@ -176,15 +167,12 @@ impl PassKind for Raster {
             unclipped_depth: self.unclipped,
             ..wgt::PrimitiveState::default()
         };
-        let area = self.area.as_ref();
+        let (area, depth) = (self.area.as_ref(), self.depth.as_ref());
         let draw = Draw {
             program,
             fullscreen: false,
             colors: targets::colors(&self.color, area, pass),
-            depth: self
-                .depth
-                .as_ref()
-                .map(|depth| targets::depth(depth, area, pass)),
+            depth: depth.map(|depth| targets::depth(depth, area, pass)),
             stencil: targets::stencil(self.stencil.as_ref(), area, pass),
             canvas: self.size.as_ref().map(|size| targets::canvas(size, pass)),
             area: area.and_then(|area| targets::area(area, pass)),

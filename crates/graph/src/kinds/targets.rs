@@ -25,16 +25,13 @@ pub(super) struct ColorFields {
     /// The texture, or one mip or layer of it.
     target: Reference,
     /// Operation before the first draw; cleared to zero without it.
-    #[serde(default)]
     load: Option<Load>,
     /// How what is drawn is mixed with what is there; it replaces it without this.
-    #[serde(default)]
     blend: Option<Blend>,
     /// The channels that are written, such as `rg`; all without it.
     #[serde(default)]
     write: WriteMask,
     /// The texture that a multisampled target is resolved into.
-    #[serde(default)]
     resolve: Option<Reference>,
 }
 
@@ -131,7 +128,6 @@ pub(super) struct DepthFields {
     /// The texture, or one mip or layer of it.
     target: Reference,
     /// Operation before the first draw; cleared to one without it.
-    #[serde(default)]
     load: Option<Load>,
     /// Which depths pass; smaller ones without it.
     #[serde(default)]
@@ -163,18 +159,14 @@ fn yes() -> bool {
 
 /// Depth bias of the rasteriser, as wgpu defines it.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Bias")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Bias"))]
 #[serde(deny_unknown_fields)]
 struct BiasEntry {
     /// In steps of the format.
     #[serde(default)]
     constant: i32,
     /// Times the triangle's greatest slope.
-    #[serde(default)]
     slope_scale: Option<Expr>,
     /// Most that is added; no bound where it is 0.
     #[serde(default)]
@@ -183,17 +175,13 @@ struct BiasEntry {
 
 /// A stencil attachment: `(target: "ds", load: …, front: …, back: …, …)`.
 #[derive(Clone, Debug, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Stencil")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "Stencil"))]
 #[serde(deny_unknown_fields)]
 pub(super) struct StencilEntry {
     /// The texture, or one mip or layer of it; the depth attachment's, where there are both.
     target: Reference,
     /// Operation before the first draw; cleared to zero without it.
-    #[serde(default)]
     load: Option<Load>,
     /// Triangles that show their front.
     #[serde(default)]
@@ -208,7 +196,6 @@ pub(super) struct StencilEntry {
     #[serde(default = "all_ones")]
     write_mask: u32,
     /// Value that the test compares with and `Replace` writes; 0 without it.
-    #[serde(default)]
     reference: Option<Expr>,
 }
 
@@ -218,11 +205,8 @@ fn all_ones() -> u32 {
 
 /// Test and operations of one side.
 #[derive(Clone, Copy, Debug, Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "StencilFace")
-)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "StencilFace"))]
 #[serde(deny_unknown_fields)]
 struct FaceEntry {
     /// The test of `reference` against what is stored; `Always` without it.

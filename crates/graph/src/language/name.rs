@@ -36,10 +36,8 @@ impl Name {
     pub(crate) fn new(text: &str) -> Result<Self, NameFault> {
         let is_part = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
         let first = text.chars().next().ok_or(NameFault::Empty)?;
-        if let Some(sign) = text
-            .chars()
-            .find(|&c| !is_part(c) && !c.is_ascii_uppercase())
-        {
+        let is_odd = |sign: &char| !is_part(*sign) && !sign.is_ascii_uppercase();
+        if let Some(sign) = text.chars().find(is_odd) {
             return Err(NameFault::Sign(sign));
         }
         if !first.is_ascii_lowercase() {

@@ -188,24 +188,24 @@ impl Reference {
         Located::new(self.text().to_owned(), self.span.clone())
     }
 
+    /// Returns the [path](Self::path) of the reference, with its place in the document.
+    pub(crate) fn located_path(&self) -> Located<String> {
+        Located::new(self.path(), self.span.clone())
+    }
+
     /// Returns the reference's names with dots between them, without selections: the name that a
     /// provider is asked for.
     pub(crate) fn path(&self) -> String {
-        let names: Vec<&str> = self
-            .segments
-            .iter()
-            .map(|segment| segment.name.as_str())
-            .collect();
+        let segments = self.segments.iter();
+        let names: Vec<&str> = segments.map(|segment| segment.name.as_str()).collect();
         names.join(".")
     }
 
     /// Calls `each` with this reference, and with every leaf of its selections and conditions.
     pub(crate) fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         each(Leaf::Material(self));
-        let segments = self
-            .segments
-            .iter()
-            .filter_map(|segment| segment.selection.as_ref());
+        let segments = self.segments.iter();
+        let segments = segments.filter_map(|segment| segment.selection.as_ref());
         for selection in segments.chain(&self.mips) {
             selection.exprs().iter().for_each(|expr| expr.visit(each));
         }

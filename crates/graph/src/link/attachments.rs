@@ -52,9 +52,8 @@ pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_>) -> Reported<Dr
             samples,
         })
     });
-    let call = draw
-        .call
-        .in_stage(|name| dispatch::indirect(name, 16, scope));
+    let arguments = |name: &_| dispatch::indirect(name, 16, scope);
+    let call = draw.call.in_stage(arguments);
     features(draw, scope)?;
     let linked = Draw {
         program: program?,
@@ -112,11 +111,8 @@ fn colors(
     let limits = scope.request().limits.clone();
     let most = limits.max_color_attachments;
     if draw.colors.len() > most as usize {
-        scope.unsupported(LinkError::TooManyTargets {
-            pass: scope.pass.clone(),
-            count: draw.colors.len(),
-            most,
-        })?;
+        let (pass, count) = (scope.pass.clone(), draw.colors.len());
+        scope.unsupported(LinkError::TooManyTargets(pass, count, most))?;
     }
     let mut colors = Vec::with_capacity(draw.colors.len());
     let mut bytes_per_sample = 0u32;
@@ -147,11 +143,8 @@ fn colors(
         let mut locations = outputs.iter().map(|output| output.location);
         if let Some(location) = locations.find(|location| *location >= targets) {
             let (pass, entry) = (scope.pass.clone(), span.clone());
-            scope.reports().warn(LinkError::NoTarget {
-                pass,
-                location,
-                entry,
-            });
+            let reports = scope.reports();
+            reports.warn(LinkError::NoTarget(pass, location, entry));
         }
     }
     let most = limits.max_color_attachment_bytes_per_sample;
@@ -172,10 +165,10 @@ fn link_color(color: &ColorTarget<Names>, scope: &mut PassScope<'_>) -> Reported
     let features = format.guaranteed_format_features(scope.request().features);
     let usages = features.allowed_usages;
     if format.is_depth_stencil_format() || !usages.contains(TextureUsages::RENDER_ATTACHMENT) {
-        return Err(scope.report(LinkError::NotDrawable { name, format }));
+        return Err(scope.report(LinkError::NotDrawable(name, format)));
     }
     if color.blend.is_some() && !features.flags.contains(Flags::BLENDABLE) {
-        return Err(scope.report(LinkError::NotBlendable { name, format }));
+        return Err(scope.report(LinkError::NotBlendable(name, format)));
     }
     if let Some(value) = color.clear {
         scope.check(clear_value(&name, format, value))?;
@@ -218,7 +211,7 @@ fn resolved(
         None
     };
     if let Some(why) = why {
-        return Err(scope.report(LinkError::Resolve { name, why }));
+        return Err(scope.report(LinkError::Resolve(name, why)));
     }
     let used = (false, true, true);
     scope.access(&resolved.target, used, ATTACHMENT, &name.span);
@@ -234,11 +227,7 @@ fn check_output(
 ) -> Result<(), LinkError> {
     let name = target.located();
     let Some(output) = outputs.iter().find(|output| output.location == location) else {
-        return Err(LinkError::NoFragmentOutput {
-            name,
-            location,
-            entry: entry.clone(),
-        });
+        return Err(LinkError::NoFragmentOutput(name, location, entry.clone()));
     };
     let needed = u32::from(format.components());
     let expected = scalar_of(format, TextureAspect::All);
@@ -262,7 +251,7 @@ fn link_depth(depth: &DepthTarget<Names>, scope: &mut PassScope<'_>) -> Reported
     let target = attachment(&depth.target, scope)?;
     let format = target.format;
     if !format.has_depth_aspect() {
-        return Err(scope.report(LinkError::NoDepth { name, format }));
+        return Err(scope.report(LinkError::NoDepth(name, format)));
     }
     if let Some(value) = depth.clear {
         scope.check(clear_value(&name, format, [value.into(), 0.0, 0.0, 0.0]))?;
@@ -288,7 +277,7 @@ fn link_stencil(
     let target = attachment(&stencil.target, scope)?;
     let format = target.format;
     if !format.has_stencil_aspect() {
-        return Err(scope.report(LinkError::NoStencil { name, format }));
+        return Err(scope.report(LinkError::NoStencil(name, format)));
     }
     if let Some(wrong) = stencil.clear.filter(|value| *value > u32::from(u8::MAX)) {
         return Err(scope.report(LinkError::ClearValue {
@@ -362,11 +351,7 @@ fn attachment(reference: &Reference, scope: &mut PassScope<'_>) -> Reported<Atta
     let resource = scope.get(target.id);
     let ResourceKind::Texture(texture) = &resource.kind else {
         let found = resource.kind.describe();
-        return Err(scope.report(LinkError::NoTexture {
-            pass: scope.pass.value.clone(),
-            name,
-            found,
-        }));
+        return Err(scope.report(LinkError::NoTexture(scope.pass.value.clone(), name, found)));
     };
     let Texture {
         format, samples, ..
@@ -386,19 +371,14 @@ fn attachment(reference: &Reference, scope: &mut PassScope<'_>) -> Reported<Atta
 /// lies within them, and that depth and stencil are the same texture.
 fn alike(draw: &Draw<Ids>, scope: &PassScope<'_>) -> Result<(), LinkError> {
     let colors = draw.colors.iter().map(|color| &color.target);
-    let resolved = draw
-        .colors
-        .iter()
-        .filter_map(|color| color.resolve.as_ref());
+    let resolved = draw.colors.iter();
+    let resolved = resolved.filter_map(|color| color.resolve.as_ref());
     let depth = draw.depth.as_ref().map(|depth| &depth.target);
     let stencil = draw.stencil.as_ref().map(|stencil| &stencil.target);
     let drawn = colors.chain(depth).chain(stencil).chain(&draw.canvas);
     let drawn: Vec<&Attachment> = drawn.collect();
     let Some(first) = drawn.first() else {
-        return Err(LinkError::NoTargets {
-            pass: scope.pass.clone(),
-            fullscreen: draw.fullscreen,
-        });
+        return Err(LinkError::NoTargets(scope.pass.clone(), draw.fullscreen));
     };
     if let (Some(depth), Some(stencil)) = (depth, stencil)
         && depth.target != stencil.target
@@ -437,11 +417,8 @@ fn alike(draw: &Draw<Ids>, scope: &PassScope<'_>) -> Result<(), LinkError> {
     if fits(x, width, whole[0]) && fits(y, height, whole[1]) {
         Ok(())
     } else {
-        Err(LinkError::AreaOutside {
-            pass: scope.pass.clone(),
-            area: [x, y, width, height],
-            whole,
-        })
+        let area = [x, y, width, height];
+        Err(LinkError::AreaOutside(scope.pass.clone(), area, whole))
     }
 }
 

@@ -27,17 +27,11 @@ pub(super) fn bind(
     scope: &mut PassScope<'_>,
 ) -> Reported<LinkedBinding> {
     let features = scope.request().features;
-    let bound = program
-        .bind
-        .iter()
-        .find(|(name, _)| name.value == global.name);
+    let mut bind = program.bind.iter();
+    let bound = bind.find(|(name, _)| name.value == global.name);
     let (target, ty) = match (&global.class, bound) {
         (Class::Unsupported(what), _) => {
-            return Err(scope.report(LinkError::Unsupported {
-                global: global.name.clone(),
-                what,
-                span: global.span.clone(),
-            }));
+            return Err(scope.report(LinkError::Unsupported(global.located(), what)));
         }
         (Class::Uniform { size, members, .. }, None) if global.name == "params" => {
             let block = params::block(global, *size, members, scope)?;
@@ -55,10 +49,7 @@ pub(super) fn bind(
                 if global.stages.contains(wgt::ShaderStages::VERTEX)
                     && !features.contains(wgt::Features::VERTEX_WRITABLE_STORAGE)
                 {
-                    scope.unsupported(LinkError::VertexWrites {
-                        global: global.name.clone(),
-                        span: global.span.clone(),
-                    })?;
+                    scope.unsupported(LinkError::VertexWrites(global.located()))?;
                 }
             }
             let used = (global.reads, global.writes, false);
@@ -135,10 +126,7 @@ fn binding(
         (Class::AccelerationStructure, ResourceKind::AccelerationStructure) => {
             // Not every device queries rays.
             if !features.contains(wgt::Features::EXPERIMENTAL_RAY_QUERY) {
-                scope.unsupported(LinkError::RayQuery {
-                    pass: scope.pass.clone(),
-                    span: global.span.clone(),
-                })?;
+                scope.unsupported(LinkError::RayQuery(scope.pass.clone(), global.span.clone()))?;
             }
             let ty = wgt::BindingType::AccelerationStructure {
                 vertex_return: false,
@@ -153,8 +141,7 @@ fn binding(
         _ => "a sampler",
     };
     Err(scope.report(LinkError::WrongKind {
-        global: global.name.clone(),
-        span: global.span.clone(),
+        global: global.located(),
         needed,
         name: resource.name,
         found: resource.kind.describe(),
@@ -181,12 +168,8 @@ fn uniform_buffer(
         }));
     }
     if size > most {
-        scope.unsupported(LinkError::UniformLimit {
-            global: global.name.clone(),
-            size,
-            most,
-            span: global.span.clone(),
-        })?;
+        let global = global.located();
+        scope.unsupported(LinkError::UniformLimit { global, size, most })?;
     }
     let alignment = scope.request().limits.min_uniform_buffer_offset_alignment;
     aligned(global, target, alignment, scope)?;
@@ -232,10 +215,7 @@ fn storage_buffer(
     let resource = scope.get(target.id);
     if matches!(resource.kind, ResourceKind::Provided(_)) && !read_only {
         let name = resource.name.clone();
-        return Err(scope.report(LinkError::WritesProvided {
-            name,
-            span: global.span.clone(),
-        }));
+        return Err(scope.report(LinkError::WritesProvided(name, global.span.clone())));
     }
     let alignment = scope.request().limits.min_storage_buffer_offset_alignment;
     aligned(global, target, alignment, scope)?;

@@ -81,10 +81,8 @@ fn returns_nothing(
     scope: &mut PassScope<'_>,
 ) -> Reported<()> {
     let Some(entry) = program.entry(ShaderStage::Fragment) else {
-        return Err(scope.report(LinkError::CanvasWithoutFragment {
-            pass: scope.pass.clone(),
-            size: canvas.span.clone(),
-        }));
+        let (pass, size) = (scope.pass.clone(), canvas.span.clone());
+        return Err(scope.report(LinkError::CanvasWithoutFragment(pass, size)));
     };
     let shader = &program.shader;
     let result = &shader.module().entry_points[entry].function.result;
@@ -101,7 +99,7 @@ fn returns_nothing(
 fn canvas_size(canvas: &Located<[u64; 2]>, scope: &mut PassScope<'_>) -> Reported<[u32; 2]> {
     let name = Located::new(scope.pass.value.clone(), canvas.span.clone());
     let [Ok(width), Ok(height)] = canvas.value.map(u32::try_from) else {
-        return Err(scope.report(SizeError::Absurd { name }));
+        return Err(scope.report(SizeError::Absurd(name)));
     };
     let size = [width, height];
     if size.contains(&0) {
@@ -115,7 +113,7 @@ fn canvas_size(canvas: &Located<[u64; 2]>, scope: &mut PassScope<'_>) -> Reporte
     }
     let most = scope.request().limits.max_texture_dimension_2d;
     if width > most || height > most {
-        scope.unsupported(SizeError::Texels { name, size, most })?;
+        scope.unsupported(SizeError::Texels(name, size, most))?;
     }
     Ok(size)
 }

@@ -16,6 +16,7 @@ use crate::{
     resource::{Buffer, Origin, Resource, ResourceKind, SubresourceRange, Target},
     source::span::Located,
 };
+use std::ops::Range;
 
 /// Creates the pass that copies a material as it stands after the last of `passes`: the part of it
 /// that has been written by then.
@@ -101,27 +102,22 @@ fn written_part(
     let written = |passes: &[LinkedPass]| -> Vec<SubresourceRange> {
         let accesses = passes.iter().flat_map(|pass| &pass.accesses);
         let written = accesses.filter(|it| it.writes && it.resource == target.id);
-        written
-            .filter_map(|it| within(&it.part, &target.part))
-            .collect()
+        let parts = written.filter_map(|it| within(&it.part, &target.part));
+        parts.collect()
     };
     // The captures after a pass stand behind it.
     let last = passes.iter().rposition(|pass| !pass.is_capture())?;
     let own = written(&passes[last..=last]);
-    [
-        written(passes),
-        own.clone(),
-        own.into_iter().take(1).collect(),
-    ]
-    .into_iter()
-    .find_map(|parts| {
+    let first = own.iter().take(1).cloned().collect();
+    let both =
+        |one: &Range<u32>, other: &Range<u32>| one.start.min(other.start)..one.end.max(other.end);
+    [written(passes), own, first].into_iter().find_map(|parts| {
         let from_first_to_last = parts
             .iter()
             .cloned()
             .reduce(|one, other| SubresourceRange {
-                mips: one.mips.start.min(other.mips.start)..one.mips.end.max(other.mips.end),
-                layers: one.layers.start.min(other.layers.start)
-                    ..one.layers.end.max(other.layers.end),
+                mips: both(&one.mips, &other.mips),
+                layers: both(&one.layers, &other.layers),
                 ..one
             })?;
         fully_overwrites(&parts, &from_first_to_last, resource).then_some(from_first_to_last)

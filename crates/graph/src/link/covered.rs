@@ -20,11 +20,8 @@ pub(super) fn fully_overwrites(
     resource: &Resource,
 ) -> bool {
     whole.mips.clone().all(|mip| {
-        let mut layers: Vec<&Range<u32>> = parts
-            .iter()
-            .filter(|part| part.mips.contains(&mip))
-            .map(|part| &part.layers)
-            .collect();
+        let parts = parts.iter().filter(|part| part.mips.contains(&mip));
+        let mut layers: Vec<&Range<u32>> = parts.map(|part| &part.layers).collect();
         layers.sort_by_key(|layers| layers.start);
         // Slices of a 3D texture become fewer.
         let end = match &resource.kind {

@@ -29,7 +29,7 @@ pub(super) fn link(call: &CpuCall<Names>, scope: &mut PassScope<'_>) -> Reported
     let resource = scope.get(writes.buffer.id);
     if matches!(resource.kind, ResourceKind::Provided(_)) {
         let name = resource.name.clone();
-        return Err(scope.report(LinkError::WritesProvided { name, span }));
+        return Err(scope.report(LinkError::WritesProvided(name, span)));
     }
     let usage = Usage::Buffer(wgt::BufferUsages::COPY_DST);
     // Items beyond `count` stay what they were.
@@ -64,7 +64,7 @@ fn buffer(operand: &Operand, scope: &mut PassScope<'_>) -> Reported<(Target, Spa
         ResourceKind::Buffer(_) | ResourceKind::Provided(_) => Ok((target, name.span)),
         other => {
             let found = other.describe();
-            Err(scope.report(LinkError::CpuItems { name, found }))
+            Err(scope.report(LinkError::CpuItems(name, found)))
         }
     }
 }

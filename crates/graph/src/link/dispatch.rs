@@ -44,7 +44,7 @@ pub(super) fn indirect(
     let resource = scope.get(target.id);
     if !matches!(resource.kind, ResourceKind::Buffer(_)) {
         let found = resource.kind.describe();
-        return Err(scope.report(LinkError::NoArguments { name, found }));
+        return Err(scope.report(LinkError::NoArguments(name, found)));
     }
     let id = scope.symbols().base(target.id);
     scope.layouts.at_least(id, &target.part, bytes, &name.span);
@@ -57,10 +57,7 @@ fn workgroup_size(program: &LinkedProgram, scope: &mut PassScope<'_>) -> Reporte
     let entry = program.entries[0];
     let at = program.shader.entry_span(entry);
     let Some(size) = program.shader.workgroup_size(entry) else {
-        return Err(scope.report(LinkError::WorkgroupOverride {
-            at,
-            pass: scope.pass.clone(),
-        }));
+        return Err(scope.report(LinkError::WorkgroupOverride(at, scope.pass.clone())));
     };
     let limits = &scope.request().limits;
     let most = [
@@ -95,11 +92,7 @@ fn workgroups(threads: &Threads, size: [u32; 3], scope: &mut PassScope<'_>) -> R
     };
     let narrow = groups.map(|edge| u32::try_from(edge).unwrap_or(u32::MAX));
     if narrow.iter().any(|&edge| edge > most) {
-        scope.unsupported(LinkError::Workgroups {
-            groups,
-            most,
-            pass: scope.pass.clone(),
-        })?;
+        scope.unsupported(LinkError::Workgroups(groups, most, scope.pass.clone()))?;
     }
     Ok(narrow)
 }

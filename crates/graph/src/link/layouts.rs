@@ -162,9 +162,8 @@ impl Layouts {
     ) -> Vec<LayoutError> {
         let have = buffer.bytes;
         let least = self.least.get(&id).map(|(bytes, span)| (*bytes, span));
-        let needs = seen
-            .iter()
-            .map(|view| (view.fixed + view.stride.unwrap_or(0), &view.span));
+        let needs = seen.iter();
+        let needs = needs.map(|view| (view.fixed + view.stride.unwrap_or(0), &view.span));
         let short = needs.chain(least).filter(|(bytes, _)| *bytes > have);
         short
             .map(|(needed, span)| LayoutError::Import {
@@ -193,10 +192,8 @@ impl Layouts {
             Some(count) if is_declared => count,
             _ => 1,
         };
-        let whole = || {
-            seen.iter()
-                .filter(|view| view.part == SubresourceRange::WHOLE)
-        };
+        let is_whole = |view: &&Seen| view.part == SubresourceRange::WHOLE;
+        let whole = || seen.iter().filter(is_whole);
         let mut bytes = self.least.get(&id).map(|(bytes, _)| *bytes);
         for view in whole() {
             let size = match (view.stride, buffer.count) {
@@ -206,11 +203,8 @@ impl Layouts {
                     view.fixed.saturating_add(stride.saturating_mul(items))
                 }
                 (Some(_), None) => {
-                    return Err(LayoutError::NoCount {
-                        name: resource.name.clone(),
-                        span: view.span.clone(),
-                        declared: declared(),
-                    });
+                    let (name, span) = (resource.name.clone(), view.span.clone());
+                    return Err(LayoutError::NoCount(name, span, declared()));
                 }
             };
             bytes = Some(bytes.unwrap_or(0).max(size));
@@ -234,11 +228,8 @@ impl Layouts {
             && buffer.data.is_none()
             && let (Some(_), Some(fixed)) = (buffer.count, whole().next())
         {
-            return Err(LayoutError::IgnoredCount {
-                name: resource.name.clone(),
-                span: fixed.span.clone(),
-                declared: declared(),
-            });
+            let (name, span) = (resource.name.clone(), fixed.span.clone());
+            return Err(LayoutError::IgnoredCount(name, span, declared()));
         } else if !is_declared && let Some(count) = buffer.count {
             bytes = Some(bytes.unwrap_or(0).max(count * 4));
         }
@@ -360,11 +351,8 @@ impl Layouts {
 
 /// True if a shader's view of a provided buffer is one of its items.
 fn fits(view: &Seen, provided: crate::provider::Provided) -> bool {
-    let items = view
-        .part
-        .items()
-        .map(|items| items.len() as u64)
-        .or(provided.items);
+    let items = view.part.items().map(|items| items.len() as u64);
+    let items = items.or(provided.items);
     match view.stride {
         Some(stride) => view.fixed == 0 && stride == provided.stride,
         None => items.is_none_or(|items| view.fixed <= items.saturating_mul(provided.stride)),
@@ -373,19 +361,15 @@ fn fits(view: &Seen, provided: crate::provider::Provided) -> bool {
 
 /// Returns the mistake of two shaders that declare one buffer differently; `None` if all agree.
 fn disagreement(name: &str, seen: &[Seen]) -> Option<LayoutError> {
-    let mut whole = seen
-        .iter()
-        .filter(|view| view.part == SubresourceRange::WHOLE);
+    let seen = seen.iter();
+    let mut whole = seen.filter(|view| view.part == SubresourceRange::WHOLE);
     let first = whole.next()?;
     let (name, spans) = (name.to_owned(), |other: &Seen| {
         [first.span.clone(), other.span.clone()]
     });
     if let Some(other) = whole.clone().find(|view| view.layout != first.layout) {
-        return Some(LayoutError::Disagreement {
-            name,
-            layouts: [first.shown(), other.shown()],
-            spans: spans(other),
-        });
+        let layouts = [first.shown(), other.shown()];
+        return Some(LayoutError::Disagreement(name, layouts, spans(other)));
     }
     let (other, (member, offsets)) =
         whole.find_map(|view| Some((view, swapped(first.item.as_ref()?, view.item.as_ref()?)?)))?;
@@ -414,12 +398,8 @@ impl Seen {
         match &self.item {
             Some(Item { stride, fields }) if (2..=FEW).contains(&fields.len()) => {
                 let shown = |field: &Field| {
-                    format!(
-                        "{} ({} at byte {})",
-                        field.name,
-                        field.scalar.as_str(),
-                        field.offset
-                    )
+                    let (name, scalar) = (&field.name, field.scalar.as_str());
+                    format!("{name} ({scalar} at byte {})", field.offset)
                 };
                 let fields: Vec<String> = fields.iter().map(shown).collect();
                 format!("{}; {stride} bytes each", fields.join(", "))

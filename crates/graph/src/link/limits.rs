@@ -49,11 +49,11 @@ fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_>) -> 
     let most = scope.request().limits.max_compute_workgroup_storage_size;
     if let Some(excess) = beyond(&of.workgroup, u64::from(most), entry) {
         let entry = entry.clone();
-        scope.unsupported(LimitError::Workgroup { entry, excess })?;
+        scope.unsupported(LimitError::Workgroup(entry, excess))?;
     }
     if let Some(excess) = beyond(&of.private, MOST_OF_ONE, entry) {
         let entry = entry.clone();
-        return Err(scope.report(LimitError::Private { entry, excess }));
+        return Err(scope.report(LimitError::Private(entry, excess)));
     }
     for (function, memory) in &of.functions {
         if let Some(excess) = beyond(memory, MOST_OF_ONE, entry) {
@@ -78,7 +78,7 @@ fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_>) -> 
             largest,
         };
         let entry = entry.clone();
-        return Err(scope.report(LimitError::Functions { entry, excess }));
+        return Err(scope.report(LimitError::Functions(entry, excess)));
     }
     if let Some(Excess { bytes, largest, .. }) = beyond(&of.value, MOST_OF_A_VALUE, entry) {
         return Err(scope.report(LimitError::Value {
@@ -136,10 +136,7 @@ pub(super) fn stages(
         let is_points = draw.primitive.topology == wgt::PrimitiveTopology::PointList;
         let at = entry(shader, index);
         if let Some(attribute) = Varyings::inputs(shader.module(), index).locations.first() {
-            return Err(scope.report(LimitError::Attribute {
-                entry: at,
-                location: attribute.location,
-            }));
+            return Err(scope.report(LimitError::Attribute(at, attribute.location)));
         }
         let outputs = Varyings::outputs(shader.module(), index);
         let locations = most.saturating_sub(outputs.builtins);

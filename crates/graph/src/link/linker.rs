@@ -133,10 +133,8 @@ fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>)
         stated.insert(id);
         let mut read = pass.accesses.iter().filter(|access| access.reads);
         if !read.any(|access| access.resource == id) {
-            return Err(scope.report(LinkError::ReadsNot {
-                pass: pass.name.value.clone(),
-                name: reference.located(),
-            }));
+            let pass = pass.name.value.clone();
+            return Err(scope.report(LinkError::ReadsNot(pass, reference.located())));
         }
     }
     let unstated = pass.accesses.iter().find(|access| {
@@ -152,11 +150,8 @@ fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>)
         None => Ok(()),
         Some(access) => {
             let name = scope.get(access.resource).name.clone();
-            Err(scope.report(LinkError::ReadsMore {
-                pass: pass.name.clone(),
-                name,
-                read: access.span.clone(),
-            }))
+            let (reader, read) = (pass.name.clone(), access.span.clone());
+            Err(scope.report(LinkError::ReadsMore(reader, name, read)))
         }
     }
 }
@@ -182,10 +177,8 @@ fn overwrites(
             }
         }
         if !is_written {
-            return Err(scope.report(LinkError::Overwrites {
-                pass: pass.name.value.clone(),
-                name: reference.located(),
-            }));
+            let pass = pass.name.value.clone();
+            return Err(scope.report(LinkError::Overwrites(pass, reference.located())));
         }
     }
     Ok(())

@@ -57,11 +57,8 @@ pub(super) fn constants(
 ) -> Reported<Vec<(String, f64)>> {
     let mut constants = Vec::new();
     for (name, key, has_default, span) in shader.overrides() {
-        let given = program
-            .constants
-            .iter()
-            .find(|(constant, _)| constant == name);
-        if let Some((_, value)) = given {
+        let mut given = program.constants.iter();
+        if let Some((_, value)) = given.find(|(constant, _)| constant == name) {
             constants.push((key, *value));
             continue;
         }
@@ -255,10 +252,8 @@ fn set_member(
     scope: &mut PassScope<'_>,
 ) -> Reported<Vec<u32>> {
     let Some(expected) = member.vector else {
-        return Err(scope.report(LinkError::MemberIsNoVector {
-            member: member.name.clone(),
-            span: global.span.clone(),
-        }));
+        let (name, span) = (member.name.clone(), global.span.clone());
+        return Err(scope.report(LinkError::MemberIsNoVector(name, span)));
     };
     let list = match value {
         Value::Scalar(scalar) => vec![*scalar],
@@ -275,10 +270,8 @@ fn set_member(
         }
         Value::Format(_) => Vec::new(),
     };
-    let words: Option<Vec<u32>> = list
-        .iter()
-        .map(|scalar| bits(expected.class, *scalar))
-        .collect();
+    let list = list.iter();
+    let words: Option<Vec<u32>> = list.map(|scalar| bits(expected.class, *scalar)).collect();
     match words.filter(|words| words.len() == expected.width as usize) {
         Some(words) => Ok(words),
         None => Err(scope.report(LinkError::SetValue {

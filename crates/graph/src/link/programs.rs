@@ -165,9 +165,8 @@ fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()>
     ];
     for (what, is, most) in kinds {
         let of_stage = |stage: wgt::ShaderStages| {
-            let seen = bindings
-                .iter()
-                .filter(|bound| bound.visibility.contains(stage));
+            let bindings = bindings.iter();
+            let seen = bindings.filter(|bound| bound.visibility.contains(stage));
             seen.filter(|bound| is(&bound.ty)).count()
         };
         let stages = [
@@ -177,12 +176,8 @@ fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()>
         ];
         let number = stages.map(of_stage).into_iter().max().unwrap_or(0);
         if number > most as usize {
-            scope.unsupported(LinkError::TooManyBindings {
-                pass: scope.pass.clone(),
-                what,
-                number,
-                most,
-            })?;
+            let pass = scope.pass.clone();
+            scope.unsupported(LinkError::TooManyBindings(pass, what, number, most))?;
         }
     }
     Ok(())

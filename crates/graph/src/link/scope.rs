@@ -15,7 +15,7 @@ use crate::{
         flat::Inherited, lower::LoweredPass, params::BoundParam, scopes::Position,
         symbols::SymbolTable,
     },
-    kinds::step::{Operand, Program, ShaderUse},
+    kinds::step::{Operand, Program},
     language::{
         name::{Name, wgsl_identifier},
         syntax::{Expr, Reference},
@@ -205,11 +205,11 @@ impl<'a> PassScope<'a> {
         let error = match origin {
             Origin::Previous(base) => {
                 let of = self.get(*base).name.clone();
-                LinkError::WritesPrevious { of, span }
+                LinkError::WritesPrevious(of, span)
             }
             Origin::Constant => {
                 let name = name.clone();
-                LinkError::WritesConstant { name, span }
+                LinkError::WritesConstant(name, span)
             }
             Origin::Own | Origin::Host => return Ok(()),
         };
@@ -218,22 +218,17 @@ impl<'a> PassScope<'a> {
 
     /// Returns the shader of a program, which was loaded with the document.
     pub fn shader(&mut self, program: &Program) -> Reported<Arc<Shader>> {
-        let Some(name) = &program.shader else {
+        let Some(shader) = program.shader_use() else {
             return Err(self.report(LinkError::NoShader));
         };
         let instance = self.symbols.scopes.document(self.position.scope);
-        let shader = ShaderUse {
-            name: name.clone(),
-            imports: program.imports.clone(),
-        };
         let shaders = &self.symbols.graph.shaders;
         match shaders.get(&instance.document, &shader, &instance.replaced) {
             Some(shader) => shader,
             // A kind names another one for other values.
             None => Err(shaders.incomplete.unwrap_or_else(|| {
-                self.symbols
-                    .reports
-                    .report(LinkError::ShaderNotLoaded(name.clone()))
+                let reports = &mut self.symbols.reports;
+                reports.report(LinkError::ShaderNotLoaded(shader.name))
             })),
         }
     }
@@ -241,22 +236,16 @@ impl<'a> PassScope<'a> {
     /// Returns the declarations of a program's shader that is not valid; `None` of a valid one.
     pub fn declarations(&self, program: &Program) -> Option<Arc<Shader>> {
         let instance = self.symbols.scopes.document(self.position.scope);
-        let shaders = &self.symbols.graph.shaders;
-        shaders.declarations(
-            &instance.document,
-            &program.shader_use()?,
-            &instance.replaced,
-        )
+        let (shaders, shader) = (&self.symbols.graph.shaders, program.shader_use()?);
+        shaders.declarations(&instance.document, &shader, &instance.replaced)
     }
 
     /// True if a global means something here that a pass does not bind itself.
     pub fn is_known(&mut self, global: &str) -> bool {
-        let mut said = self.inherited_bind.iter();
-        said.any(|said| said.name.value == global)
-            || self
-                .symbols
-                .find_global(global, self.position.scope)
-                .is_some()
+        let scope = self.position.scope;
+        let mut inherited = self.inherited_bind.iter();
+        inherited.any(|bound| bound.name.value == global)
+            || self.symbols.find_global(global, scope).is_some()
     }
 
     /// Returns the target of a shader's global that the pass itself does not bind: bound by a group
@@ -278,20 +267,16 @@ impl<'a> PassScope<'a> {
             && let Some(kept) = self.symbols.kept(base?.id)
         {
             return Err(self.report(InterfaceError::NoPrevious {
-                name: global.name.clone(),
-                span: global.span.clone(),
+                name: global.located(),
                 what: "kept".to_owned(),
                 kept: Some(kept),
             }));
         }
-        let known = self.symbols.known(scope);
-        let known = self
-            .symbols
-            .reports
-            .known(known.iter().map(|name| wgsl_identifier(name)));
+        let names = self.symbols.known(scope);
+        let names = names.iter().map(|name| wgsl_identifier(name));
+        let known = self.symbols.reports.known(names);
         Err(self.report(LinkError::UnknownGlobal {
-            global: global.name.clone(),
-            span: global.span.clone(),
+            global: global.located(),
             pass: self.pass.clone(),
             known,
         }))

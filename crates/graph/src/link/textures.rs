@@ -53,8 +53,7 @@ pub(super) fn texture(
         let error = LinkError::Texture {
             name: resource.name.clone(),
             format: texture.format,
-            global: global.name.clone(),
-            span: global.span.clone(),
+            global: global.located(),
             declared: resource.declared.clone(),
             misfit: Box::new(misfit),
         };
@@ -88,11 +87,7 @@ fn sampled(
     };
     let declared = scalar_of(format, aspect);
     if declared != Some(scalar) || (depth && !format.is_depth_stencil_format()) {
-        return Err(TextureMisfit::Scalar {
-            reads: scalar,
-            holds: declared,
-            depth,
-        });
+        return Err(TextureMisfit::Scalar(scalar, declared, depth));
     }
     if multisampled != (texture.samples > 1) {
         return Err(TextureMisfit::Samples(texture.samples));
@@ -110,10 +105,7 @@ fn sampled(
     };
     let samplers = linked.shader.samplers_of(&linked.entries, global.handle);
     if !suits && let Some(sampler) = samplers.into_iter().find(is_linear) {
-        return Err(TextureMisfit::Filtered {
-            sampler,
-            by_feature,
-        });
+        return Err(TextureMisfit::Filtered(sampler, by_feature));
     }
     let sample_type = match (scalar, depth) {
         (_, true) => wgt::TextureSampleType::Depth,
@@ -147,9 +139,8 @@ fn storage(
         return Err(TextureMisfit::StorageSamples(texture.samples));
     }
     let both = access == wgt::StorageTextureAccess::ReadWrite;
-    let allowed = features
-        .allowed_usages
-        .contains(TextureUsages::STORAGE_BINDING)
+    let usages = features.allowed_usages;
+    let allowed = usages.contains(TextureUsages::STORAGE_BINDING)
         && (!both || features.flags.contains(Flags::STORAGE_READ_WRITE));
     if !allowed && !scope.symbols().reports.any_adapter {
         return Err(TextureMisfit::NoStorage);

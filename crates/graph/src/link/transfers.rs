@@ -77,7 +77,7 @@ pub(super) fn clear(
             let needed = wgt::TextureUsages::RENDER_ATTACHMENT;
             let features = format.guaranteed_format_features(scope.request().features);
             if !features.allowed_usages.contains(needed) {
-                return Err(scope.report(LinkError::ClearFormat { name, format }));
+                return Err(scope.report(LinkError::ClearFormat(name, format)));
             }
             scope.check(clear_value(&name, format, value))?;
             Usage::Texture(needed)
@@ -88,7 +88,7 @@ pub(super) fn clear(
         ResourceKind::Buffer(_) => Usage::Buffer(wgt::BufferUsages::COPY_DST),
         other => {
             let found = other.describe();
-            return Err(scope.report(LinkError::ClearKind { name, found }));
+            return Err(scope.report(LinkError::ClearKind(name, found)));
         }
     };
     scope.access(&target, (false, true, true), usage, &name.span);

@@ -88,9 +88,8 @@ fn follows(error: &Diagnostic, found: &[Diagnostic]) -> bool {
         && !["expected ", "no definition", "invalid field"]
             .iter()
             .any(|begin| {
-                error
-                    .message
-                    .contains(&format!("does not compile: {begin}"))
+                let begins = format!("does not compile: {begin}");
+                error.message.contains(&begins)
             });
     let file = |it: &Diagnostic| it.labels.first().map(|label| label.span.file.name.clone());
     let is_cause = |other: &Diagnostic| {
@@ -155,9 +154,8 @@ fn stand_ins(
                 compare,
             },
         };
-        imports
-            .entry(input.name.value.to_string())
-            .or_insert(import);
+        let name = input.name.value.to_string();
+        imports.entry(name).or_insert(import);
     }
     imports
 }
@@ -205,10 +203,10 @@ fn unneeded(graph: &Loaded, plan: &Planned) -> Vec<Diagnostic> {
     let document = &graph.document;
     let live: BTreeSet<usize> = plan.schedule.passes.iter().map(|id| id.index()).collect();
     let mut reports = Reports::default();
-    let mut told: Vec<&Span> = Vec::new();
+    let mut warned: Vec<&Span> = Vec::new();
     for (index, pass) in plan.passes.iter().enumerate() {
         let place = &pass.name.span;
-        if live.contains(&index) || place.file != document.file || told.contains(&place) {
+        if live.contains(&index) || place.file != document.file || warned.contains(&place) {
             continue;
         }
         let mut others = Document::clone(document);
@@ -222,7 +220,7 @@ fn unneeded(graph: &Loaded, plan: &Planned) -> Vec<Diagnostic> {
             used.contains(name) || used.contains(&format!("{name}_previous"))
         };
         if !written.iter().any(is_used) {
-            told.push(place);
+            warned.push(place);
             let name = pass.name.split('[').next().unwrap_or_default();
             reports.warn(OrderError::Unneeded {
                 pass: Located::new(name.to_owned(), place.clone()),
@@ -247,10 +245,8 @@ fn remove(entries: &mut Vec<Result<Entry, Invalid>>, place: &Span) {
 /// of limits, memory, features and lights are left out.
 fn wrong_with(graph: &Arc<Loaded>, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
     let outcome = plan_for_any(graph, request);
-    let errors = outcome
-        .found
-        .into_iter()
-        .filter(|found| found.severity == Severity::Error);
+    let errors = outcome.found.into_iter();
+    let errors = errors.filter(|found| found.severity == Severity::Error);
     // A value at the end of a range may well be too large for a device, or for memory; a word
     // may be for other lights.
     let errors = errors.filter(|found| {
@@ -280,9 +276,8 @@ fn ends(param: &Param) -> Vec<ParamValue> {
         ParamType::Vec2 | ParamType::Vec3 | ParamType::Vec4 => Vec::new(),
         ty => {
             let numbers = [param.min, param.max].into_iter().flatten();
-            numbers
-                .filter_map(|number| ty.with_number(number))
-                .collect()
+            let numbers = numbers.filter_map(|number| ty.with_number(number));
+            numbers.collect()
         }
     }
 }

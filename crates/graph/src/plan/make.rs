@@ -18,7 +18,7 @@ use crate::{
         conditions::conditions,
         cull,
         lifetimes::{Lifetime, Lifetimes, lifetimes},
-        order::{Order, order, order_of_live},
+        order::{Order, order},
         schedule::{Schedule, sequence},
         view::GraphView,
     },
@@ -181,7 +181,7 @@ fn schedule(
         resources: &resources,
     };
     let live = live(view, &readable, &order);
-    let sequence = sequence(&order_of_live(view, &live), &live);
+    let sequence = sequence(&live);
     let mut lifetimes = lifetimes(view, &sequence);
     unmade(&lifetimes, view, reports);
     // Conditions must agree for any choice of outputs.
@@ -199,9 +199,8 @@ fn schedule(
     if reports.errors() > 0 {
         return None;
     }
-    let constants = lifetimes
-        .keys()
-        .filter(|id| view.resource(**id).origin == Origin::Constant);
+    let is_constant = |id: &&ResourceId| view.resource(**id).origin == Origin::Constant;
+    let constants = lifetimes.keys().filter(is_constant);
     let kept: BTreeSet<ResourceId> = conditions
         .kept
         .iter()
@@ -214,9 +213,8 @@ fn schedule(
     let aliases = aliases(view, &sequence, &lifetimes, &kept);
     let culled = culled(view, &live);
     let relies_on = unbound(asked, &lifetimes, view);
-    let own = previous
-        .values()
-        .filter(|base| view.resource(**base).origin == Origin::Own);
+    let is_own = |base: &&ResourceId| view.resource(**base).origin == Origin::Own;
+    let own = previous.values().filter(is_own);
     let schedule = Schedule {
         ping_pong: own.copied().collect(),
         passes: sequence,
@@ -321,9 +319,8 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
     // An import is written for the host.
     let of_host =
         |access: &Access| access.writes && view.resource(access.resource).origin == Origin::Host;
-    let imports = view
-        .ids()
-        .filter(|(_, pass)| pass.accesses.iter().any(of_host));
+    let passes = view.ids();
+    let imports = passes.filter(|(_, pass)| pass.accesses.iter().any(of_host));
     let final_writers = |target: &Target| {
         if view.resource(target.id).keep {
             writers(view, target)
@@ -353,11 +350,8 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
             }
             needed
         };
-        view.pass(pass)
-            .accesses
-            .iter()
-            .flat_map(of)
-            .collect::<Vec<_>>()
+        let accesses = view.pass(pass).accesses.iter();
+        accesses.flat_map(of).collect::<Vec<_>>()
     })
 }
 
@@ -455,9 +449,8 @@ fn unmade(lifetimes: &Lifetimes, view: GraphView<'_>, reports: &mut Reports) {
         let Some(declared) = resource.declared.clone() else {
             continue;
         };
-        let is_drawn = lifetime
-            .textures
-            .contains(wgt::TextureUsages::RENDER_ATTACHMENT);
+        let drawn = wgt::TextureUsages::RENDER_ATTACHMENT;
+        let is_drawn = lifetime.textures.contains(drawn);
         // A history is drawn as the resource itself.
         let is_own = resource.origin == Origin::Own;
         let name = Located::new(resource.name.clone(), declared);
@@ -490,11 +483,8 @@ fn never_written(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
             if is_host || !order.final_writers(&Target { id, part }).is_empty() {
                 continue;
             }
-            reports.report(OrderError::NeverWritten {
-                name: view.resource(id).name.clone(),
-                pass: pass.name.clone(),
-                read: access.span.clone(),
-            });
+            let (name, reader) = (view.resource(id).name.clone(), pass.name.clone());
+            reports.report(OrderError::NeverWritten(name, reader, access.span.clone()));
         }
     }
 }
@@ -519,10 +509,9 @@ fn check_counters(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
                 counter: name.clone(),
             });
         } else if is_item && (stride == 0 || stride % 4 != 0) {
-            reports.report(SizeError::Counter {
-                name: Located::new(name.clone(), declared.clone()),
-                what: "a buffer of which no shader says that its items are u32",
-            });
+            let what = "a buffer of which no shader says that its items are u32";
+            let name = Located::new(name.clone(), declared.clone());
+            reports.report(SizeError::Counter(name, what));
         }
     }
 }
@@ -556,28 +545,19 @@ fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
 }
 
 fn culled(view: GraphView<'_>, live: &[bool]) -> Vec<CulledPass> {
+    let culled = |(pass, _): (&LinkedPass, _)| {
+        let written = pass.accesses.iter().filter(|access| access.writes);
+        let written = written.map(|access| format!("`{}`", view.resource(access.resource).name));
+        let written: BTreeSet<String> = written.collect();
+        let written: Vec<String> = written.into_iter().collect();
+        CulledPass {
+            name: pass.name.value.clone(),
+            reason: match written.join(", ") {
+                none if none.is_empty() => "it writes nothing".to_owned(),
+                names => format!("nothing that an output needs reads what it writes ({names})"),
+            },
+        }
+    };
     let passes = view.passes.iter().zip(live);
-    passes
-        .filter(|(_, live)| !**live)
-        .map(|(pass, _)| {
-            let written: BTreeSet<String> = pass
-                .accesses
-                .iter()
-                .filter(|access| access.writes)
-                .map(|access| format!("`{}`", view.resource(access.resource).name))
-                .collect();
-            let written: Vec<String> = written.into_iter().collect();
-            CulledPass {
-                name: pass.name.value.clone(),
-                reason: if written.is_empty() {
-                    "it writes nothing".to_owned()
-                } else {
-                    format!(
-                        "nothing that an output needs reads what it writes ({})",
-                        written.join(", ")
-                    )
-                },
-            }
-        })
-        .collect()
+    passes.filter(|(_, live)| !**live).map(culled).collect()
 }

@@ -147,11 +147,8 @@ impl Memory<'_> {
 
     /// Returns the names of the resources, the size and the format of an allocation, as text.
     fn row(&self, allocation: &Allocation) -> [String; 3] {
-        let names: Vec<&str> = allocation
-            .aliases
-            .iter()
-            .map(|alias| self.resources[alias.0].name.as_str())
-            .collect();
+        let name = |alias: &ResourceId| self.resources[alias.0].name.as_str();
+        let names: Vec<&str> = allocation.aliases.iter().map(name).collect();
         let versions = match self.versions(allocation.aliases[0]) {
             1 => String::new(),
             versions => format!(", {versions} versions"),

@@ -298,9 +298,8 @@ impl Plan {
         self.0.values.insert(name.to_owned(), value.clone());
         self.0.request.params.insert(name.to_owned(), value);
         let live = self.0.schedule.passes.iter().enumerate();
-        live.filter(|(_, id)| changed[id.0])
-            .map(|(position, _)| position)
-            .collect()
+        let live = live.filter(|(_, id)| changed[id.0]);
+        live.map(|(position, _)| position).collect()
     }
 
     /// Returns the name and kind of each [live](Self::live) pass, in the order in which they run.

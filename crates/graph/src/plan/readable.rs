@@ -126,17 +126,12 @@ pub(super) fn check_captures(
     lowered: &[LoweredPass<'_>],
     reports: &mut Reports,
 ) {
-    let after = request
-        .captures
-        .iter()
-        .filter_map(|capture| capture.after.as_deref());
+    let captures = request.captures.iter();
+    let after = captures.filter_map(|capture| capture.after.as_deref());
     for name in after {
         if !lowered.iter().any(|pass| pass.flat.name.value == name) {
             let known = lowered.iter().map(|pass| pass.flat.name.value.clone());
-            reports.report(OutputError::NoPass {
-                name: name.to_owned(),
-                known: known.collect(),
-            });
+            reports.report(OutputError::NoPass(name.to_owned(), known.collect()));
         }
     }
 }

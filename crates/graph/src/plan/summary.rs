@@ -72,27 +72,21 @@ pub(super) fn refused_light<N: AsRef<str>>(
     document: &Document,
     kinds: impl IntoIterator<Item = (N, ProvidedKind)>,
 ) -> Option<OutputError> {
-    let lights = kinds
-        .into_iter()
-        .filter(|(name, _)| is_light(name.as_ref()));
+    let kinds = kinds.into_iter();
+    let lights = kinds.filter(|(name, _)| is_light(name.as_ref()));
     let takes = |kind: &ProvidedKind| {
         if document.lights.is_empty() {
             kind.number == 0
         } else {
-            document
-                .lights
-                .iter()
-                .any(|word| word.as_str() == kind.word())
+            let mut lights = document.lights.iter();
+            lights.any(|word| word.as_str() == kind.word())
         }
     };
     let kind = lights.map(|(_, kind)| kind).find(|kind| !takes(kind))?;
     let words = document.lights.iter().map(|word| word.value.to_string());
     let takes = if document.lights.is_empty() {
-        kind.words
-            .iter()
-            .take(1)
-            .map(|word| (*word).to_owned())
-            .collect()
+        let first = kind.words.iter().take(1);
+        first.map(|word| (*word).to_owned()).collect()
     } else {
         words.collect()
     };

@@ -17,11 +17,8 @@ pub fn cut(text: &str, characters: usize) -> String {
     }
     let tail = characters / 3;
     let head = characters.saturating_sub(tail + 1);
-    all[..head]
-        .iter()
-        .chain(['…'].iter())
-        .chain(&all[all.len() - tail..])
-        .collect()
+    let beginning = all[..head].iter().chain(['…'].iter());
+    beginning.chain(&all[all.len() - tail..]).collect()
 }
 
 /// Formats a number of bytes in the largest unit in which it is at least 1: `B`, `KiB`, `MiB` or

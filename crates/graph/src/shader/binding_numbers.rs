@@ -13,17 +13,11 @@ pub(super) fn assign_bindings(module: &mut naga::Module, is_imported: &dyn Fn(us
         .iter()
         .filter_map(|(_, v)| v.binding.map(|b| (b.group, b.binding)))
         .collect();
-    let handles: Vec<_> = module
-        .global_variables
-        .iter()
-        .map(|(handle, _)| handle)
-        .collect();
+    let global_variables = module.global_variables.iter();
+    let handles: Vec<_> = global_variables.map(|(handle, _)| handle).collect();
     for handle in handles {
-        let at = module
-            .global_variables
-            .get_span(handle)
-            .to_range()
-            .map_or(0, |range| range.start);
+        let place = module.global_variables.get_span(handle).to_range();
+        let at = place.map_or(0, |range| range.start);
         let variable = module.global_variables.get_mut(handle);
         let is_resource = matches!(
             variable.space,

@@ -25,9 +25,8 @@ pub(super) fn blamed_range(text: &str, panics: &dyn Fn(&str) -> bool) -> Option<
     let declarations = declarations(text);
     let order = in_order_of_need(&declarations);
     let joined = |parts: &[usize]| {
-        let texts = parts
-            .iter()
-            .map(|&part| &text[declarations[part].range.clone()]);
+        let parts = parts.iter();
+        let texts = parts.map(|&part| &text[declarations[part].range.clone()]);
         texts.collect::<Vec<_>>().join("\n")
     };
     let counts: Vec<usize> = (1..=order.len()).collect();
@@ -47,9 +46,8 @@ pub(super) fn blamed_range(text: &str, panics: &dyn Fn(&str) -> bool) -> Option<
         let begin = &text[body.start..body.start + end];
         let close = "}".repeat(depth);
         // A `return` is the last statement of a valid function, and not every one needs it.
-        [result.as_str(), ""]
-            .iter()
-            .any(|result| panics(&format!("{before}\n{head}{begin}{close}{result} }}")))
+        let mut results = [result.as_str(), ""].into_iter();
+        results.any(|result| panics(&format!("{before}\n{head}{begin}{close}{result} }}")))
     };
     let first = ends.partition_point(|end| !cut(end));
     // A part of it may not be valid where the whole is.
@@ -83,9 +81,8 @@ pub(super) fn without_functions(text: &str) -> String {
 /// The declarations, each behind those that it names; directives first.
 fn in_order_of_need(declarations: &[Declaration<'_>]) -> Vec<usize> {
     let all = || declarations.iter().enumerate();
-    let by_name: BTreeMap<&str, usize> = all()
-        .filter_map(|(index, declaration)| Some((declaration.name?, index)))
-        .collect();
+    let by_name = all().filter_map(|(index, declaration)| Some((declaration.name?, index)));
+    let by_name: BTreeMap<&str, usize> = by_name.collect();
     let directives = all().filter(|(_, declaration)| declaration.name.is_none());
     let mut order: Vec<usize> = directives.map(|(index, _)| index).collect();
     let mut seen: BTreeSet<usize> = order.iter().copied().collect();

@@ -37,9 +37,8 @@ fn parsed_and_valid(source: &Expanded) -> Result<Valid, ShaderError> {
         return Err(error);
     }
     assign_bindings(&mut module, &|at| source.is_imported(at));
-    let info = validator()
-        .validate(&module)
-        .map_err(|error| validation_error(&error, &module, source))?;
+    let info = validator().validate(&module);
+    let info = info.map_err(|error| validation_error(&error, &module, source))?;
     let mut layouter = Layouter::default();
     layouter
         .update(GlobalCtx {
@@ -60,11 +59,8 @@ fn immediate(module: &Module, source: &Expanded) -> Option<ShaderError> {
         globals.find(|(_, global)| global.space == naga::AddressSpace::Immediate)?;
     let name = global.name.clone().unwrap_or_default();
     let at = source.place(module.global_variables.get_span(handle));
-    Some(ShaderError::Immediate(
-        source.file.name.to_string(),
-        name,
-        at,
-    ))
+    let file = source.file.name.to_string();
+    Some(ShaderError::Immediate(file, name, at))
 }
 
 /// A document is checked against the language. Features that a device lacks are reported when a

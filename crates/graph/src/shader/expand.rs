@@ -59,11 +59,9 @@ impl Expanded {
     /// Maps a byte range of the expanded text to its place in the file that it came from. A range
     /// that spans several files is taken to lie in the first.
     pub fn locate(&self, range: Range<usize>) -> Span {
-        let index = self
-            .pieces
-            .partition_point(|(start, ..)| *start <= range.start)
-            .saturating_sub(1);
-        match self.pieces.get(index) {
+        let pieces = &self.pieces;
+        let behind = pieces.partition_point(|(start, ..)| *start <= range.start);
+        match pieces.get(behind.saturating_sub(1)) {
             Some((start, file, offset)) => {
                 let from = (offset + range.start - start).min(file.text.len());
                 file.span(from..(from + range.len()).min(file.text.len()))
@@ -204,9 +202,8 @@ impl<'a> ShaderFiles<'a> {
     }
 
     fn likeness(&self, candidates: &[String], name: &str) -> Option<String> {
-        let files = candidates
-            .iter()
-            .flat_map(|path| self.sources.list(folder_of(path)));
+        let candidates = candidates.iter();
+        let files = candidates.flat_map(|path| self.sources.list(folder_of(path)));
         // A document names shaders without the ending, an import names a file with its folder.
         let named = |file: String| {
             let stem = file.strip_suffix(".wgsl")?;
@@ -235,11 +232,8 @@ impl<'a> ShaderFiles<'a> {
             at += line.len();
             let inside = comments.are_open();
             comments.read(line);
-            let Some(rest) = line
-                .trim_start()
-                .strip_prefix("#import")
-                .filter(|_| !inside)
-            else {
+            let rest = line.trim_start().strip_prefix("#import");
+            let Some(rest) = rest.filter(|_| !inside) else {
                 into.text.push_str(line);
                 continue;
             };
@@ -251,10 +245,8 @@ impl<'a> ShaderFiles<'a> {
             let path_asked = Arc::clone(&imported.name);
             // A module that stands in for another may import it: then the import means the module
             // itself.
-            let stands_in = modules
-                .get(&*imported.name)
-                .filter(|path| **path != *file.name);
-            if let Some(path) = stands_in
+            let stands_in = modules.get(&*imported.name);
+            if let Some(path) = stands_in.filter(|path| **path != *file.name)
                 && let Ok(Some(file)) = self.find(std::slice::from_ref(path))
             {
                 imported = file;

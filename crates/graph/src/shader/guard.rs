@@ -88,9 +88,8 @@ pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
             }
             _ => {}
         }
-        let deepest = levels
-            .last()
-            .map_or(0, |level| level.current.max(level.longest));
+        let last = levels.last();
+        let deepest = last.map_or(0, |level| level.current.max(level.longest));
         if deepest > DEEPEST {
             return Err(ShaderError::TooDeep(file, DEEPEST, source.locate(here)));
         }

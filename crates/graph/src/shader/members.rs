@@ -24,9 +24,8 @@ pub(crate) fn reads_below(
             _ => true,
         }
     };
-    called
-        .chain([first])
-        .any(|function| reads(function, global, begins_below))
+    let mut called = called.chain([first]);
+    called.any(|function| reads(function, global, begins_below))
 }
 
 /// True if a function reads a global: one of the members, or all of it.

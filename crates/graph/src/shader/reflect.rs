@@ -90,6 +90,13 @@ pub(crate) struct Global {
     pub stages: wgt::ShaderStages,
 }
 
+impl Global {
+    /// Returns the name of the global, with its place.
+    pub(crate) fn located(&self) -> Located<String> {
+        Located::new(self.name.clone(), self.span.clone())
+    }
+}
+
 impl Shader {
     /// Parses and validates a shader. Globals without `@group` and `@binding` get free numbers: in
     /// group 0 if an imported module declares them, in group 1 if the shader's own file does.
@@ -119,11 +126,8 @@ impl Shader {
             .iter()
             .map(|(key, value)| (key.clone(), value.to_bits()));
         let key = (entry, bits.collect());
-        let lock = || {
-            self.footprints
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-        };
+        let footprints = &self.footprints;
+        let lock = || footprints.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = lock().get(&key) {
             return known.clone();
         }
@@ -223,10 +227,8 @@ impl Shader {
     /// Returns the entry point's workgroup size; `None` if it depends on an override.
     pub(crate) fn workgroup_size(&self, entry: usize) -> Option<[u32; 3]> {
         let entry = &self.module.entry_points[entry];
-        entry
-            .workgroup_size_overrides
-            .is_none()
-            .then_some(entry.workgroup_size)
+        let is_fixed = entry.workgroup_size_overrides.is_none();
+        is_fixed.then_some(entry.workgroup_size)
     }
 
     /// Returns the place of an entry point's name, which naga does not keep.
@@ -336,9 +338,8 @@ impl Shader {
         let overrides = self.module.overrides.iter();
         overrides.filter_map(|(handle, constant)| {
             let name = constant.name.as_deref()?;
-            let key = constant
-                .id
-                .map_or_else(|| name.to_owned(), |id| id.to_string());
+            let id = constant.id.map(|id| id.to_string());
+            let key = id.unwrap_or_else(|| name.to_owned());
             let span = self.module.overrides.get_span(handle);
             Some((name, key, constant.init.is_some(), self.source.place(span)))
         })
@@ -393,9 +394,8 @@ impl Shader {
     /// Iterates over the names of the params that the module takes: members of the uniform
     /// `params`, and overrides.
     pub(crate) fn params(&self) -> impl Iterator<Item = &str> {
-        let members = self
-            .uniform_params()
-            .map_or(&[][..], |(_, members)| members);
+        let uniform = self.uniform_params();
+        let members = uniform.map_or(&[][..], |(_, members)| members);
         let members = members.iter().filter_map(|member| member.name.as_deref());
         let overrides = self.module.overrides.iter();
         members.chain(overrides.filter_map(|(_, constant)| constant.name.as_deref()))

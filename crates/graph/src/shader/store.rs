@@ -194,16 +194,12 @@ impl Loader<'_> {
             let condition = condition.map(|expr| (Arc::clone(file), expr.text().to_owned()));
             rules.push(Rule { of, is, condition });
         }
-        if !self
-            .seen
-            .insert((Arc::clone(&document.file.name), rules.clone()))
-        {
+        let key = (Arc::clone(&document.file.name), rules.clone());
+        if !self.seen.insert(key) {
             return;
         }
-        let conditions: BTreeSet<_> = rules
-            .iter()
-            .filter_map(|rule| rule.condition.clone())
-            .collect();
+        let conditions = rules.iter().filter_map(|rule| rule.condition.clone());
+        let conditions: BTreeSet<_> = conditions.collect();
         if conditions.len() > MOST_CONDITIONS {
             let place = document.imports.last().map(|entry| entry.of.span.clone());
             let place = place.unwrap_or_else(|| document.file.span(0..0));
@@ -222,12 +218,10 @@ impl Loader<'_> {
                 let at = conditions.iter().position(|known| known == condition);
                 at.is_some_and(|at| values >> at & 1 == 1)
             };
-            let in_effect = rules
-                .iter()
-                .filter(|rule| rule.condition.as_ref().is_none_or(holds));
-            let replaced: Replaced = in_effect
-                .map(|rule| (rule.of.clone(), rule.is.clone()))
-                .collect();
+            let holds = |rule: &&Rule| rule.condition.as_ref().is_none_or(holds);
+            let in_effect = rules.iter().filter(holds);
+            let in_effect = in_effect.map(|rule| (rule.of.clone(), rule.is.clone()));
+            let replaced: Replaced = in_effect.collect();
             for shader in document.passes().flat_map(|pass| &pass.shaders) {
                 self.shader(document, shader, &constants, &replaced);
             }

@@ -63,10 +63,8 @@ impl<'s> UnusedFinder<'s> {
     /// Imports from which no file takes a name, and to which none gives one.
     fn imports(&mut self, source: &'s Expanded, constants: &BTreeSet<&str>) -> Vec<Unused> {
         let imported = source.imports.iter().map(|line| &line.file);
-        let files: BTreeMap<&str, &SourceFile> = std::iter::once(&source.file)
-            .chain(imported)
-            .map(|file| (&*file.name, file))
-            .collect();
+        let files = std::iter::once(&source.file).chain(imported);
+        let files: BTreeMap<&str, &SourceFile> = files.map(|file| (&*file.name, file)).collect();
         for (name, file) in &files {
             let words = self.words.entry(name);
             words.or_insert_with(|| Words::new(&file.text));
@@ -134,9 +132,8 @@ fn unused_params(shader: &Shader) -> Vec<Unused> {
     }
     let names = members.iter().zip(read).filter(|(_, read)| !read);
     let names = names.filter_map(|(member, _)| member.name.as_deref());
-    names
-        .filter_map(|name| own(shader, name, "param"))
-        .collect()
+    let names = names.filter_map(|name| own(shader, name, "param"));
+    names.collect()
 }
 
 /// Globals that no entry point uses.
@@ -149,18 +146,15 @@ fn unused_globals(shader: &Shader) -> Vec<Unused> {
         global.binding.is_some() && global.name.as_deref() != Some("params") && !is_used(*handle)
     });
     let names = unused.filter_map(|(_, global)| global.name.as_deref());
-    names
-        .filter_map(|name| own(shader, name, "global"))
-        .collect()
+    let names = names.filter_map(|name| own(shader, name, "global"));
+    names.collect()
 }
 
 /// A name that the shader's own file declares.
 fn own(shader: &Shader, name: &str, what: &'static str) -> Option<Unused> {
-    let at = super::text::words(&shader.source.text, name).find(|at| {
-        shader.source.text[at + name.len()..]
-            .trim_start()
-            .starts_with(':')
-    })?;
+    let text = &shader.source.text;
+    let mut places = super::text::words(text, name);
+    let at = places.find(|at| text[at + name.len()..].trim_start().starts_with(':'))?;
     let span = shader.source.locate(at..at + name.len());
     let name = Located::new(name.to_owned(), span);
     (name.span.file == shader.source.file).then_some(Unused { what, name })
@@ -171,10 +165,8 @@ fn reached<'s>(source: &'s Expanded, file: &'s str) -> BTreeSet<&'s str> {
     let (mut found, mut open) = (BTreeSet::new(), vec![file]);
     while let Some(file) = open.pop() {
         if found.insert(file) {
-            let lines = source
-                .imports
-                .iter()
-                .filter(|line| *line.asked.span.file.name == *file);
+            let imports = source.imports.iter();
+            let lines = imports.filter(|line| *line.asked.span.file.name == *file);
             open.extend(lines.map(|line| &*line.file.name));
         }
     }

@@ -20,9 +20,8 @@ use std::ops::Range;
 /// Returns the byte range of a function's name in the expanded text.
 pub(super) fn function_range(source: &Expanded, name: &str) -> Range<usize> {
     let text = &source.text;
-    let at = words(text, name)
-        .find(|&at| text[..at].trim_end().ends_with("fn"))
-        .unwrap_or(0);
+    let is_function = |at: &usize| text[..*at].trim_end().ends_with("fn");
+    let at = words(text, name).find(is_function).unwrap_or(0);
     at..at + name.len()
 }
 
@@ -151,14 +150,14 @@ fn in_full(error: &dyn std::error::Error, module: &naga::Module) -> String {
 fn plain_types(mut what: String) -> String {
     const SIZES: [(&str, u32); 3] = [("Bi", 2), ("Tri", 3), ("Quad", 4)];
     let kinds = [("Float", "f"), ("Sint", "i"), ("Uint", "u")];
-    let sized =
-        [16, 32, 64].map(|bits| kinds.map(|(kind, of)| (kind, bits, format!("{of}{bits}"))));
-    let others = [
+    let of_size = |bits: u32| kinds.map(|(kind, sign)| (kind, bits, format!("{sign}{bits}")));
+    let sized = [16, 32, 64].map(of_size);
+    let unsized_scalars = [
         ("Bool", 8, "bool".to_owned()),
         ("AbstractInt", 64, "a whole number".to_owned()),
         ("AbstractFloat", 64, "a number".to_owned()),
     ];
-    for (kind, bits, name) in sized.into_iter().flatten().chain(others) {
+    for (kind, bits, name) in sized.into_iter().flatten().chain(unsized_scalars) {
         let scalar = format!("Scalar {{ kind: {kind}, width: {} }}", bits / 8);
         for (size, rows) in SIZES {
             let vector = format!("Vector {{ size: {size}, scalar: {scalar} }}");
@@ -169,9 +168,8 @@ fn plain_types(mut what: String) -> String {
                 what = what.replace(&matrix, &format!("mat{count}x{rows}<{name}>"));
             }
         }
-        what = what
-            .replace(&format!("Scalar({scalar})"), &name)
-            .replace(&scalar, &name);
+        what = what.replace(&format!("Scalar({scalar})"), &name);
+        what = what.replace(&scalar, &name);
     }
     // naga tells numbers of expressions, which are left out, and their types.
     while let Some((before, rest)) = what.split_once("(of type ") {
@@ -250,9 +248,8 @@ fn user_of(ty: Handle<naga::Type>, module: &naga::Module, source: &Expanded) -> 
         let arguments = function.arguments.iter().map(|argument| argument.ty);
         let mut types = arguments.chain(function.result.iter().map(|result| result.ty));
         let name = function.name.as_deref()?;
-        types
-            .any(|it| it == ty)
-            .then(|| function_span(source, name))
+        let is_of_type = types.any(|it| it == ty);
+        is_of_type.then(|| function_span(source, name))
     })
 }
 

@@ -44,10 +44,8 @@ pub(crate) fn import_candidates(importer: &str, path: &str) -> Vec<String> {
 /// order in which they are tried: beside the includer, and in the store's `pipelines` folder.
 pub(crate) fn include_candidates(includer: &str, path: &str) -> Vec<String> {
     // One file under one name, or a cycle would not be seen as one.
-    let parts: Vec<&str> = path
-        .split('/')
-        .filter(|part| !matches!(*part, "" | "."))
-        .collect();
+    let parts = path.split('/').filter(|part| !matches!(*part, "" | "."));
+    let parts: Vec<&str> = parts.collect();
     let path = parts.join("/");
     let mut candidates = vec![
         join(Path::new(folder_of(includer)), &path),

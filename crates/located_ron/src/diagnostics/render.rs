@@ -80,9 +80,8 @@ impl<'a> Report<'a> {
         file: Option<&SourceFile>,
     ) -> Self {
         let labels = diagnostic.labels.iter();
-        let mut labels: Vec<&Label> = labels
-            .filter(|label| Some(&label.span.file) == file)
-            .collect();
+        let labels = labels.filter(|label| Some(&label.span.file) == file);
+        let mut labels: Vec<&Label> = labels.collect();
         let mut file = file;
         if labels.iter().any(|label| is_too_wide(&label.span)) {
             // The places in words.
@@ -133,10 +132,8 @@ fn is_too_wide(span: &Span) -> bool {
     let before = text[..start].rsplit('\n').take(2).map(str::len).max();
     let after = text[end..].split('\n').take(2).map(str::len).max();
     let within = end - start;
-    [before, Some(within), after]
-        .into_iter()
-        .flatten()
-        .any(|length| length > LONGEST_LINE)
+    let mut lengths = [before, Some(within), after].into_iter().flatten();
+    lengths.any(|length| length > LONGEST_LINE)
 }
 
 impl fmt::Display for Report<'_> {
@@ -161,17 +158,13 @@ impl miette::Diagnostic for Report<'_> {
     }
 
     fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        self.diagnostic
-            .help
-            .as_ref()
-            .filter(|_| !self.is_note)
-            .map(|help| Box::new(help) as Box<dyn fmt::Display>)
+        let help = self.diagnostic.help.as_ref()?;
+        (!self.is_note).then(|| Box::new(help) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        self.source
-            .as_ref()
-            .map(|source| source as &dyn miette::SourceCode)
+        let source = self.source.as_ref()?;
+        Some(source)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {

@@ -56,12 +56,8 @@ pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>)
         return None;
     }
     let rest = count - known.len().min(SHOWN);
-    let mut list = known
-        .iter()
-        .take(SHOWN)
-        .map(|name| format!("`{name}`"))
-        .collect::<Vec<_>>()
-        .join(", ");
+    let known = known.iter().take(SHOWN).map(|name| format!("`{name}`"));
+    let mut list = known.collect::<Vec<_>>().join(", ");
     if rest > 0 {
         list.push_str(&format!(" and {rest} more"));
     }

@@ -2,7 +2,7 @@
 
 use super::{error::HostMeshError, layout::HostVertices, rest::decoded};
 use crate::{
-    buffers::{On, binding_limit},
+    buffers::{On, binding_limit, upload},
     parts::Room,
 };
 use glam::Vec3;
@@ -12,7 +12,6 @@ use std::{
     collections::HashMap,
     sync::{Arc, OnceLock},
 };
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Marks a position that no triangle uses, and a normal that no vertex has.
 const NONE: u32 = u32::MAX;
@@ -85,7 +84,7 @@ impl HostMesh {
         rest: &[u8],
         indices: HostIndices<'_>,
     ) -> Result<Self, HostMeshError> {
-        let known = checked(device, &vertices)?;
+        let identity = checked(device, &vertices)?;
         if vertices.count == 0 {
             return Err(HostMeshError::Empty);
         }
@@ -99,10 +98,7 @@ impl HostMesh {
         let indices = match indices {
             HostIndices::U32(indices) => indices,
             HostIndices::U16(indices) => {
-                wide = indices
-                    .iter()
-                    .map(|&index| index.into())
-                    .collect::<Vec<u32>>();
+                wide = indices.iter().copied().map(u32::from).collect::<Vec<_>>();
                 &wide[..]
             }
         };
@@ -137,7 +133,7 @@ impl HostMesh {
             movable: Arc::new(movable),
         };
         Ok(Self {
-            own: Arc::new(Own::new(device, (vertices, known), Arc::new(rest))),
+            own: Arc::new(Own::new(device, (vertices, identity), Arc::new(rest))),
             bounds: [low, high],
         })
     }
@@ -158,7 +154,7 @@ impl HostMesh {
         device: &wgpu::Device,
         vertices: HostVertices,
     ) -> Result<Self, HostMeshError> {
-        let known = checked(device, &vertices)?;
+        let identity = checked(device, &vertices)?;
         let kind = |of: &HostVertices| (of.count, of.has_normals());
         let [mesh, given] = [kind(&self.own.vertices), kind(&vertices)];
         if given != mesh {
@@ -166,7 +162,7 @@ impl HostMesh {
         }
         binds(device, "the vertices", vertices.length())?;
         binds_mesh(device, &self.own.rest.movable.rest)?;
-        let own = Own::new(device, (vertices, known), Arc::clone(&self.own.rest));
+        let own = Own::new(device, (vertices, identity), Arc::clone(&self.own.rest));
         Ok(Self {
             own: Arc::new(own),
             bounds: self.bounds,
@@ -182,10 +178,8 @@ impl HostMesh {
         let rest = &self.own.rest.movable.rest;
         let is_within = |at: Vec3| at.cmpge(low).all() && at.cmple(high).all();
         let is_finite = low.is_finite() && high.is_finite();
-        let beyond = rest
-            .used_positions()
-            .find(|at| !is_finite || !is_within(*at));
-        if let Some(position) = beyond {
+        let is_beyond = |at: &Vec3| !is_finite || !is_within(*at);
+        if let Some(position) = rest.used_positions().find(is_beyond) {
             return Err(HostMeshError::Bounds {
                 position,
                 low,
@@ -247,14 +241,14 @@ impl HostMesh {
 impl Own {
     fn new(
         device: &wgpu::Device,
-        (vertices, known): (HostVertices, DeviceIdentity),
+        (vertices, identity): (HostVertices, DeviceIdentity),
         rest: Arc<Rest>,
     ) -> Self {
         let sources = |content: &[u8]| storage(device, "host.sources", content);
         Self {
             sources: sources(bytemuck::cast_slice(&rest.sources)),
             normal_sources: sources(bytemuck::cast_slice(&rest.normal_sources)),
-            device: known,
+            device: identity,
             vertices,
             rest,
             levels: OnceLock::new(),
@@ -268,15 +262,15 @@ fn checked(
     vertices: &HostVertices,
 ) -> Result<DeviceIdentity, HostMeshError> {
     vertices.check()?;
-    let known = DeviceIdentity::new(device);
-    if !known.has_buffer(&vertices.buffer) {
+    let identity = DeviceIdentity::new(device);
+    if !identity.has_buffer(&vertices.buffer) {
         return Err(HostMeshError::OtherDevice("buffer"));
     }
     let mut decoder = vertices.decoder.iter();
     if decoder.any(|decoder| !decoder.device.is(device)) {
         return Err(HostMeshError::OtherDevice("decoder"));
     }
-    Ok(known)
+    Ok(identity)
 }
 
 /// Gives each triangle a normal of its own, since those in one plane at rest may part.
@@ -314,11 +308,7 @@ fn binds_mesh(device: &wgpu::Device, mesh: &Mesh) -> Result<(), HostMeshError> {
 }
 
 fn storage(device: &wgpu::Device, label: &str, contents: &[u8]) -> wgpu::Buffer {
-    device.create_buffer_init(&BufferInitDescriptor {
-        label: Some(label),
-        contents,
-        usage: wgpu::BufferUsages::STORAGE,
-    })
+    upload(device, label, contents, wgpu::BufferUsages::STORAGE)
 }
 
 /// Positions of a mesh by the vertices of the host.

@@ -7,10 +7,9 @@ use super::{
     mesh_record::{MeshRecord, across_items},
 };
 use crate::{
-    buffers::{On, refused},
+    buffers::{On, refused, upload},
     host,
 };
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Decodes positions and normals of all vertices at rest, whose bytes these are, and waits for
 /// them; no normals if the module has none.
@@ -37,14 +36,7 @@ pub(super) fn decoded(
 /// Submits the kernel that decodes vertices; the buffer that it writes.
 fn submitted(decoder: &HostDecoder, vertices: &HostVertices, rest: &[u8], on: On) -> wgpu::Buffer {
     let device = on.device;
-    let upload = |contents: &[u8], usage| {
-        let label = Some("vertices at rest");
-        device.create_buffer_init(&BufferInitDescriptor {
-            label,
-            contents,
-            usage,
-        })
-    };
+    let upload = |contents: &[u8], usage| upload(device, "vertices at rest", contents, usage);
     let record = MeshRecord::new(vertices, 0, [vertices.count, 0]);
     let bytes = &rest[..vertices.length() as usize];
     let inputs = [

@@ -6,14 +6,13 @@ use super::{
     mesh_record::{MOST_GROUPS, MeshRecord, across_items},
 };
 use crate::{
-    buffers::{On, binding_limit, refused},
+    buffers::{On, binding_limit, refused, upload},
     error::Error,
     host,
     parts::PartId,
 };
 use glam::{DAffine3, DVec3, Vec3};
 use std::sync::Arc;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// A part that is to be written.
 pub(crate) struct HostWrite {
@@ -45,80 +44,67 @@ struct PartRecord {
     padding: u32,
 }
 
-/// Buffer that a kernel writes, with the scene's buffers that it reads.
-#[derive(Clone, Copy)]
-pub(crate) enum Written<'a> {
-    Positions {
-        positions: &'a wgpu::Buffer,
-    },
-    Normals {
-        normals: &'a wgpu::Buffer,
-        positions: &'a wgpu::Buffer,
-        indices: &'a wgpu::Buffer,
-    },
-    Nodes {
-        nodes: &'a wgpu::Buffer,
-        positions: &'a wgpu::Buffer,
-        indices: &'a wgpu::Buffer,
-        primitives: &'a wgpu::Buffer,
-    },
-    /// The first vertex of each part that is beyond its bounds.
-    Beyond {
-        beyond: &'a wgpu::Buffer,
-    },
+/// Kernels, by the numbers of their entry points.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kernel {
+    Positions,
+    Normals,
+    Nodes,
+    /// Finds the first vertex of each part that is beyond its bounds.
+    Beyond,
 }
 
-impl Written<'_> {
+/// A kernel with the buffer that it writes and the scene's buffers that it reads, by binding.
+pub(crate) struct Written<'a> {
+    kernel: Kernel,
+    buffers: Vec<(u32, &'a wgpu::Buffer)>,
+}
+
+impl<'a> Written<'a> {
+    fn new(kernel: Kernel, buffers: Vec<(u32, &'a wgpu::Buffer)>) -> Self {
+        Self { kernel, buffers }
+    }
+
+    pub fn positions(positions: &'a wgpu::Buffer) -> Self {
+        Self::new(Kernel::Positions, vec![(5, positions)])
+    }
+
+    /// Writes normals; `read` are positions and indices.
+    pub fn normals(normals: &'a wgpu::Buffer, read: [&'a wgpu::Buffer; 2]) -> Self {
+        let buffers = vec![(6, normals), (7, read[0]), (8, read[1])];
+        Self::new(Kernel::Normals, buffers)
+    }
+
+    /// Writes nodes; `read` are positions, indices and primitives.
+    pub fn nodes(nodes: &'a wgpu::Buffer, read: [&'a wgpu::Buffer; 3]) -> Self {
+        let buffers = vec![(7, read[0]), (8, read[1]), (9, read[2]), (11, nodes)];
+        Self::new(Kernel::Nodes, buffers)
+    }
+
+    fn beyond(beyond: &'a wgpu::Buffer) -> Self {
+        Self::new(Kernel::Beyond, vec![(12, beyond)])
+    }
+
     /// The bindings that its entry point uses: the numbers of those of vertices and parts, and its
     /// own. A pipeline's layout has no others.
     fn bindings<'b>(
         &'b self,
         part: &'b HostWrite,
-    ) -> (&'static [u32], Vec<(u32, wgpu::BindingResource<'b>)>) {
-        match self {
-            Self::Positions { positions } => {
-                (&[0, 1, 2, 3], vec![(5, positions.as_entire_binding())])
-            }
-            Self::Normals {
-                normals,
-                positions,
-                indices,
-            } => (
-                &[0, 1, 2, 4],
-                vec![
-                    (6, normals.as_entire_binding()),
-                    (7, positions.as_entire_binding()),
-                    (8, indices.as_entire_binding()),
-                ],
-            ),
-            Self::Nodes {
-                nodes,
-                positions,
-                indices,
-                primitives,
-            } => {
-                let levels = part.nodes.iter();
-                let levels = levels.map(|(_, levels)| (10, levels.as_entire_binding()));
-                let others = [
-                    (7, positions.as_entire_binding()),
-                    (8, indices.as_entire_binding()),
-                    (9, primitives.as_entire_binding()),
-                    (11, nodes.as_entire_binding()),
-                ];
-                (&[1], others.into_iter().chain(levels).collect())
-            }
-            Self::Beyond { beyond } => (&[0, 1, 2, 3], vec![(12, beyond.as_entire_binding())]),
-        }
-    }
-
-    /// The number of its entry point.
-    fn entry(self) -> usize {
-        match self {
-            Self::Positions { .. } => 0,
-            Self::Normals { .. } => 1,
-            Self::Nodes { .. } => 2,
-            Self::Beyond { .. } => 3,
-        }
+    ) -> (
+        &'static [u32],
+        impl Iterator<Item = (u32, wgpu::BindingResource<'b>)>,
+    ) {
+        let of_vertices: &[u32] = match self.kernel {
+            Kernel::Positions | Kernel::Beyond => &[0, 1, 2, 3],
+            Kernel::Normals => &[0, 1, 2, 4],
+            Kernel::Nodes => &[1],
+        };
+        let levels = part.nodes.iter().map(|(_, levels)| (10, levels));
+        let own = self.buffers.iter().copied().chain(levels);
+        (
+            of_vertices,
+            own.map(|(at, buffer)| (at, buffer.as_entire_binding())),
+        )
     }
 }
 
@@ -170,18 +156,18 @@ impl Kernels {
     /// [`Error::HostVertices`] if it refuses them.
     pub fn bind(
         &mut self,
-        written: Written,
+        written: &Written,
         parts: &[HostWrite],
         device: &wgpu::Device,
     ) -> Result<Bound, Error> {
         let mut batch = |(first, parts): (usize, &[HostWrite])| {
             let mesh = &parts[0].mesh;
-            let pipeline = self.pipeline(written, mesh, device);
+            let pipeline = self.pipeline(written.kernel, mesh, device);
             let (group, uploaded) = bind(&pipeline, written, (first, parts), device)?;
             Ok(Batch {
                 pipeline,
                 group,
-                workgroups: [groups(written, mesh), parts.len() as u32],
+                workgroups: [groups(written.kernel, mesh), parts.len() as u32],
                 uploaded,
             })
         };
@@ -198,12 +184,10 @@ impl Kernels {
     /// [`Error::Beyond`] with the first one that is found, and those of [`bind`](Self::bind).
     pub fn check_bounds(&mut self, parts: &[HostWrite], on: On) -> Result<(), Error> {
         let none = vec![u32::MAX; parts.len()];
-        let beyond = on.device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("vertices beyond their bounds"),
-            contents: bytemuck::cast_slice(&none),
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-        });
-        let bound = self.bind(Written::Beyond { beyond: &beyond }, parts, on.device)?;
+        let (label, none) = ("vertices beyond their bounds", bytemuck::cast_slice(&none));
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        let beyond = upload(on.device, label, none, usage);
+        let bound = self.bind(&Written::beyond(&beyond), parts, on.device)?;
         let mut encoder = on.device.create_command_encoder(&Default::default());
         bound.record(&mut encoder);
         let submitted = refused(on.device, || on.queue.submit([encoder.finish()]));
@@ -224,18 +208,18 @@ impl Kernels {
     /// The kernel that writes parts of a mesh, by its decoder.
     fn pipeline(
         &mut self,
-        written: Written,
+        kernel: Kernel,
         mesh: &HostMesh,
         device: &wgpu::Device,
     ) -> wgpu::ComputePipeline {
         let decoder = mesh.own.vertices.decoder.as_ref();
         // Nodes are fitted to positions.
-        match decoder.filter(|_| !matches!(written, Written::Nodes { .. })) {
-            Some(decoder) => decoder.made.pipeline(written.entry(), device),
+        match decoder.filter(|_| kernel != Kernel::Nodes) {
+            Some(decoder) => decoder.made.pipeline(kernel as usize, device),
             None => {
                 let make = || Arc::new(KernelModule::new(device, include_str!("decode.wgsl")));
                 let made = self.made.get_or_insert_with(make);
-                made.pipeline(written.entry(), device)
+                made.pipeline(kernel as usize, device)
             }
         }
     }
@@ -263,12 +247,12 @@ fn batches(parts: &[HostWrite]) -> impl Iterator<Item = (usize, &[HostWrite])> {
 }
 
 /// Workgroups for each part.
-fn groups(written: Written, mesh: &HostMesh) -> u32 {
+fn groups(kernel: Kernel, mesh: &HostMesh) -> u32 {
     let rest = &mesh.movable().rest;
-    let items = match written {
-        Written::Positions { .. } | Written::Beyond { .. } => rest.positions.len(),
-        Written::Normals { .. } => rest.normals.len(),
-        Written::Nodes { .. } => 1,
+    let items = match kernel {
+        Kernel::Positions | Kernel::Beyond => rest.positions.len(),
+        Kernel::Normals => rest.normals.len(),
+        Kernel::Nodes => 1,
     };
     across_items(items as u32)
 }
@@ -276,7 +260,7 @@ fn groups(written: Written, mesh: &HostMesh) -> u32 {
 /// The bind group of some parts of one mesh, and the number of bytes that were uploaded for it.
 fn bind(
     pipeline: &wgpu::ComputePipeline,
-    written: Written,
+    written: &Written,
     (begins, parts): (usize, &[HostWrite]),
     device: &wgpu::Device,
 ) -> Result<(wgpu::BindGroup, u64), Error> {
@@ -294,16 +278,9 @@ fn bind(
     let numbers = [rest.positions.len(), rest.normals.len()];
     let record = MeshRecord::new(vertices, first, numbers.map(|number| number as u32));
     let records = (begins..).zip(parts);
-    let records: Vec<PartRecord> = records
-        .map(|(at, part)| PartRecord::new(at, part))
-        .collect();
-    let upload = |contents: &[u8], usage| {
-        device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("host parts"),
-            contents,
-            usage,
-        })
-    };
+    let records = records.map(|(at, part)| PartRecord::new(at, part));
+    let records: Vec<PartRecord> = records.collect();
+    let upload = |contents: &[u8], usage| upload(device, "host parts", contents, usage);
     let records: &[u8] = bytemuck::cast_slice(&records);
     let uploaded = (records.len() + size_of::<MeshRecord>()) as u64;
     let records = upload(records, wgpu::BufferUsages::STORAGE);
@@ -322,12 +299,10 @@ fn bind(
     ];
     let (used, others) = written.bindings(&parts[0]);
     let own = own.into_iter().filter(|(at, _)| used.contains(at));
-    let entries: Vec<wgpu::BindGroupEntry> = own
-        .chain(others)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+    let entries: Vec<wgpu::BindGroupEntry> = own.chain(others).map(entry).collect();
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(ENTRIES[written.entry()]),
+        label: Some(ENTRIES[written.kernel as usize]),
         layout: &pipeline.get_bind_group_layout(0),
         entries: &entries,
     });

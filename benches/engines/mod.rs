@@ -6,7 +6,7 @@ pub mod tracer;
 
 use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::{Engine as Word, SceneProvider};
-use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
+use skiagraph_scene::{Scene, SceneLibrary};
 use std::{sync::Arc, time::Duration};
 use tracer::{RAY_QUERY, RaySet, Tracer, random_rays, shadow_rays};
 
@@ -31,11 +31,7 @@ pub struct Engine<'a> {
 /// The sets of rays; shadow rays are those of `edge` × `edge` pixels.
 pub fn rays(gpu: &Gpu, edge: u32) -> Vec<Rays> {
     let load = |name: &str| {
-        let request = SceneRequest {
-            argument: name.to_owned(),
-            obj: None,
-        };
-        let loaded = SceneLibrary::from_environment().load(&request);
+        let loaded = SceneLibrary::from_environment().load(name);
         loaded.map(|(scene, _)| Arc::new(scene))
     };
     let shadow = |name: &str, scene: &Arc<Scene>| Rays {

@@ -396,7 +396,7 @@ pub fn conditions(kept: &[Kept]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
     use skiagraph_compare::records::sequence::{FrameCost, Sequence};
 
     fn kept() -> Kept {

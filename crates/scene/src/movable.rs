@@ -437,10 +437,8 @@ impl Movable {
     pub fn span(&self, part: usize, axis: DVec3) -> [f64; 2] {
         let places = self.parts[part].positions.iter();
         let along = places.map(|&p| self.rest.positions[p as usize].as_dvec3().dot(axis));
-        let span = along.fold(None, |span, at| {
-            let [low, high] = span.unwrap_or([at; 2]);
-            Some([f64::min(low, at), f64::max(high, at)])
-        });
+        let span = along.map(|at| [at; 2]);
+        let span = span.reduce(|[low, high], [at, _]| [low.min(at), high.max(at)]);
         span.unwrap_or_default()
     }
 }
@@ -455,11 +453,8 @@ fn in_range(part: usize, from: Vec3, to: DVec3) -> Result<Vec3, MoveError> {
 
 /// The smallest range that holds some indices.
 fn around(indices: impl Iterator<Item = u32>) -> Range<usize> {
-    let range = indices.fold(None, |range: Option<Range<usize>>, index| {
-        let index = index as usize;
-        let known = range.unwrap_or(index..index + 1);
-        Some(known.start.min(index)..known.end.max(index + 1))
-    });
+    let ranges = indices.map(|index| index as usize..index as usize + 1);
+    let range = ranges.reduce(|one, other| one.start.min(other.start)..one.end.max(other.end));
     range.unwrap_or_default()
 }
 

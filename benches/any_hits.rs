@@ -5,6 +5,7 @@
 mod engines;
 
 use engines::{Engine, Rays, engines, rays, tracer::RAY_QUERY};
+use skiagraph_benches::open;
 use skiagraph_gpu::device;
 use std::time::Duration;
 
@@ -16,18 +17,10 @@ fn main() {
     let measured = std::env::args().any(|argument| argument == "--bench");
     let (edge, turns) = if measured { (512, 5) } else { (48, 1) };
     let wanted = device::Wanted::default().with_features(RAY_QUERY);
-    let gpu = match device::open_with(&wanted) {
-        Ok(gpu) => gpu,
-        Err(error) => {
-            println!("NOTHING WAS MEASURED: {error}");
-            return;
-        }
+    let unit = format!("; millions of any hits per second, medians of {turns}");
+    let Some(gpu) = open(&wanted, &unit) else {
+        return;
     };
-    let info = gpu.adapter.get_info();
-    println!(
-        "adapter: {} ({:?}, {} {}); millions of any hits per second, medians of {turns}",
-        info.name, info.backend, info.driver, info.driver_info
-    );
     if !gpu.device.features().contains(RAY_QUERY) {
         println!("without RayQuery: the adapter has no EXPERIMENTAL_RAY_QUERY");
     }

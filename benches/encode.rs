@@ -6,11 +6,11 @@ use criterion::{BenchmarkId, Criterion};
 use skiagraph_benches::{
     Shaders, VIEWPORT,
     chain::{ByHand, Kind, executor},
-    graph,
+    graph, open,
 };
 use skiagraph_gpu::{
     Executor, Frame,
-    device::{self, Gpu},
+    device::{Gpu, Wanted},
 };
 use skiagraph_graph::{Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry};
 use std::time::{Duration, Instant};
@@ -18,18 +18,9 @@ use std::time::{Duration, Instant};
 const SIZES: [usize; 3] = [10, 100, 1000];
 
 fn main() {
-    let gpu = match device::open(None) {
-        Ok(gpu) => gpu,
-        Err(error) => {
-            println!("NOTHING WAS MEASURED: {error}");
-            return;
-        }
+    let Some(gpu) = open(&Wanted::default(), "") else {
+        return;
     };
-    let info = gpu.adapter.get_info();
-    println!(
-        "adapter: {} ({:?}, {} {})",
-        info.name, info.backend, info.driver, info.driver_info
-    );
     // `cargo bench` says `--bench`; without it the benchmarks are only tried. First, because wgpu
     // is slower on a device that has seen many resources.
     if std::env::args().any(|argument| argument == "--bench") {

@@ -6,6 +6,7 @@
 //! than where everything is.
 
 use glam::{DAffine3, DVec3};
+use skiagraph_benches::open;
 use skiagraph_gpu::{
     Executor, Frame,
     device::{self, Gpu},
@@ -82,18 +83,10 @@ fn main() {
     let measured = std::env::args().any(|argument| argument == "--bench");
     let (frames, added) = if measured { (1000, ROOM) } else { (3, 1) };
     let wanted = device::Wanted::default().with_features(RAY_QUERY);
-    let gpu = match device::open_with(&wanted) {
-        Ok(gpu) => gpu,
-        Err(error) => {
-            println!("NOTHING WAS MEASURED: {error}");
-            return;
-        }
+    let unit = format!("; ms of CPU, median and 99th percentile of {frames} frames");
+    let Some(gpu) = open(&wanted, &unit) else {
+        return;
     };
-    let info = gpu.adapter.get_info();
-    println!(
-        "adapter: {} ({:?}, {} {}); ms of CPU, median and 99th percentile of {frames} frames",
-        info.name, info.backend, info.driver, info.driver_info
-    );
     let stone = stone();
     println!(
         "{MESHES} meshes, {} triangles, {MOVING} of them move",
@@ -160,10 +153,8 @@ fn fifty_lines(gpu: &Gpu, stone: &Mesh, frames: usize) {
     });
     // Those lines have no say in which passes are encoded.
     for kind in KINDS.into_iter().filter(|kind| !kind.all) {
-        let mut times: Vec<f64> = (0..frames).map(|turn| frame(turn, kind)).collect();
-        times.sort_by(f64::total_cmp);
-        let [median, most] = [0.5, 0.99].map(|share| times[(share * (frames - 1) as f64) as usize]);
-        println!("the fifty lines, {}: {median:.3} ({most:.3})", kind.name);
+        let times = (0..frames).map(|turn| frame(turn, kind));
+        println!("the fifty lines, {}: {}", kind.name, quantiles(times));
     }
 }
 
@@ -192,16 +183,17 @@ struct Times {
     rest: f64,
 }
 
+/// Median and 99th percentile of times.
+fn quantiles(times: impl Iterator<Item = f64>) -> String {
+    let mut times: Vec<f64> = times.collect();
+    times.sort_by(f64::total_cmp);
+    let [median, most] =
+        [0.5, 0.99].map(|share| times[((times.len() - 1) as f64 * share) as usize]);
+    format!("{median:.3} ({most:.3})")
+}
+
 fn print(preset: &str, what: &str, times: &[Times]) {
-    let quantile = |of: fn(&Times) -> f64, share: f64| {
-        let mut values: Vec<f64> = times.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values[((values.len() - 1) as f64 * share) as usize]
-    };
-    let both = |of: fn(&Times) -> f64| {
-        let [median, most] = [0.5, 0.99].map(|share| quantile(of, share));
-        format!("{median:.3} ({most:.3})")
-    };
+    let both = |of: fn(&Times) -> f64| quantiles(times.iter().map(of));
     println!(
         "{preset}, {what}: {}; set_transforms {}, refresh {}, encode {}; beside it submitted and \
          waited {}",

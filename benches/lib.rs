@@ -3,16 +3,33 @@
 
 pub mod chain;
 
+use skiagraph_gpu::device::{self, Gpu, Wanted};
 use skiagraph_graph::Sources;
 use std::{collections::BTreeMap, fmt::Write as _, sync::Arc};
 
 /// Width and height of the generated graphs' textures: planning and encoding do not depend on it.
 pub const VIEWPORT: [u32; 2] = [16, 16];
 
+/// Opens an adapter and prints its name, with the text of `unit` behind; without one, prints that
+/// nothing was measured.
+pub fn open(wanted: &Wanted, unit: &str) -> Option<Gpu> {
+    let opened = device::open_with(wanted);
+    let gpu = opened
+        .inspect_err(|error| println!("NOTHING WAS MEASURED: {error}"))
+        .ok()?;
+    let info = gpu.adapter.get_info();
+    println!(
+        "adapter: {} ({:?}, {} {}){unit}",
+        info.name, info.backend, info.driver, info.driver_info
+    );
+    Some(gpu)
+}
+
 /// How many shaders a generated graph has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shaders {
     /// One of each sort, used by all passes of the sort.
+    #[default]
     Few,
     /// Every pass that has a shader has a file of its own.
     OnePerPass,
@@ -84,7 +101,10 @@ var made: texture_storage_2d<rgba16float, write>;
 /// where `open` is a texture that no pass has read yet. The chain's full-screen passes have a
 /// param, `strength`. Materials left open in the end are joined, so that no pass is culled.
 pub fn graph(passes: usize, shaders: Shaders, seed: u64) -> Generated {
-    let mut writer = Writer::new(shaders);
+    let mut writer = Writer {
+        shaders,
+        ..Writer::default()
+    };
     let mut random = Random(seed);
     let mut open = vec![writer.source()];
     let mut every = open.clone();
@@ -143,10 +163,10 @@ impl Random {
 }
 
 /// Writes the document pass by pass. Methods that make something return its name.
+#[derive(Default)]
 struct Writer {
     shaders: Shaders,
-    files: BTreeMap<String, String>,
-    kinds: BTreeMap<&'static str, usize>,
+    generated: Generated,
     materials: String,
     body: String,
     passes: usize,
@@ -155,19 +175,6 @@ struct Writer {
 }
 
 impl Writer {
-    fn new(shaders: Shaders) -> Self {
-        Self {
-            shaders,
-            files: BTreeMap::new(),
-            kinds: BTreeMap::new(),
-            materials: String::new(),
-            body: String::new(),
-            passes: 0,
-            has_turns: false,
-            has_param: false,
-        }
-    }
-
     fn material(&mut self, name: &str, format: &str) {
         let line = format!("        Texture(name: \"{name}\", format: {format}),");
         self.materials.push_str(&line);
@@ -182,7 +189,7 @@ impl Writer {
     }
 
     fn pass(&mut self, kind: &'static str, fields: &str) {
-        *self.kinds.entry(kind).or_default() += 1;
+        *self.generated.kinds.entry(kind).or_default() += 1;
         // Writing to a string cannot fail.
         let _ = writeln!(
             self.body,
@@ -198,7 +205,8 @@ impl Writer {
             Shaders::Few => name.to_owned(),
             Shaders::OnePerPass => format!("{name}_{}", self.passes),
         };
-        self.files.insert(format!("{name}.wgsl"), text.to_owned());
+        let file = format!("{name}.wgsl");
+        self.generated.files.insert(file, text.to_owned());
         format!("shader: \"{name}\"")
     }
 
@@ -317,11 +325,8 @@ impl Writer {
             self.body,
             outputs.join(", ")
         );
-        self.files.insert("graph.ron".to_owned(), text);
-        Generated {
-            files: self.files,
-            kinds: self.kinds,
-        }
+        self.generated.files.insert("graph.ron".to_owned(), text);
+        self.generated
     }
 }
 

@@ -5,7 +5,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use skiagraph_benches::{Generated, Shaders, VIEWPORT, graph};
 use skiagraph_graph::{Describe, Graph, NoProvider, PlanRequest, Registry, Sources};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
-use skiagraph_scene::{SceneLibrary, SceneRequest};
+use skiagraph_scene::SceneLibrary;
 use std::{hint::black_box, sync::Arc, time::Duration};
 
 /// Measures `Graph::load` (all WGSL included), `Graph::plan` and both of one document.
@@ -36,10 +36,7 @@ fn measure(
 }
 
 fn of_presets(criterion: &mut Criterion) {
-    let scene = SceneLibrary::from_environment().load(&SceneRequest {
-        argument: "park".to_owned(),
-        ..SceneRequest::default()
-    });
+    let scene = SceneLibrary::from_environment().load("park");
     let (scene, _) = scene.expect("park is built in");
     let provider: &dyn Describe = &SceneProvider::new(Arc::new(scene));
     // Some presets need what few adapters have; planning asks no adapter.

@@ -5,10 +5,10 @@ mod embree;
 pub mod tracer;
 
 use skiagraph_gpu::device::Gpu;
-use skiagraph_passes::{Engine as Word, SceneProvider};
-use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
+use skiagraph_passes::Engine as Word;
+use skiagraph_scene::{Scene, SceneLibrary};
 use std::{sync::Arc, time::Duration};
-use tracer::{RAY_QUERY, RaySet, Tracer, random_rays, shadow_rays};
+use tracer::{RAY_QUERY, RaySet, Tracer, random_rays, shadow_rays, with_rays};
 
 /// Rays through a scene.
 pub struct Rays {
@@ -31,11 +31,7 @@ pub struct Engine<'a> {
 /// The sets of rays; shadow rays are those of `edge` × `edge` pixels.
 pub fn rays(gpu: &Gpu, edge: u32) -> Vec<Rays> {
     let load = |name: &str| {
-        let request = SceneRequest {
-            argument: name.to_owned(),
-            obj: None,
-        };
-        let loaded = SceneLibrary::from_environment().load(&request);
+        let loaded = SceneLibrary::from_environment().load(name);
         loaded.map(|(scene, _)| Arc::new(scene))
     };
     let shadow = |name: &str, scene: &Arc<Scene>| Rays {
@@ -58,7 +54,7 @@ pub fn rays(gpu: &Gpu, edge: u32) -> Vec<Rays> {
 
 /// The engines that there are for these rays, the compute hierarchy first.
 pub fn engines<'a>(gpu: &Gpu, rays: &'a Rays) -> Vec<Engine<'a>> {
-    let mut provider = SceneProvider::new(Arc::clone(&rays.scene));
+    let mut provider = with_rays(&rays.scene, &rays.set);
     let mut engine = |word: Word| {
         let mut tracer = Tracer::new(gpu, &mut provider, &rays.set, word);
         Engine {

@@ -1,17 +1,15 @@
 //! Traces given rays by one engine of `Trace`, without a method around it.
 
 use glam::Vec3;
-use skiagraph_gpu::{Content, Executor, Frame, Provider, ProviderError, device::Gpu};
-use skiagraph_graph::{
-    Capture, Describe, Graph, MemorySources, Plan, PlanRequest, Provided, ProvidedBinding, Sources,
-};
+use skiagraph_gpu::{Content, Executor, Frame, Provider, device::Gpu};
+use skiagraph_graph::{Capture, Describe, Graph, MemorySources, Plan, PlanRequest, Sources};
 use skiagraph_passes::{EmbeddedSources, Engine, SceneProvider, registry};
 use skiagraph_scene::{Scene, generate::numbers::Random};
+use skiagraph_tests::extended::Extended;
 use std::{
     sync::Arc,
     time::{Duration, Instant},
 };
-use wgpu::util::DeviceExt;
 
 /// A ray as the shaders have it: it is blocked by a triangle at t if `t_min` < t ≤ `t_max`.
 #[repr(C)]
@@ -49,29 +47,30 @@ const NONE: u32 = 0xffff_fffd;
 
 impl Tracer {
     /// Prepares an engine for rays through a scene, whose provider keeps the engine's hierarchy.
-    pub fn new(gpu: &Gpu, scene: &mut SceneProvider, set: &RaySet, engine: Engine) -> Self {
-        let count = [set.rays.len() as u32];
-        let mut given = Given { scene, set, count };
+    /// `provider` is that of [`with_rays`].
+    pub fn new(gpu: &Gpu, provider: &mut Extended, set: &RaySet, engine: Engine) -> Self {
         let (device, queue) = (&gpu.device, &gpu.queue);
-        let uploaded = |given: &mut Given| {
-            given.submit_built(device, queue).expect("nothing is lost");
+        let uploaded = |provider: &mut Extended| {
+            provider
+                .submit_built(device, queue)
+                .expect("nothing is lost");
             drop(device.poll(wgpu::PollType::wait_indefinitely()));
         };
         // All engines share the mesh's uploads, which are no part of the time.
         for shared in ["scene.positions", "scene.indices"] {
-            given.build(shared, device, queue).expect("in memory");
+            provider.build(shared, device, queue).expect("in memory");
         }
-        uploaded(&mut given);
+        uploaded(provider);
         let began = Instant::now();
         match engine {
-            Engine::Hierarchy => drop(given.build("scene.bvh_nodes", device, queue)),
-            Engine::LightSpace => drop(given.build("scene.light_space_nodes", device, queue)),
+            Engine::Hierarchy => drop(provider.build("scene.bvh_nodes", device, queue)),
+            Engine::LightSpace => drop(provider.build("scene.light_space_nodes", device, queue)),
             Engine::RayQuery => {
-                drop(given.build_acceleration_structure("scene.tlas", device, queue));
+                drop(provider.build_acceleration_structure("scene.tlas", device, queue));
             }
             Engine::Embree => {}
         }
-        uploaded(&mut given);
+        uploaded(provider);
         let built = began.elapsed();
         let document = document(set, engine);
         let files = MemorySources::new([("any_hits.ron", document.as_str())]);
@@ -80,10 +79,10 @@ impl Tracer {
             "any_hits.ron",
             &files.over(EmbeddedSources),
             1,
-            &given,
+            provider,
             &[],
         );
-        let executor = Executor::on(gpu, plan, &mut given);
+        let executor = Executor::on(gpu, plan, provider);
         Self {
             executor: executor.unwrap_or_else(|why| panic!("{why}")),
             gpu: gpu.clone(),
@@ -185,6 +184,15 @@ fn plan(
     graph.plan(&request).unwrap_or_else(|why| panic!("{why}"))
 }
 
+/// Returns a provider of a scene with the rays of a set.
+pub fn with_rays(scene: &Arc<Scene>, set: &RaySet) -> Extended {
+    let mut provider = Extended::new(SceneProvider::new(Arc::clone(scene)));
+    provider.add("given.rays", &set.rays);
+    provider.add("given.skip", &set.skip);
+    provider.add("given.number", &[set.rays.len() as u32]);
+    provider
+}
+
 /// A graph of one pass, which traces.
 fn document(set: &RaySet, engine: Engine) -> String {
     let direction = if set.to_light {
@@ -210,72 +218,4 @@ fn document(set: &RaySet, engine: Engine) -> String {
             outputs: ["hits"],
         )"#
     )
-}
-
-/// A scene with rays.
-struct Given<'a> {
-    scene: &'a mut SceneProvider,
-    set: &'a RaySet,
-    count: [u32; 1],
-}
-
-impl Given<'_> {
-    fn content(&self, name: &str) -> Option<(&[u8], u64)> {
-        match name {
-            "given.rays" => Some((bytemuck::cast_slice(&self.set.rays), 32)),
-            "given.skip" => Some((bytemuck::cast_slice(&self.set.skip), 4)),
-            "given.number" => Some((bytemuck::cast_slice(&self.count), 4)),
-            _ => None,
-        }
-    }
-}
-
-impl Describe for Given<'_> {
-    fn names(&self) -> Vec<String> {
-        self.scene.names()
-    }
-
-    fn describe(&self, name: &str) -> Option<Provided> {
-        let Some((content, stride)) = self.content(name) else {
-            return self.scene.describe(name);
-        };
-        let count = content.len() as u64 / stride;
-        Some(Provided::new(ProvidedBinding::Storage, Some(count), stride))
-    }
-}
-
-impl Provider for Given<'_> {
-    fn build(
-        &mut self,
-        name: &str,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<wgpu::Buffer, ProviderError> {
-        let Some((contents, _)) = self.content(name) else {
-            return self.scene.build(name, device, queue);
-        };
-        let descriptor = wgpu::util::BufferInitDescriptor {
-            label: Some(name),
-            contents,
-            usage: wgpu::BufferUsages::STORAGE,
-        };
-        Ok(device.create_buffer_init(&descriptor))
-    }
-
-    fn submit_built(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<(), ProviderError> {
-        self.scene.submit_built(device, queue)
-    }
-
-    fn build_acceleration_structure(
-        &mut self,
-        name: &str,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<wgpu::Tlas, ProviderError> {
-        self.scene.build_acceleration_structure(name, device, queue)
-    }
 }

@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use skiagraph_gpu::{Executor, FrameReport, device::Gpu};
 use skiagraph_graph::{Graph, LayeredSources, PlanRequest, Sources};
 use skiagraph_passes::{EmbeddedSources, How, SceneProvider, registry};
-use skiagraph_scene::{DirectionalLight, Movable, Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_scene::{DirectionalLight, Movable, Scene, SceneLibrary, View};
 use std::sync::Arc;
 
 const VIEWPORT: [u32; 2] = [48, 32];
@@ -22,11 +22,7 @@ struct Park {
 
 impl Park {
     fn new() -> Self {
-        let request = SceneRequest {
-            argument: "park".to_owned(),
-            obj: None,
-        };
-        let scene = SceneLibrary::default().load(&request).unwrap().0;
+        let scene = SceneLibrary::default().load("park").unwrap().0;
         let movable = Movable::new(&scene.mesh, &PARTS).unwrap();
         let scene = Arc::new(Scene {
             mesh: movable.rest.clone(),

@@ -6,7 +6,7 @@ use glam::DVec3;
 use skiagraph_graph::ParamValue;
 use skiagraph_reference::{BACKGROUND, Oracle, Progress};
 use skiagraph_scene::{
-    DirectionalLight, LightKind, PointLight, Scene, SceneLibrary, SceneRequest, SpotLight, View,
+    DirectionalLight, LightKind, PointLight, Scene, SceneLibrary, SpotLight, View,
 };
 use std::sync::Arc;
 
@@ -159,10 +159,7 @@ fn a_generated_plant_of_gltf_is_right() {
     let file = folder.path().join("foliage.ron");
     std::fs::write(&file, text).unwrap();
     let (scene, _) = SceneLibrary::default()
-        .load(&SceneRequest {
-            argument: file.display().to_string(),
-            obj: None,
-        })
+        .load(&file.display().to_string())
         .unwrap();
     let scene = Arc::new(scene);
     let mut bench = Bench::new(&scene, VIEWPORT);

@@ -11,7 +11,7 @@ use skiagraph_graph::{
 };
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{
-    DirectionalLight, Light, LightKind, Mesh, Scene, SceneLibrary, SceneRequest, SpotLight, View,
+    DirectionalLight, Light, LightKind, Mesh, Scene, SceneLibrary, SpotLight, View,
 };
 use std::sync::Arc;
 
@@ -119,11 +119,7 @@ impl Sources for Cached {
 }
 
 fn park() -> Scene {
-    let request = SceneRequest {
-        argument: "park".to_owned(),
-        obj: None,
-    };
-    SceneLibrary::default().load(&request).unwrap().0
+    SceneLibrary::default().load("park").unwrap().0
 }
 
 /// A pass runs again if what it depends on has changed, and no other pass does.

@@ -5,7 +5,7 @@ use crate::support::graphs::open;
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{FolderSources, Graph, LayeredSources, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
-use skiagraph_scene::{SceneFile, SceneLibrary, SceneRequest};
+use skiagraph_scene::{SceneFile, SceneLibrary};
 use std::{collections::VecDeque, fs, path::Path, sync::Arc};
 
 fn root() -> &'static Path {
@@ -39,11 +39,7 @@ fn the_method_of_the_readme_is_complete_and_runs() {
         Graph::load("facing.ron", &registry(), &sources).unwrap_or_else(|error| panic!("{error}"));
     assert!(graph.warnings().is_empty(), "{:?}", graph.warnings());
 
-    let request = SceneRequest {
-        argument: "park".to_owned(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let (scene, _) = SceneLibrary::default().load("park").unwrap();
     let scene = Arc::new(scene);
     let viewport = [64, 64];
     let mut provider = SceneProvider::new(Arc::clone(&scene));
@@ -170,11 +166,7 @@ fn the_documents_of_the_authoring_guide_are_right() {
         root: folder.path().to_owned(),
     };
     let sources = LayeredSources(vec![Box::new(own), Box::new(EmbeddedSources)]);
-    let request = SceneRequest {
-        argument: "park".to_owned(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let (scene, _) = SceneLibrary::default().load("park").unwrap();
     let provider = SceneProvider::new(Arc::new(scene));
     for (name, passes) in DOCUMENTS {
         let request = PlanRequest::new([64, 64], &provider);
@@ -278,11 +270,7 @@ fn what_the_pages_point_at_is_there() {
 /// Lights of `park_soft`, as docs/tutorial.md tells them.
 #[test]
 fn the_tutorials_suns_are_as_wide_as_it_says() {
-    let request = SceneRequest {
-        argument: "park_soft".to_owned(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let (scene, _) = SceneLibrary::default().load("park_soft").unwrap();
     let wide = scene.views.iter().filter(|view| view.light.is_some());
     let wide: Vec<&str> = wide.map(|view| view.name.as_str()).collect();
     assert_eq!(wide, ["bench_wide", "flowers_wide", "trees_wide"]);

@@ -10,7 +10,7 @@ use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
 use skiagraph_graph::ParamValue;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Class, Statistics};
-use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary, SceneRequest};
+use skiagraph_scene::{DirectionalLight, Mesh, Scene, SceneLibrary};
 use skiagraph_tests::cpu_reference::trapezoid::{normalization, trapezoid};
 use std::sync::Arc;
 
@@ -22,11 +22,7 @@ pub(crate) fn word(word: &str) -> ParamValue {
 
 /// The avenue under one of its views, whose light is the scene's then.
 pub(crate) fn avenue(view: &str) -> Arc<Scene> {
-    let request = SceneRequest {
-        argument: "avenue".into(),
-        obj: None,
-    };
-    let (mut scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let (mut scene, _) = SceneLibrary::default().load("avenue").unwrap();
     let view = scene.view(view).unwrap().clone();
     scene.lights = scene.lights_of(&view);
     scene.views = vec![view];

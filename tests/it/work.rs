@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use skiagraph_gpu::Content;
 use skiagraph_graph::{Capture, Graph, ParamValue, PlanRequest, Sources};
 use skiagraph_passes::{EmbeddedSources, registry};
-use skiagraph_scene::{LightKind, Scene, SceneLibrary, SceneRequest, SpotLight, View};
+use skiagraph_scene::{LightKind, Scene, SceneLibrary, SpotLight, View};
 use skiagraph_tests::cpu_reference::LightSpace;
 use std::sync::Arc;
 
@@ -23,11 +23,7 @@ fn params() -> [(&'static str, ParamValue); 2] {
 }
 
 fn level() -> Arc<Scene> {
-    let request = SceneRequest {
-        argument: "level".into(),
-        obj: None,
-    };
-    Arc::new(SceneLibrary::default().load(&request).unwrap().0)
+    Arc::new(SceneLibrary::default().load("level").unwrap().0)
 }
 
 /// How often lines of shaders are reached, all together, in one frame of a preset.

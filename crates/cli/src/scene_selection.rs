@@ -11,8 +11,7 @@ use skiagraph_compare::own_scene_notes::{from_below, notes};
 use skiagraph_compare::sink::Sink;
 use skiagraph_compare::wording::did_you_mean;
 use skiagraph_scene::{
-    CameraPath, ImportReport, MeshFile, Scene, SceneError, SceneFile, SceneLibrary, SceneRequest,
-    View,
+    CameraPath, ImportReport, MeshFile, Scene, SceneError, SceneFile, SceneLibrary, View,
 };
 use std::path::Path;
 
@@ -71,11 +70,7 @@ impl SceneSelection {
             }
             own
         } else {
-            let request = SceneRequest {
-                argument: args.scene().to_owned(),
-                obj: None,
-            };
-            library.load(&request).map_err(explain)?.into()
+            library.load(args.scene()).map_err(explain)?.into()
         };
         warn(args, &own.report);
         if args.eye.is_some() && args.view.as_deref() == Some("all") && own.scene.views.len() > 1 {

@@ -3,11 +3,10 @@
 //! ```
 //! use skiagraph_compare::{comparison::Comparison, graphs::shadow_method::load_methods};
 //! use skiagraph_passes::EmbeddedSources;
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //! use std::{collections::BTreeMap, sync::Arc};
 //!
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let (scene, _) = SceneLibrary::default().load("park")?;
 //! let methods = load_methods(&["rt", "nsm@bias=0"], &[], &[512, 1024], &EmbeddedSources)?;
 //! let mut comparison = Comparison::new(Arc::new(scene), methods)?;
 //! comparison.viewports = vec![[640, 360], [1280, 720]];

@@ -8,11 +8,10 @@
 //!     sink::{Session, Silent},
 //! };
 //! use skiagraph_passes::EmbeddedSources;
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //! use std::sync::Arc;
 //!
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = SceneLibrary::from_environment().load(&request)?;
+//! let (scene, _) = SceneLibrary::from_environment().load("park")?;
 //! let methods = load_methods(&["light_buffer", "nsm@bias=0"], &[], &[1024], &EmbeddedSources)?;
 //! let gpu = device::open(&GpuRequest::default(), methods.iter().map(|it| &it.preset.graph))?;
 //! let comparison = Comparison::new(Arc::new(scene), methods)?;

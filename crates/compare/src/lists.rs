@@ -27,6 +27,19 @@ pub fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
     })
 }
 
+/// Returns the first item of `list` that `is` tells; if there is none, `new` is added at the end.
+pub fn find_or_push<T>(
+    list: &mut Vec<T>,
+    is: impl FnMut(&T) -> bool,
+    new: impl FnOnce() -> T,
+) -> &mut T {
+    let place = list.iter().position(is).unwrap_or_else(|| {
+        list.push(new());
+        list.len() - 1
+    });
+    &mut list[place]
+}
+
 /// Returns the value beside the first `key` in a list of pairs. If there is none, `key` is added at
 /// the end with the default value.
 pub fn entry<K: PartialEq, V: Default>(list: &mut Vec<(K, V)>, key: K) -> &mut V {

@@ -3,10 +3,9 @@
 //! ```
 //! use glam::DVec3;
 //! use skiagraph_compare::own_camera::OwnCamera;
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //!
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let (scene, _) = SceneLibrary::default().load("park")?;
 //! let camera = OwnCamera { eye: Some(DVec3::new(0.0, 90.0, 0.0)), ..OwnCamera::default() };
 //! let view = camera.of_view(&scene.views[0], &scene.mesh, true);
 //! assert!(view.eye.y == 90.0 && view.far > 90.0);

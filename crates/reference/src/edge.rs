@@ -5,8 +5,8 @@
 
 use crate::{
     error::Error,
-    ground_truth::GroundTruthPixels,
-    pixels::check_pixel_count,
+    ground_truth::{Class, GroundTruthPixels},
+    pixels::{check_pixel_count, neighbours},
     shimmer::Seen,
     statistics::{Verdict, for_each_verdict},
 };
@@ -153,24 +153,14 @@ struct Edges<'a> {
 
 impl<'a> Edges<'a> {
     fn new(seen: Seen<'a>, truth: &GroundTruthPixels) -> Self {
-        let [width, height] = truth.viewport.map(|edge| edge as usize);
-        let is_edge = |pixel: usize| {
-            let (x, y, class) = (pixel % width, pixel / width, truth.classes[pixel]);
-            let neighbours = [
-                (x > 0).then(|| pixel - 1),
-                (x + 1 < width).then(|| pixel + 1),
-                (y > 0).then(|| pixel - width),
-                (y + 1 < height).then(|| pixel + width),
-            ];
-            let mut others = neighbours.into_iter().flatten();
-            class.faces_light()
-                && others.any(|other| {
-                    truth.classes[other].faces_light() && truth.classes[other] != class
-                })
+        let size = truth.viewport.map(|edge| edge as usize);
+        let is_edge = |pixel: &usize| {
+            let class = truth.classes[*pixel];
+            let is_other = |other: Class| other.faces_light() && other != class;
+            let mut others = neighbours(*pixel, size);
+            class.faces_light() && others.any(|other| is_other(truth.classes[other]))
         };
-        let edges: Vec<usize> = (0..width * height)
-            .filter(|&pixel| is_edge(pixel))
-            .collect();
+        let edges: Vec<usize> = (0..truth.classes.len()).filter(is_edge).collect();
         let screen = edges.iter().map(|&pixel| place(seen, pixel).map(f64::from));
         let scene = edges.iter().filter_map(|&pixel| receiver(seen, pixel));
         Self {

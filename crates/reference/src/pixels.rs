@@ -32,6 +32,19 @@ impl Default for Progress<'_> {
     }
 }
 
+/// Returns the indices of the up to four pixels beside one, in a picture of `width` × `height`
+/// pixels that are counted row by row.
+pub fn neighbours(index: usize, [width, height]: [usize; 2]) -> impl Iterator<Item = usize> {
+    let (x, y) = (index % width, index / width);
+    let beside = [
+        (x > 0).then(|| index - 1),
+        (x + 1 < width).then(|| index + 1),
+        (y > 0).then(|| index - width),
+        (y + 1 < height).then(|| index + width),
+    ];
+    beside.into_iter().flatten()
+}
+
 /// Computes one value per pixel, rows in parallel, and returns the values row by row from the top
 /// left. `pixel` gets the column, the row, and a list for use as scratch memory: each thread has
 /// one list, which still holds the content of the thread's last call. An error of any pixel ends

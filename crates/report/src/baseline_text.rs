@@ -132,7 +132,7 @@ fn figures(cell: &CellChange) -> [String; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use skiagraph_compare::records::unpaired::UnpairedRatio;
+    use skiagraph_compare::records::turns::Ratio;
 
     fn cell(method: &str) -> CellChange {
         let then = Figures {
@@ -147,7 +147,7 @@ mod tests {
             then,
             now: Some(then),
             errors: Change::Same,
-            ratio: Some(UnpairedRatio {
+            ratio: Some(Ratio {
                 low: 0.98,
                 median: 1.0,
                 high: 1.02,
@@ -158,7 +158,7 @@ mod tests {
     fn changes() -> Changes {
         let mut slower = cell("nsm 1024");
         slower.now.as_mut().unwrap().ms = 3.0;
-        slower.ratio = Some(UnpairedRatio {
+        slower.ratio = Some(Ratio {
             low: 1.9,
             median: 2.0,
             high: 2.1,

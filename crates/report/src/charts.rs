@@ -5,7 +5,7 @@ use crate::looks::looks;
 use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::lists::{entry, place, unique};
+use skiagraph_compare::lists::{entry, find_or_push, place, unique};
 use skiagraph_compare::records::results::{Measured, Results, Run};
 use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::records::sources::Kept;
@@ -192,16 +192,11 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
                 ..Mark::new(x, y)
             };
             // A line for each method and map.
-            let is_of = |series: &&mut Series| {
+            let is_of = |series: &Series| {
                 series.name == run.preset && series.marks.iter().all(|mark| mark.size == size)
             };
-            match panel.series.iter_mut().find(is_of) {
-                Some(series) => series.marks.push(mark),
-                None => panel.series.push(Series {
-                    name: run.preset.clone(),
-                    marks: vec![mark],
-                }),
-            }
+            let series = find_or_push(&mut panel.series, is_of, || without_marks(&run.preset));
+            series.marks.push(mark);
         }
     }
     for series in panels
@@ -276,25 +271,19 @@ pub fn path_panels<'a>(
         };
         let is_soft = run.area.is_some();
         let place = (&run.view, run.light.as_deref());
-        let at = match paths.iter().position(|(of, _)| *of == place) {
-            Some(at) => at,
-            None => {
-                let y = if is_soft {
-                    "RMSE of the shares of light"
-                } else {
-                    "wrong pixels, %"
-                };
-                let panel = Panel {
-                    title: titled(&format!("path {}", run.view), place.1, run.viewport),
-                    kind: Kind::Frames,
-                    x: "frame".into(),
-                    y: y.into(),
-                    series: Vec::new(),
-                };
-                paths.push((place, panel));
-                paths.len() - 1
-            }
+        let y = if is_soft {
+            "RMSE of the shares of light"
+        } else {
+            "wrong pixels, %"
         };
+        let new = || Panel {
+            title: titled(&format!("path {}", run.view), place.1, run.viewport),
+            kind: Kind::Frames,
+            x: "frame".into(),
+            y: y.into(),
+            series: Vec::new(),
+        };
+        let (_, panel) = find_or_push(&mut paths, |(of, _)| *of == place, || (place, new()));
         let mark = |(index, frame): (usize, &SequenceFrame)| {
             let wrong = 100.0 * frame.wrong_outside_band as f64;
             let error = if is_soft {
@@ -308,7 +297,7 @@ pub fn path_panels<'a>(
                 ..Mark::new(index as f64, error)
             }
         };
-        paths[at].1.series.push(Series {
+        panel.series.push(Series {
             name: run.preset.clone(),
             marks: sequence.frames.iter().enumerate().map(mark).collect(),
         });
@@ -338,12 +327,15 @@ pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
 
 /// Adds a mark to the series named `name`; a missing series is added at the end first.
 pub fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
-    match series.iter_mut().find(|series| series.name == name) {
-        Some(series) => series.marks.push(mark),
-        None => series.push(Series {
-            name: name.to_owned(),
-            marks: vec![mark],
-        }),
+    let is_of = |series: &Series| series.name == name;
+    let series = find_or_push(series, is_of, || without_marks(name));
+    series.marks.push(mark);
+}
+
+fn without_marks(name: &str) -> Series {
+    Series {
+        name: name.to_owned(),
+        marks: Vec::new(),
     }
 }
 
@@ -396,7 +388,7 @@ pub fn conditions(kept: &[Kept]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
     use skiagraph_compare::records::sequence::{FrameCost, Sequence};
 
     fn kept() -> Kept {

@@ -198,7 +198,7 @@ impl Gate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
 
     #[test]
     fn a_condition_fails_for_what_is_above_it_or_could_not_run() {

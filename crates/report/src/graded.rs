@@ -3,7 +3,7 @@
 use itertools::Itertools;
 use skiagraph_compare::records::results::{AreaReference, Run};
 use skiagraph_compare::wording::thousands;
-use skiagraph_reference::Graded;
+use skiagraph_reference::{Graded, Invalid};
 
 /// Describes the [reference](skiagraph_compare#terms) of a light [with an
 /// extent](skiagraph_compare#terms): its samples per pixel, its standard error, and the number of
@@ -48,17 +48,26 @@ fn errors(run: &Run) -> Option<Graded> {
 /// outside 0 to 1. `None` if there are none, or the method could not run.
 pub fn no_shares(run: &Run) -> Option<String> {
     let invalid = errors(run)?.invalid;
-    let counts = [
-        ("NaN", invalid.nan),
-        ("infinite", invalid.infinite),
-        ("outside 0 to 1", invalid.outside),
-    ];
-    let counts = counts.into_iter().filter(|(_, count)| *count > 0);
-    let mut counts = counts.map(|(what, count)| format!("{what} {}", thousands(count)));
-    let counts = counts.join(", ");
+    let counts = invalid_counts(&invalid);
     let label = run.method_label();
     let text = format!("warning: {label}: visibility that is not a share of light: {counts}");
     (invalid.total() > 0).then_some(text)
+}
+
+/// Counts the pixels whose visibility is not a share of light, by kind of value.
+pub fn invalid_counts(of: &Invalid) -> String {
+    counted([
+        ("NaN", of.nan),
+        ("infinite", of.infinite),
+        ("outside 0 to 1", of.outside),
+    ])
+}
+
+/// Returns the counts that are not 0 as text, each behind its name.
+pub fn counted<'a>(counts: impl IntoIterator<Item = (&'a str, u64)>) -> String {
+    let counts = counts.into_iter().filter(|(_, count)| *count > 0);
+    let mut counts = counts.map(|(what, count)| format!("{what} {}", thousands(count)));
+    counts.join(", ")
 }
 
 /// Methods by their error under a light with extent, and whether the reference can tell.
@@ -83,7 +92,7 @@ fn ranks(runs: &[Run]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
     use skiagraph_compare::records::results::Answer;
     use skiagraph_reference::Invalid;
 

@@ -1,7 +1,7 @@
 //! Judged pictures of other renderers as a table and sentences for a terminal.
 
-use crate::graded::area_reference;
-use crate::notes::wrong_surface;
+use crate::graded::{counted, invalid_counts};
+use crate::notes::{pixels, wrong_surface};
 use crate::table::{TERMINAL, terminal, wrapped};
 use itertools::Itertools;
 use skiagraph_compare::lists::entry;
@@ -80,7 +80,6 @@ fn short_names(pictures: &[JudgedPicture]) -> Vec<String> {
 }
 
 fn heading(of: &JudgedPictures) -> Vec<String> {
-    let pixels = &of.pixels;
     let surfaces = match &*of.surfaces {
         "ids" => "by the ids given",
         "depth" => "by the depths given",
@@ -95,30 +94,15 @@ fn heading(of: &JudgedPictures) -> Vec<String> {
             under.unwrap_or_default(),
             size(of.viewport)
         ),
-        format!(
-            "facing the light (PFL) {} = lit {} + shadow {} · facing away {} · background {}",
-            thousands(pixels.facing_light),
-            thousands(pixels.lit),
-            thousands(pixels.shadow),
-            thousands(pixels.facing_away),
-            thousands(pixels.background)
-        ),
-        match &of.area {
-            Some(area) => area_reference(area, of.band),
-            None => format!(
-                "in the band, where the answer hangs on rounding: {} ({} of PFL)",
-                thousands(of.band),
-                percent(of.band, pixels.facing_light)
-            ),
-        },
+        pixels(&of.pixels, of.area.as_ref(), of.band),
         format!(
             "unattributable: {} ({} of PFL) · surfaces: {surfaces}",
             thousands(of.unattributable),
-            percent(of.unattributable, pixels.facing_light)
+            percent(of.unattributable, of.pixels.facing_light)
         ),
     ];
     if of.wrong_surface > 0 {
-        let all = pixels.background + pixels.facing_away + pixels.facing_light;
+        let all = of.pixels.background + of.pixels.facing_away + of.pixels.facing_light;
         lines.push(format!("warning: {}", wrong_surface(of.wrong_surface, all)));
     }
     lines
@@ -216,13 +200,8 @@ fn notes(of: &JudgedPictures, names: &[String]) -> Vec<String> {
     let mut warn = |text: String, name| entry(&mut warnings, text).push(name);
     for (name, picture) in names.iter().zip(&of.pictures) {
         let invalid = picture.graded.invalid;
-        let counts = [
-            ("NaN", invalid.nan),
-            ("infinite", invalid.infinite),
-            ("outside 0 to 1", invalid.outside),
-        ];
         if invalid.total() > 0 {
-            let counts = counted(counts);
+            let counts = invalid_counts(&invalid);
             let what = "at pixels that face the light the factor is not a share of 0 to 1";
             warn(format!("{what}: {counts}"), name);
         }
@@ -253,13 +232,6 @@ fn notes(of: &JudgedPictures, names: &[String]) -> Vec<String> {
             .into(),
     );
     notes
-}
-
-/// The counts that are not 0, each behind its name.
-fn counted<'a>(counts: impl IntoIterator<Item = (&'a str, u64)>) -> String {
-    let counts = counts.into_iter().filter(|(_, count)| *count > 0);
-    let mut counts = counts.map(|(what, count)| format!("{what} {}", thousands(count)));
-    counts.join(", ")
 }
 
 #[cfg(test)]

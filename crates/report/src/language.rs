@@ -1,6 +1,7 @@
 //! Writes the reference of the language of graph documents in Markdown, from the JSON Schema of
 //! documents.
 
+use crate::table;
 use itertools::Itertools;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
@@ -254,20 +255,8 @@ fn either(of: &Value) -> Option<&Vec<Value>> {
 
 /// Text in lines of at most 100 columns, those after the first indented.
 fn wrapped(text: &str, indent: &str) -> String {
-    let (mut lines, mut width) = (String::new(), indent.len());
-    for word in text.split(' ') {
-        let letters = word.chars().count();
-        if width + 1 + letters > 100 {
-            lines += &format!("\n{indent}");
-            width = indent.len();
-        } else if !lines.is_empty() {
-            lines.push(' ');
-            width += 1;
-        }
-        lines += word;
-        width += letters;
-    }
-    lines
+    let text = table::wrapped(text, 100 - indent.len());
+    text.replace('\n', &format!("\n{indent}"))
 }
 
 fn quoted(word: &Value) -> String {

@@ -30,12 +30,12 @@ pub mod published_left_out;
 pub mod published_panels;
 pub mod raster;
 pub mod results_table;
-#[cfg(test)]
-mod samples;
 pub mod stress_matrix;
 pub mod summary;
 pub mod summary_table;
 pub mod table;
+#[cfg(test)]
+mod test_support;
 pub mod trace;
 mod tuning;
 pub mod verdict;

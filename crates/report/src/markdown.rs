@@ -253,7 +253,7 @@ fn list(lines: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
 
     #[test]
     fn a_document_has_a_table_per_viewport() {

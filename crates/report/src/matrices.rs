@@ -107,7 +107,7 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
 
     #[test]
     fn a_pass_has_a_column_for_each_size() {

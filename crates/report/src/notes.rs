@@ -1,11 +1,11 @@
 //! Writes the notes below tables of results.
 
-use crate::graded::graded;
+use crate::graded::{area_reference, graded};
 use itertools::Itertools;
-use skiagraph_compare::records::results::{Machine, Results, Run};
+use skiagraph_compare::records::results::{AreaReference, Machine, Results, Run};
 use skiagraph_compare::records::sequence::{FrameCost, Sequence};
 use skiagraph_compare::wording::{frames, ms, percent, plural, thousands};
-use skiagraph_reference::{BlockerCounts, Quantiles};
+use skiagraph_reference::{BlockerCounts, PixelCounts, Quantiles};
 
 /// The band is too large if more than one in this many of the pixels that face the light lie in it.
 const MAX_BAND: u128 = 1000;
@@ -36,6 +36,28 @@ pub fn surface_warning(run: &Run) -> Option<String> {
     let all = background + run.pixels.facing_light;
     let text = || format!("warning: {}", wrong_surface(run.wrong_surface, all));
     (run.wrong_surface > 0).then(text)
+}
+
+/// Returns two lines: the counts of pixels by the [reference](skiagraph_compare#terms), and the
+/// doubt about its answers. `band` is the number of pixels in the band, whose answer rounding
+/// decides.
+pub fn pixels(counts: &PixelCounts, area: Option<&AreaReference>, band: u64) -> String {
+    let doubt = match area {
+        Some(area) => area_reference(area, band),
+        None => format!(
+            "in the band, where the answer hangs on rounding: {} ({} of PFL)",
+            thousands(band),
+            percent(band, counts.facing_light)
+        ),
+    };
+    format!(
+        "facing the light (PFL) {} = lit {} + shadow {} · facing away {} · background {}\n{doubt}",
+        thousands(counts.facing_light),
+        thousands(counts.lit),
+        thousands(counts.shadow),
+        thousands(counts.facing_away),
+        thousands(counts.background)
+    )
 }
 
 /// Returns the sentence that the GPU rasterised `count` of `all` pixels with a surface that another
@@ -266,7 +288,7 @@ pub fn untimed<'a>(passes: impl Iterator<Item = (&'a str, bool)>, frame: bool) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
     use skiagraph_compare::records::steady::{Cycle, Steady};
     use skiagraph_reference::BlockerCounts;
 

@@ -224,8 +224,8 @@ fn is_exact(summary: &Summary, row: &Row) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
     use crate::summary_table::summaries;
+    use crate::test_support::results as sample;
 
     /// `rt` is right on the first two of three scenes, `nsm` on the second.
     fn three() -> [Results; 3] {

@@ -185,7 +185,7 @@ fn write_page(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
     use skiagraph_compare::records::results::Results;
 
     /// A folder with these results and a picture of the first run.

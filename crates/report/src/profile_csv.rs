@@ -106,7 +106,7 @@ pub fn to_csv(profiles: &[Profile]) -> Result<String, ::csv::Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::profile as sample;
+    use crate::test_support::profile as sample;
 
     #[test]
     fn csv_has_a_line_per_pass_and_one_for_the_frame() {

@@ -264,7 +264,7 @@ fn ratio_row(clock: &str, name: &str, ratio: Option<&Ratio>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::profile as sample;
+    use crate::test_support::profile as sample;
     use skiagraph_compare::records::statistics::Series;
     use std::path::Path;
 

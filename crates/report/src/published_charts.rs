@@ -188,7 +188,7 @@ fn bar<'a>(cell: &'a Cell<'a>, quantity: &str) -> Option<Bar<'a>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
     use skiagraph_chart::Kind;
     use skiagraph_compare::records::results::Published;
 

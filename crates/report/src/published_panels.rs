@@ -3,6 +3,7 @@
 
 use crate::charts::push;
 use skiagraph_chart::{Kind, Mark, Panel, Series};
+use skiagraph_compare::lists::find_or_push;
 use skiagraph_compare::records::columns::figure;
 use skiagraph_compare::records::results::{Published, Results, Run};
 use skiagraph_compare::wording::size;
@@ -147,18 +148,14 @@ pub fn rows<'a>(
         let (scene, view) = (cell.scene(), cell.run.view.as_str());
         if let Some(bar) = bar(cell) {
             let key = (scene, view, &*place);
-            let known = rows
-                .iter_mut()
-                .find(|row| (row.scene, row.view, &*row.place) == key);
-            match known {
-                Some(row) => row.bars.push((group, bar)),
-                None => rows.push(PanelRow {
-                    scene,
-                    view,
-                    place: place.clone(),
-                    bars: vec![(group, bar)],
-                }),
-            }
+            let is_of = |row: &PanelRow| (row.scene, row.view, &*row.place) == key;
+            let row = find_or_push(&mut rows, is_of, || PanelRow {
+                scene,
+                view,
+                place: place.clone(),
+                bars: Vec::new(),
+            });
+            row.bars.push((group, bar));
         }
     }
     rows.retain(|row| row.groups().len() > 1);

@@ -1,14 +1,13 @@
 //! Results of one view and viewport as tables for a terminal: times beside errors, then the times
 //! of passes.
 
-use crate::graded::area_reference;
-use crate::notes::{band_warning, of_runs, surface_warning};
+use crate::notes::{band_warning, of_runs, pixels, surface_warning};
 use crate::table::terminal;
 use skiagraph_compare::records::columns::{self, Column, are_paths};
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::statistics::Spread;
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{frames, ms, percent, size, thousands};
+use skiagraph_compare::wording::{frames, ms, percent, size};
 use std::collections::BTreeSet;
 
 /// Returns the heading, a table of times and errors, a table of the times of passes, and notes for
@@ -38,7 +37,7 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
 }
 
 fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
-    let (view, pixels) = (&run.view, &run.pixels);
+    let view = &run.view;
     let what = if are_paths(runs) {
         format!("path {view}, counts of all its frames together")
     } else {
@@ -53,23 +52,8 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
             results.warmup,
             results.oracle
         ),
-        format!(
-            "facing the light (PFL) {} = lit {} + shadow {} · facing away {} · background {}",
-            thousands(pixels.facing_light),
-            thousands(pixels.lit),
-            thousands(pixels.shadow),
-            thousands(pixels.facing_away),
-            thousands(pixels.background)
-        ),
+        pixels(&run.pixels, run.area.as_ref(), run.band),
     ];
-    lines.push(match &run.area {
-        Some(area) => area_reference(area, run.band),
-        None => format!(
-            "in the band, where the answer hangs on rounding: {} ({} of PFL)",
-            thousands(run.band),
-            percent(run.band, pixels.facing_light)
-        ),
-    });
     lines.extend(band_warning(run));
     lines.extend(surface_warning(run));
     format!("{title}\n{}\n", lines.join("\n"))
@@ -170,7 +154,7 @@ fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
 
     #[test]
     fn the_terminal_shows_speed_beside_error() {

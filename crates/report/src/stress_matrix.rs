@@ -256,7 +256,7 @@ pub fn failures(report: &Report, command_for: CommandFor) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::stress as sample;
+    use crate::test_support::stress as sample;
 
     #[test]
     fn failures_stand_out_and_come_with_the_way_to_look_at_them() {

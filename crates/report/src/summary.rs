@@ -7,7 +7,7 @@ use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::records::statistics::FrameTimes;
 use skiagraph_compare::records::steady::Cycle;
 use skiagraph_compare::records::tuned::Tuned;
-use skiagraph_compare::records::turns::{PairedRatio, Turns};
+use skiagraph_compare::records::turns::{Ratio, Turns};
 use skiagraph_reference::Shimmer;
 
 /// Figures of one method in one setting of its params and with one map size, combined over the
@@ -58,8 +58,9 @@ impl<'a> Row<'a> {
         let measured = |run: &&'a Run| Some((*run, run.measured.as_ref()?));
         let runs: Vec<_> = all.iter().filter_map(measured).collect();
         let unavailable = all.iter().find_map(|run| run.unavailable.as_deref());
-        let has_time =
-            |(_, of): &(&Run, &Measured)| full(of).gpu_ms.is_some() && kept(of).gpu_ms.is_some();
+        let has_time = |(_, of): &(&Run, &Measured)| {
+            of.full_times().gpu_ms.is_some() && kept(of).gpu_ms.is_some()
+        };
         Self {
             method: all
                 .first()
@@ -178,14 +179,14 @@ impl<'a> Row<'a> {
     /// meshes have moved: the mean of the views' medians. `None` if a view has no such time.
     /// `by_wall` selects wall time instead of GPU time.
     pub fn frame_ms(&self, by_wall: bool) -> Option<f64> {
-        self.mean(|_, of| median(full(of), by_wall))
+        self.mean(|_, of| median(of.full_times(), by_wall))
     }
 
     /// Returns the milliseconds of a frame in which only the camera has moved, so that passes with
     /// unchanged inputs are skipped: the mean of the views' medians. `None` if no pass is skipped,
     /// or a view has no such time. `by_wall` selects wall time instead of GPU time.
     pub fn kept_ms(&self, by_wall: bool) -> Option<f64> {
-        let keeps = |(_, of): &(&Run, &Measured)| kept(of) != full(of);
+        let keeps = |(_, of): &(&Run, &Measured)| kept(of) != of.full_times();
         let any = self.runs.iter().any(keeps);
         self.mean(|_, of| median(kept(of), by_wall)).filter(|_| any)
     }
@@ -194,7 +195,7 @@ impl<'a> Row<'a> {
     /// `is_kept` is true of [`kept_ms`](Self::kept_ms), in milliseconds: the means of the views.
     /// `None` if a view has no such times.
     pub fn quartiles(&self, by_wall: bool, is_kept: bool) -> Option<[f64; 2]> {
-        let times = if is_kept { kept } else { full };
+        let times = if is_kept { kept } else { Measured::full_times };
         let q1 = self.mean(|_, of| Some(times(of).spread(by_wall)?.q1))?;
         Some([q1, self.mean(|_, of| Some(times(of).spread(by_wall)?.q3))?])
     }
@@ -207,7 +208,10 @@ impl<'a> Row<'a> {
 
     /// Returns the number of timed frames of the view that has the fewest; 0 without runs.
     pub fn frames(&self) -> usize {
-        let frames = self.runs.iter().map(|(_, of)| full(of).wall_frames.len());
+        let frames = self
+            .runs
+            .iter()
+            .map(|(_, of)| of.full_times().wall_frames.len());
         frames.min().unwrap_or_default()
     }
 
@@ -215,9 +219,10 @@ impl<'a> Row<'a> {
     /// views in the same order. If `is_kept` is true, frames in which only the camera moved are
     /// compared (of a row that skips no pass, all frames), otherwise frames in which every pass
     /// ran; `by_wall` selects wall time instead of GPU time. Frames in which every pass ran are
-    /// compared one by one ([`PairedRatio`]) if the methods took turns in one session, or followed
-    /// the same camera path in one; all other times differ if their quartiles do not overlap. False
-    /// if times are missing, or if there are fewer than eight pairs of frames to compare.
+    /// compared one by one ([`Ratio::paired`]) if the methods took turns in one session, or
+    /// followed the same camera path in one; all other times differ if their quartiles do not
+    /// overlap. False if times are missing, or if there are fewer than eight pairs of frames to
+    /// compare.
     pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
         let pair = || self.runs.iter().zip(&other.runs);
         let is_pair = |((one, of), (other, of_other)): (&Measurement, &Measurement)| {
@@ -226,7 +231,7 @@ impl<'a> Row<'a> {
         if !is_kept && pair().all(is_pair) {
             let mut sums: [Vec<f64>; 2] = Default::default();
             for ((_, one), (_, other)) in pair() {
-                let times = [one, other].map(|of| full(of).frames(by_wall));
+                let times = [one, other].map(|of| of.full_times().frames(by_wall));
                 let [Some(one_ms), Some(other_ms)] = times else {
                     return false;
                 };
@@ -245,7 +250,7 @@ impl<'a> Row<'a> {
                     }
                 }
             }
-            let ratio = PairedRatio::new(&sums[0], &sums[1]);
+            let ratio = Ratio::paired(&sums[0], &sums[1]);
             return ratio.is_some_and(|ratio| ratio.is_told_apart());
         }
         let quartiles = [self, other].map(|row| {
@@ -337,13 +342,6 @@ fn cycle(of: &Measured) -> Option<Cycle> {
 fn frames(of: &Measured) -> f64 {
     let frames = of.sequence.as_ref().map_or(1, |path| path.frames.len());
     frames.max(1) as f64
-}
-
-/// Times with every pass run.
-fn full(of: &Measured) -> &FrameTimes {
-    let path = of.sequence.as_ref();
-    path.and_then(|path| path.every_pass.as_ref())
-        .unwrap_or(&of.frame)
 }
 
 /// Times with what is kept.

@@ -415,7 +415,7 @@ impl<'a> Summary<'a> {
 mod tests {
     use super::*;
     use crate::matrices::by_light;
-    use crate::samples::results as sample;
+    use crate::test_support::results as sample;
     use skiagraph_compare::records::results::Promise;
     use skiagraph_compare::records::steady::{Cycle, Steady};
 

@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn untrusted_timestamps_are_not_drawn() {
-        let mut conditions = crate::samples::profile().conditions;
+        let mut conditions = crate::test_support::profile().conditions;
         let gpu_events = |conditions: &Conditions| {
             let text = trace(conditions, &[frame(&[(0, 10)])]);
             let trace: Value = serde_json::from_str(&text).unwrap();
@@ -183,7 +183,7 @@ mod tests {
         let mut second = frame(&[(0, 10)]);
         second.began = us(5);
         let text = trace(
-            &crate::samples::profile().conditions,
+            &crate::test_support::profile().conditions,
             &[frame(&[(0, 10)]), second],
         );
         let trace: Value = serde_json::from_str(&text).unwrap();

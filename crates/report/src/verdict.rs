@@ -589,8 +589,8 @@ fn ratio(ratio: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::results as sample;
     use crate::summary::rows;
+    use crate::test_support::results as sample;
     use skiagraph_compare::records::{results::Run, statistics::FrameTimes, tuned::Tuned};
     use std::time::Duration;
 

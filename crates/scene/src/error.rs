@@ -166,23 +166,13 @@ pub enum SceneError {
         /// Reason why the scene cannot have that number.
         reason: String,
     },
-    /// A mesh file lacks a camera or a light, and the caller gave no view and light instead
-    /// (`SceneRequest::obj`).
+    /// A mesh file that is loaded as a scene lacks a camera or a light.
     #[error("{}: it holds no camera or no light: give --eye x,y,z --look x,y,z \
         (direction) and --light x,y,z (the direction in which the light travels); --fov DEGREES, \
         --near and --far if the defaults do not suit it", path.display())]
     ObjNeedsView {
         /// Path of the mesh file.
         path: PathBuf,
-    },
-    /// The caller gave a view and light (`SceneRequest::obj`) for a scene that has its own.
-    #[error(
-        "scene {argument:?} has its own views and light: a view and a light (--eye, --look, \
-         --light …) can only be given with a mesh file"
-    )]
-    ViewNotWanted {
-        /// Name or path that was given.
-        argument: String,
     },
     /// A view that the caller gave does not form a camera, or a light that the caller gave is not
     /// valid.

@@ -110,7 +110,7 @@ pub use texture::{Texture, Wrap};
 pub use self::{
     gltf::load_gltf,
     ground::{Ground, add_ground, has_ground},
-    library::{ObjSetup, SceneLibrary, SceneListing, SceneRequest},
+    library::{SceneLibrary, SceneListing},
     limit::Limit,
     material_use::MaterialUse,
     mesh_file::{MeshFile, MeshFileOptions},

@@ -1,18 +1,12 @@
 //! Finds scenes by name or path, and the meshes that they name.
 
 use crate::{
-    camera::View,
     error::SceneError,
     gltf::load_gltf,
     ground::add_ground,
-    light_kind::Light,
     limit::Limit,
-    material_use::MaterialUse,
     mesh_file::{MeshFile, MeshFileOptions, has_extension},
-    obj::{
-        options::{Concave, ObjOptions, QuadDiagonal},
-        read::load_obj,
-    },
+    obj::{options::ObjOptions, read::load_obj},
     path::CameraPath,
     report::ImportReport,
     scene::Scene,
@@ -43,35 +37,6 @@ const BUILT_IN: [(&str, &str); 9] = [
     ("sponza", include_str!("../scenes/sponza.ron")),
     ("sponza_masked", include_str!("../scenes/sponza_masked.ron")),
 ];
-
-/// Scene to be loaded, as a user names it.
-#[derive(Clone, Debug, Default)]
-pub struct SceneRequest {
-    /// Name or path of the scene: the name of a built-in scene, the name of a file in
-    /// [`SceneLibrary::scenes`] without `.ron`, or the path of a `.ron`, `.obj`, `.gltf` or `.glb`
-    /// file. If the scene's mesh is generated in any size, a number of triangles may follow:
-    /// `city:1000000`.
-    pub argument: String,
-    /// View and light for a bare mesh file (one loaded without a scene file), in the place of its
-    /// own cameras and lights. Required if the file lacks either. Must be `None` for any other
-    /// scene, which brings its own.
-    pub obj: Option<ObjSetup>,
-}
-
-/// Settings that turn a mesh file without a scene file into a scene.
-#[derive(Clone, Debug)]
-pub struct ObjSetup {
-    /// The only view of the scene.
-    pub view: View,
-    /// The only light of the scene.
-    pub light: Light,
-    /// Diagonal that splits a quad of an OBJ file.
-    pub quads: QuadDiagonal,
-    /// Treatment of concave polygons of an OBJ file.
-    pub concave: Concave,
-    /// Parts of the file's materials that are read.
-    pub materials: MaterialUse,
-}
 
 /// One row of the list that `skiagraph scenes` prints.
 #[derive(Clone, Debug, Default)]
@@ -121,28 +86,26 @@ impl SceneLibrary {
     }
 
     /// Loads a scene with its mesh. The report lists changes that the import made to the mesh, and
-    /// parts of the file that it left out.
+    /// parts of the file that it left out. `argument` is the name of a built-in scene, the name of
+    /// a file in [`scenes`](Self::scenes) without `.ron`, or the path of a `.ron`, `.gltf` or
+    /// `.glb` file; a mesh file needs cameras and lights of its own. If the scene's mesh is
+    /// generated in any size, a number of triangles may follow: `city:1000000`.
     ///
     /// # Errors
     /// [`SceneError`]: an unknown scene, a number of triangles that the mesh cannot have, a broken
-    /// scene file or mesh, a mesh that was not found (with every place searched), a bare mesh file
-    /// without view and light, a view and light for a scene that has its own.
-    pub fn load(&self, request: &SceneRequest) -> Result<(Scene, ImportReport), SceneError> {
-        let path = Path::new(&request.argument);
+    /// scene file or mesh, a mesh that was not found (with every place searched), a mesh file
+    /// without cameras or lights.
+    pub fn load(&self, argument: &str) -> Result<(Scene, ImportReport), SceneError> {
+        let path = Path::new(argument);
         if MeshFile::is_one(path) {
-            return load_bare(path, request.obj.as_ref());
+            return load_bare(path);
         }
-        if request.obj.is_some() {
-            return Err(SceneError::ViewNotWanted {
-                argument: request.argument.clone(),
-            });
-        }
-        let (file, scene) = self.parse_sized(&request.argument)?;
+        let (file, scene) = self.parse_sized(argument)?;
         self.assemble(scene, file.as_deref())
     }
 
     /// Reads the scene file of the scene `argument` (a name or path as in
-    /// [`SceneRequest::argument`]), for a caller that changes it and writes it again
+    /// [`load`](Self::load)), for a caller that changes it and writes it again
     /// ([`scene_text`](crate::scene_text)). The path of a mesh file in it is replaced by the path
     /// at which the file was found.
     ///
@@ -187,7 +150,7 @@ impl SceneLibrary {
     }
 
     /// Reads the camera paths of the scene `argument` (a name or path as in
-    /// [`SceneRequest::argument`]) without loading its mesh. Returns an empty list for a mesh file,
+    /// [`load`](Self::load)) without loading its mesh. Returns an empty list for a mesh file,
     /// whose animations come with its mesh ([`MeshFile::clips`]).
     ///
     /// # Errors
@@ -427,38 +390,29 @@ fn resize(scene: &mut SceneFile, size: &str) -> Result<(), String> {
     }
 }
 
-fn load_bare(path: &Path, setup: Option<&ObjSetup>) -> Result<(Scene, ImportReport), SceneError> {
+fn load_bare(path: &Path) -> Result<(Scene, ImportReport), SceneError> {
     let needs_view = || SceneError::ObjNeedsView {
         path: path.to_owned(),
     };
-    if setup.is_none() && has_extension(path, "obj") {
+    if has_extension(path, "obj") {
         return Err(needs_view());
     }
-    let options = setup.map_or_else(MeshFileOptions::default, |setup| MeshFileOptions {
-        quads: setup.quads,
-        concave: setup.concave,
-        materials: setup.materials,
-    });
-    if let Some(setup) = setup {
-        let checked = setup.view.check().and_then(|()| setup.light.check());
-        checked.map_err(|reason| SceneError::BadView {
-            path: path.to_owned(),
-            reason,
-        })?;
-    }
-    let file = MeshFile::load(path, &options)?;
-    let (views, lights) = match setup {
-        Some(setup) => (vec![setup.view.clone()], vec![setup.light.clone()]),
-        None => (file.views, file.lights),
-    };
+    let MeshFile {
+        name,
+        mesh,
+        views,
+        lights,
+        report,
+        ..
+    } = MeshFile::load(path, &MeshFileOptions::default())?;
     if views.is_empty() || lights.is_empty() {
         return Err(needs_view());
     }
     let scene = Scene {
-        name: file.name,
-        mesh: file.mesh,
+        name,
+        mesh,
         views,
         lights,
     };
-    Ok((scene, file.report))
+    Ok((scene, report))
 }

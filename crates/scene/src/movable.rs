@@ -314,33 +314,27 @@ impl Movable {
         }
         let place = |&position: &u32| {
             let from = self.rest.positions[position as usize];
-            let to = map.transform_point3(from.as_dvec3());
-            let place = to.as_vec3();
-            let error = MoveError::OutOfRange { part, from, to };
-            if place.is_finite() {
-                Ok(place)
-            } else {
-                Err(error)
-            }
+            in_range(part, from, map.transform_point3(from.as_dvec3()))
         };
         let positions = positions.iter().map(place).collect::<Result<_, _>>()?;
         let across = map.matrix3.inverse().transpose();
-        let normal = |&(normal, _): &(u32, u32)| {
-            let normal = across * self.rest.normals[normal as usize].as_dvec3();
-            let normal = normal.normalize_or_zero().as_vec3();
-            let error = MoveError::Singular { part };
-            if normal.is_finite() {
-                Ok(normal)
-            } else {
-                Err(error)
-            }
-        };
+        let normal = |&(normal, _): &(u32, u32)| self.normal(part, normal, across);
         let normals = normals.iter().map(normal).collect::<Result<_, _>>()?;
         Ok(MovedPart {
             positions,
             normals,
             is_mirrored: determinant < 0.0,
         })
+    }
+
+    /// A normal of a part, moved by a matrix.
+    fn normal(&self, part: usize, normal: u32, across: DMat3) -> Result<Vec3, MoveError> {
+        let normal = across * self.rest.normals[normal as usize].as_dvec3();
+        let normal = normal.normalize_or_zero().as_vec3();
+        let is_finite = normal.is_finite();
+        is_finite
+            .then_some(normal)
+            .ok_or(MoveError::Singular { part })
     }
 
     fn bent_part(
@@ -362,10 +356,7 @@ impl Movable {
                 sign if sign > 0.0 => is_upright = true,
                 _ => return Err(MoveError::Singular { part }),
             }
-            match to.as_vec3() {
-                place if place.is_finite() => Ok(place),
-                _ => Err(MoveError::OutOfRange { part, from, to }),
-            }
+            in_range(part, from, to)
         };
         let positions = positions.iter().map(&mut place);
         let positions = positions.collect::<Result<_, _>>()?;
@@ -373,14 +364,8 @@ impl Movable {
             return Err(MoveError::Folded { part, at });
         }
         let normal = |&(normal, position): &(u32, u32)| {
-            let across = map(at_rest(position).as_dvec3()).1.inverse().transpose();
-            let normal = across * self.rest.normals[normal as usize].as_dvec3();
-            let normal = normal.normalize_or_zero().as_vec3();
-            if normal.is_finite() {
-                Ok(normal)
-            } else {
-                Err(MoveError::Singular { part })
-            }
+            let (_, derivative) = map(at_rest(position).as_dvec3());
+            self.normal(part, normal, derivative.inverse().transpose())
         };
         let normals = normals.iter().map(normal).collect::<Result<_, _>>()?;
         Ok(MovedPart {
@@ -452,21 +437,24 @@ impl Movable {
     pub fn span(&self, part: usize, axis: DVec3) -> [f64; 2] {
         let places = self.parts[part].positions.iter();
         let along = places.map(|&p| self.rest.positions[p as usize].as_dvec3().dot(axis));
-        let span = along.fold(None, |span, at| {
-            let [low, high] = span.unwrap_or([at; 2]);
-            Some([f64::min(low, at), f64::max(high, at)])
-        });
+        let span = along.map(|at| [at; 2]);
+        let span = span.reduce(|[low, high], [at, _]| [low.min(at), high.max(at)]);
         span.unwrap_or_default()
+    }
+}
+
+/// The place that a position is moved to, in f32.
+fn in_range(part: usize, from: Vec3, to: DVec3) -> Result<Vec3, MoveError> {
+    match to.as_vec3() {
+        place if place.is_finite() => Ok(place),
+        _ => Err(MoveError::OutOfRange { part, from, to }),
     }
 }
 
 /// The smallest range that holds some indices.
 fn around(indices: impl Iterator<Item = u32>) -> Range<usize> {
-    let range = indices.fold(None, |range: Option<Range<usize>>, index| {
-        let index = index as usize;
-        let known = range.unwrap_or(index..index + 1);
-        Some(known.start.min(index)..known.end.max(index + 1))
-    });
+    let ranges = indices.map(|index| index as usize..index as usize + 1);
+    let range = ranges.reduce(|one, other| one.start.min(other.start)..one.end.max(other.end));
     range.unwrap_or_default()
 }
 

@@ -2,14 +2,14 @@
 
 use crate::{
     camera::View,
+    light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
-    material_use::MaterialUse,
     motion::{Motion, PartMotion},
-    obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::{CameraPath, LightKey},
     scene_file::{MeshSource, SceneFile},
 };
 use glam::DVec3;
+use std::fmt::Debug;
 
 /// Writes a scene as the text of a scene file, which [`SceneFile::parse`] reads again, with one
 /// view or key in a line.
@@ -64,7 +64,7 @@ fn vector(of: DVec3) -> String {
 }
 
 fn mesh(mesh: &MeshSource) -> String {
-    let (kind, mut fields) = match mesh {
+    let (kind, file, setup, source) = match mesh {
         MeshSource::Generated(generator) => return format!("Generated(\"{generator}\")"),
         MeshSource::Obj {
             file,
@@ -72,85 +72,66 @@ fn mesh(mesh: &MeshSource) -> String {
             quads,
             concave,
             materials,
-            ..
+            source,
         } => {
-            let mut fields = vec![format!("file: {file:?}")];
-            if !leave_out.is_empty() {
-                fields.push(format!("leave_out: {leave_out:?}"));
-            }
-            if *quads != QuadDiagonal::default() {
-                fields.push(format!("quads: {quads:?}"));
-            }
-            if *concave != Concave::default() {
-                fields.push(format!("concave: {concave:?}"));
-            }
-            // `Made` with its map is written as in RON, too.
-            if *materials != ObjMaterials::default() {
-                fields.push(format!("materials: {materials:?}"));
-            }
-            ("Obj", fields)
+            let setup = vec![
+                changed("leave_out", leave_out),
+                changed("quads", quads),
+                changed("concave", concave),
+                changed("materials", materials),
+            ];
+            ("Obj", file, setup, source)
         }
         MeshSource::Gltf {
-            file, materials, ..
-        } => {
-            let mut fields = vec![format!("file: {file:?}")];
-            if *materials != MaterialUse::default() {
-                fields.push(format!("materials: {materials:?}"));
-            }
-            ("Gltf", fields)
-        }
+            file,
+            materials,
+            source,
+        } => ("Gltf", file, vec![changed("materials", materials)], source),
     };
-    if let MeshSource::Obj {
-        source: Some(source),
-        ..
-    }
-    | MeshSource::Gltf {
-        source: Some(source),
-        ..
-    } = mesh
-    {
-        fields.push(format!("source: {source:?}"));
-    }
-    format!("{kind}({})", fields.join(", "))
+    let source = source.as_ref().map(|source| format!("source: {source:?}"));
+    let fields = [Some(format!("file: {file:?}"))].into_iter();
+    let fields = fields.chain(setup).chain([source]).flatten();
+    format!("{kind}({})", fields.collect::<Vec<_>>().join(", "))
+}
+
+/// A field, unless it has the value that it has by default; `Debug` writes these values as in RON.
+fn changed<T: Debug + Default + PartialEq>(name: &str, value: &T) -> Option<String> {
+    (*value != T::default()).then(|| format!("{name}: {value:?}"))
 }
 
 fn light(light: &Light) -> String {
     let name = &light.name;
-    let radius = |radius: f64| match radius {
-        0.0 => String::new(),
-        radius => format!(", radius: {}", number(radius)),
-    };
     match light.kind {
-        LightKind::Directional(sun) => {
-            let (direction, angle) = (vector(sun.direction), angle(sun.angle_degrees));
-            format!("Directional(name: {name:?}, direction: {direction}{angle})")
-        }
+        LightKind::Directional(of) => format!("Directional(name: {name:?}, {})", sun(of)),
         LightKind::Spot(SpotLight {
             position,
             direction,
             cone_degrees,
-            radius: of,
+            radius,
         }) => format!(
             "Spot(name: {name:?}, position: {}, direction: {}, cone_degrees: {}{})",
             vector(position),
             vector(direction),
             number(cone_degrees),
-            radius(of)
+            not_0("radius", radius)
         ),
-        LightKind::Point(PointLight {
-            position,
-            radius: of,
-        }) => {
-            let (position, radius) = (vector(position), radius(of));
+        LightKind::Point(PointLight { position, radius }) => {
+            let (position, radius) = (vector(position), not_0("radius", radius));
             format!("Point(name: {name:?}, position: {position}{radius})")
         }
     }
 }
 
-fn angle(degrees: f64) -> String {
-    match degrees {
+fn sun(of: DirectionalLight) -> String {
+    let angle = not_0("angle_degrees", of.angle_degrees);
+    format!("direction: {}{angle}", vector(of.direction))
+}
+
+/// A field behind others, unless it is 0.
+fn not_0(name: &str, value: f64) -> String {
+    match value {
         0.0 => String::new(),
-        degrees => format!(", angle_degrees: {}", number(degrees)),
+        value => format!(", {name}: {}", number(value)),
     }
 }
 
@@ -175,10 +156,7 @@ fn lens(view: &View) -> Result<Vec<String>, String> {
     }
     match view.light.as_ref().map(|light| light.kind) {
         None => {}
-        Some(LightKind::Directional(sun)) => {
-            let (direction, angle) = (vector(sun.direction), angle(sun.angle_degrees));
-            fields.push(format!("light: (direction: {direction}{angle})"));
-        }
+        Some(LightKind::Directional(of)) => fields.push(format!("light: ({})", sun(of))),
         Some(lamp) => {
             return Err(format!(
                 "{:?} has a {} light of its own, and a scene file has such lights for all views \

@@ -4,7 +4,7 @@
 //!
 //! ```no_run
 //! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //! use skiagraph_viewer::{Opening, open};
 //!
 //! let opening = Opening {
@@ -14,11 +14,7 @@
 //!     size: [640, 480],
 //!     scene: "park".into(),
 //!     load_scene: Box::new(|name| {
-//!         let request = SceneRequest {
-//!             argument: name.to_owned(),
-//!             obj: None,
-//!         };
-//!         let (scene, _) = SceneLibrary::default().load(&request)?;
+//!         let (scene, _) = SceneLibrary::default().load(name)?;
 //!         Ok((scene, vec![]))
 //!     }),
 //!     gpu: GpuRequest::default(),

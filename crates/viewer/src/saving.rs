@@ -107,7 +107,7 @@ fn with_view(text: &str, view: &View) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use skiagraph_scene::{DirectionalLight, Light, SceneRequest};
+    use skiagraph_scene::{DirectionalLight, Light};
 
     fn view() -> View {
         View {
@@ -142,11 +142,7 @@ mod tests {
         assert_eq!(first, folder.path().join("garden_seen.ron"));
         assert_eq!(second, folder.path().join("garden_seen_2.ron"));
         assert_eq!(std::fs::read_to_string(&original).unwrap(), text);
-        let request = SceneRequest {
-            argument: first.to_str().unwrap().to_owned(),
-            obj: None,
-        };
-        let (scene, _) = library.load(&request).unwrap();
+        let (scene, _) = library.load(first.to_str().unwrap()).unwrap();
         let expected = View { name, ..view() };
         assert_eq!(scene.view("seen_2"), Some(&expected));
         assert_eq!(scene.views.len(), 2);

@@ -324,9 +324,7 @@ fn snapshot(
         wall_ms: ms(wall),
         readings: readings.collect(),
         contents: Arc::new(frame::contents(report.readbacks)),
-        layer: None,
-        error: None,
-        reads: 0,
+        ..MethodSnapshot::default()
     }
 }
 

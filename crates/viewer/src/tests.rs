@@ -11,7 +11,7 @@ use skiagraph_compare::files::watch::Watch;
 use skiagraph_compare::measuring::device::GpuRequest;
 use skiagraph_compare::sink::Silent;
 use skiagraph_graph::ParamValue;
-use skiagraph_scene::{SceneLibrary, SceneRequest};
+use skiagraph_scene::SceneLibrary;
 use std::{
     path::Path,
     sync::Arc,
@@ -35,11 +35,7 @@ fn opening(methods: &[&str]) -> Opening {
         size: [96, 64],
         scene: "park".to_owned(),
         load_scene: Box::new(|name| {
-            let request = SceneRequest {
-                argument: name.to_owned(),
-                obj: None,
-            };
-            let (scene, _) = SceneLibrary::from_environment().load(&request)?;
+            let (scene, _) = SceneLibrary::from_environment().load(name)?;
             let views = scene.views.iter().take(1).cloned().collect();
             Ok((scene, views))
         }),

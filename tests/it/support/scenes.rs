@@ -1,16 +1,12 @@
 //! Scenes by name.
 
-use skiagraph_scene::{Scene, SceneLibrary, SceneRequest};
+use skiagraph_scene::{Scene, SceneLibrary};
 use std::sync::Arc;
 
 /// A scene of the library; one that is not there fails the test.
 pub fn load(name: &str) -> Arc<Scene> {
-    let request = SceneRequest {
-        argument: name.to_owned(),
-        obj: None,
-    };
     let (scene, _) = SceneLibrary::from_environment()
-        .load(&request)
+        .load(name)
         .unwrap_or_else(|error| panic!("{error}"));
     Arc::new(scene)
 }

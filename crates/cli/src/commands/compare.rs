@@ -272,9 +272,7 @@ struct Measured {
     failures: Vec<String>,
     /// Methods that are worse than in `--baseline`.
     worse: Vec<String>,
-    /// Number of scenes that are done.
-    finished: usize,
-    /// Folders of these, if there are several scenes.
+    /// Folders of the scenes that are done.
     folders: Vec<PathBuf>,
 }
 
@@ -325,7 +323,7 @@ fn measure(
 ) -> Result<(), CliError> {
     let folder = &target.folder;
     if let Some(name) = &target.name {
-        let number = measured.finished + 1;
+        let number = measured.folders.len() + 1;
         note(&format!(
             "{name}, scene {number} of {}",
             args.scene.scenes.len()
@@ -337,7 +335,7 @@ fn measure(
     let (before, has_runs) = (written(&file), !series.results.runs.is_empty());
     let some = format!("finished runs are kept in {}", file.display());
     let [none, some] =
-        [None, Some(some)].map(|runs| what_is_kept(args, target, measured.finished, runs));
+        [None, Some(some)].map(|runs| what_is_kept(args, target, measured.folders.len(), runs));
     let (page, finished) = (args.out.join(page::FILE), measured.folders.clone());
     interrupt::on_end_in_the_middle(move || {
         show_scenes(&finished, &page)?;
@@ -349,11 +347,7 @@ fn measure(
     let outcome = run(args, comparison, &mut series);
     let results = finish(args, target, series, outcome, measured)?;
     judge(args, target, baseline, &results, measured)?;
-    measured.finished += 1;
-    let is_one_of_several = target.name.is_some();
-    measured
-        .folders
-        .extend(is_one_of_several.then(|| folder.clone()));
+    measured.folders.push(folder.clone());
     Ok(())
 }
 
@@ -437,9 +431,8 @@ fn run(args: &CompareArgs, comparison: &Comparison, series: &mut Series) -> Resu
                 Format::Table if args.details => {
                     print(&format!("{}\n", results_table::group(results, runs)))?;
                 }
-                Format::Table => {}
                 Format::Markdown => print(&markdown::viewport(results, runs))?,
-                Format::Json => {}
+                Format::Table | Format::Json => {}
             }
             outcome?;
         }
@@ -557,7 +550,7 @@ fn finish(
     let file = folder.join("results.json");
     let (done, file) = (results.runs.len(), file.display());
     let runs = (done > 0).then(|| format!("{done} of {planned} runs are kept in {file}"));
-    let kept = what_is_kept(args, target, measured.finished, runs);
+    let kept = what_is_kept(args, target, measured.folders.len(), runs);
     match outcome {
         Ok(()) => {}
         Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),

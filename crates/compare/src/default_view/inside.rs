@@ -1,10 +1,9 @@
 //! Finds places to stand inside of a mesh.
 
-use super::room::Room;
+use super::room::{Room, squares, turns};
 use glam::DVec3;
 use itertools::Itertools;
 use skiagraph_reference::sight::sights;
-use std::f64::consts::TAU;
 
 /// Columns of places that are tried along each of the two horizontal axes.
 const COLUMNS: u32 = 9;
@@ -96,14 +95,9 @@ impl Inside {
 
 /// True if half of what is seen from around a mesh are backs.
 fn is_shell(room: &Room<'_>) -> bool {
-    let share = |number: u32| (f64::from(number) + 0.5) / f64::from(HULL_RAYS) * 2.0 - 1.0;
-    let numbers = (0..HULL_RAYS).cartesian_product(0..HULL_RAYS);
-    let turns = numbers.flat_map(|(x, y)| {
-        let sides =
-            [0.0, 0.25, 0.5, 0.75].map(|turn| (room.around(TAU * turn), share(x), share(y)));
-        sides.into_iter()
-    });
-    let rays = turns.map(|(side, x, y)| {
+    let places = squares(HULL_RAYS).cartesian_product(turns(4));
+    let rays = places.map(|((x, y), turn)| {
+        let side = room.around(turn);
         let beside = side.cross(room.up);
         let aside = beside * (x * room.reach(beside)) + room.up * (y * room.reach(room.up));
         (
@@ -135,13 +129,9 @@ fn is_used(room: &Room<'_>, eyes: &[Eye]) -> bool {
 /// Places above the floors of each column that has one.
 fn columns(room: &Room<'_>) -> Vec<Vec<DVec3>> {
     let [right, back] = room.across;
-    let share = |number: u32| (f64::from(number) + 0.5) / f64::from(COLUMNS) * 2.0 - 1.0;
     let top = room.reach(room.up);
-    let numbers = (0..COLUMNS).cartesian_product(0..COLUMNS);
-    let columns = numbers.map(|(x, z)| {
-        let place = room.middle
-            + right * (share(x) * room.reach(right))
-            + back * (share(z) * room.reach(back));
+    let columns = squares(COLUMNS).map(|(x, z)| {
+        let place = room.middle + right * (x * room.reach(right)) + back * (z * room.reach(back));
         above_floors(room, place + room.up * (top * 1.01))
     });
     columns.filter(|column| !column.is_empty()).collect()

@@ -22,10 +22,9 @@ pub use more::more_views;
 use glam::DVec3;
 use inside::{Inside, SLOPE};
 use itertools::Itertools;
-use room::{FEW, MORE, Picture, Room, Worth};
+use room::{FEW, MORE, Picture, Room, Worth, turns};
 use skiagraph_scene::{DirectionalLight, Light, LightKind, Mesh, View};
 use std::cell::Cell;
-use std::f64::consts::TAU;
 
 /// Directions that are tried from each place.
 const DIRECTIONS: u32 = 8;
@@ -215,8 +214,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// Directions with a slope, evenly around; or the one that was asked for.
     fn directions(&self, slope: f64) -> Vec<DVec3> {
-        let turns = (0..DIRECTIONS).map(|turn| TAU * f64::from(turn) / f64::from(DIRECTIONS));
-        let around = turns.map(|turn| self.room.around(turn) - self.room.up * slope);
+        let around = turns(DIRECTIONS).map(|turn| self.room.around(turn) - self.room.up * slope);
         let given = self.request.direction;
         given.map_or_else(|| around.collect(), |direction| vec![direction])
     }
@@ -244,18 +242,15 @@ impl Search<'_> {
     /// The given light, or suns: each height from one side, then from others.
     fn lights(&self) -> Vec<LightKind> {
         let suns = || {
-            let sides = [0.0, 0.25, 0.5, 0.75].into_iter().cartesian_product(LOWER);
-            sides
-                .map(|(turn, slope)| self.sun(slope, TAU * turn))
-                .collect()
+            let sides = turns(4).cartesian_product(LOWER);
+            sides.map(|(turn, slope)| self.sun(slope, turn)).collect()
         };
         self.request.light.map_or_else(suns, |light| vec![light])
     }
 
     /// Suns that shine on some of the places inside and not on all, the first one before others.
     fn suns_inside(&self, places: &[DVec3]) -> Vec<LightKind> {
-        let turns = (0..SUNS).map(|turn| TAU * f64::from(turn) / f64::from(SUNS));
-        let suns = LOWER.into_iter().cartesian_product(turns);
+        let suns = LOWER.into_iter().cartesian_product(turns(SUNS));
         let suns = suns.filter_map(|(slope, turn)| {
             let light = self.sun(slope, turn);
             let way = light.directional()?.to_light();

@@ -1,11 +1,10 @@
 //! Chooses further views of a mesh, like a given one.
 
 use super::inside::{Inside, SLOPE};
-use super::room::{FEW, Room};
+use super::room::{FEW, Room, turns};
 use glam::DQuat;
 use itertools::Itertools;
 use skiagraph_scene::{LightKind, Mesh, View};
-use std::f64::consts::TAU;
 
 /// Angles in radians by which a view may go around what another one shows.
 const ASIDE: [f64; 4] = [-0.6, 0.6, -1.2, 1.2];
@@ -68,8 +67,7 @@ fn aside(room: &Room<'_>, like: &View) -> Vec<View> {
 
 /// Views from the place of another one, in other directions.
 fn turned(room: &Room<'_>, like: &View) -> impl Iterator<Item = View> {
-    let turns = (1..TURNS).map(|turn| TAU * f64::from(turn) / f64::from(TURNS));
-    turns.map(|turn| View {
+    turns(TURNS).skip(1).map(|turn| View {
         name: String::new(),
         direction: DQuat::from_axis_angle(room.up, turn) * like.direction,
         ..like.clone()
@@ -78,12 +76,11 @@ fn turned(room: &Room<'_>, like: &View) -> impl Iterator<Item = View> {
 
 /// Views from other places inside the mesh, or else from around it.
 fn elsewhere(room: &Room<'_>, like: &View) -> Vec<View> {
-    let turns = (0..TURNS).map(|turn| TAU * f64::from(turn) / f64::from(TURNS));
     let fov = like.fov_y_degrees;
     let views: Vec<View> = match Inside::new(room) {
         Some(inside) => {
             let way = |turn| room.around(turn) - room.up * SLOPE;
-            let views = inside.eyes.iter().cartesian_product(turns);
+            let views = inside.eyes.iter().cartesian_product(turns(TURNS));
             views
                 .map(|(eye, turn)| room.view(eye.place, way(turn), fov))
                 .collect()
@@ -94,7 +91,7 @@ fn elsewhere(room: &Room<'_>, like: &View) -> Vec<View> {
                 let eye = room.middle + turned * (like.eye - room.middle);
                 room.view(eye, turned * like.direction, fov)
             };
-            turns.skip(1).map(around).collect()
+            turns(TURNS).skip(1).map(around).collect()
         }
     };
     let lit = views.into_iter().map(|view| View {

@@ -146,6 +146,18 @@ pub(super) struct Room<'a> {
     pub(super) across: [DVec3; 2],
 }
 
+/// So many turns around, evenly.
+pub(super) fn turns(count: u32) -> impl Iterator<Item = f64> + Clone {
+    (0..count).map(move |number| TAU * f64::from(number) / f64::from(count))
+}
+
+/// The middles of so many squares by so many, from −1 to 1 on both sides.
+pub(super) fn squares(count: u32) -> impl Iterator<Item = (f64, f64)> {
+    let middle = move |number: u32| (f64::from(number) + 0.5) / f64::from(count) * 2.0 - 1.0;
+    let numbers = (0..count).cartesian_product(0..count);
+    numbers.map(move |(x, y)| (middle(x), middle(y)))
+}
+
 /// The box of the first `count` triangles, as its middle and half its extent.
 fn bounds(mesh: &Mesh, primitives: impl Iterator<Item = usize>) -> Option<[DVec3; 2]> {
     let corners = primitives.flat_map(|it| mesh.corners(it as u32));
@@ -192,12 +204,8 @@ impl<'a> Room<'a> {
         count: u32,
         slopes: &[f64],
     ) -> Vec<Option<Sight>> {
-        let rays = (0..count)
-            .zip(slopes.iter().cycle())
-            .map(|(number, slope)| {
-                let turn = TAU * f64::from(number) / f64::from(count);
-                (place, self.around(turn) + self.up * *slope)
-            });
+        let rays = turns(count).zip(slopes.iter().cycle());
+        let rays = rays.map(|(turn, slope)| (place, self.around(turn) + self.up * *slope));
         sights(&self.oracle, &rays.collect_vec())
     }
 

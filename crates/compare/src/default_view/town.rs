@@ -247,14 +247,7 @@ impl Roofs {
 }
 
 fn neighbours(number: usize) -> impl Iterator<Item = usize> {
-    let (x, z) = (number % COLUMNS, number / COLUMNS);
-    let beside = [
-        (x > 0).then(|| number - 1),
-        (x + 1 < COLUMNS).then(|| number + 1),
-        (z > 0).then(|| number - COLUMNS),
-        (z + 1 < COLUMNS).then(|| number + COLUMNS),
-    ];
-    beside.into_iter().flatten()
+    skiagraph_reference::pixels::neighbours(number, [COLUMNS; 2])
 }
 
 /// The least or greatest value near each column.

@@ -10,7 +10,7 @@
 //! ```
 
 use crate::records::results::PROGRAM;
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat4, DVec4};
 use serde::Serialize;
 use skiagraph_scene::{Camera, LightKind, Scene, View};
 
@@ -142,31 +142,18 @@ impl From<DMat4> for Matrix {
 
 impl LightRecord {
     fn new(light: &LightKind) -> Self {
-        let empty = Self {
-            kind: light.word().into(),
-            direction: None,
-            position: light.position().map(|at| at.to_array()),
-            cone_degrees: None,
-            angle_degrees: None,
-            radius: None,
+        let (direction, cone_degrees, angle_degrees) = match light {
+            LightKind::Directional(sun) => (Some(sun.direction), None, Some(sun.angle_degrees)),
+            LightKind::Spot(spot) => (Some(spot.direction), Some(spot.cone_degrees), None),
+            LightKind::Point(_) => (None, None, None),
         };
-        let unit = |direction: DVec3| Some(direction.normalize().to_array());
-        match light {
-            LightKind::Directional(light) => Self {
-                direction: unit(light.direction),
-                angle_degrees: Some(light.angle_degrees),
-                ..empty
-            },
-            LightKind::Spot(light) => Self {
-                direction: unit(light.direction),
-                cone_degrees: Some(light.cone_degrees),
-                radius: Some(light.radius),
-                ..empty
-            },
-            LightKind::Point(light) => Self {
-                radius: Some(light.radius),
-                ..empty
-            },
+        Self {
+            kind: light.word().into(),
+            direction: direction.map(|direction| direction.normalize().to_array()),
+            position: light.position().map(|at| at.to_array()),
+            cone_degrees,
+            angle_degrees,
+            radius: light.radius(),
         }
     }
 }

@@ -99,7 +99,7 @@ impl Factor {
             }
             None => {}
             Some(other) => {
-                check_size(&raster, other)?;
+                check_size((&raster.file, raster.size), (&other.file, other.size))?;
                 let whole = self::light(other, reading)?;
                 for (light, whole) in light.iter_mut().zip(&whole) {
                     *light = quotient(*light, *whole);

@@ -4,10 +4,9 @@
 //! ```no_run
 //! use skiagraph_compare::foreign::judging::{Judging, Surfaces, judge};
 //! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //!
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let (scene, _) = SceneLibrary::default().load("park")?;
 //! let view = scene.views[0].clone();
 //! let judging = Judging {
 //!     pictures: vec!["shadowed.exr".into()],
@@ -25,7 +24,7 @@ use crate::files::json::to_text;
 use crate::files::write::{check_folder, write_whole};
 use crate::foreign::elsewhere::elsewhere;
 use crate::foreign::factor::{Factor, Reading};
-use crate::foreign::raster::Raster;
+use crate::foreign::raster::{Raster, check_size};
 use crate::foreign::surfaces::{by_depth, ids};
 use crate::foreign::suspicions::{Agreement, Suspect, Suspicions};
 use crate::graphs::ground_truth::Judgement;
@@ -178,8 +177,8 @@ pub fn judge(
         Surfaces::Rasterised => None,
         Surfaces::Ids(file) | Surfaces::Depth(file) => Some(Raster::read(file)?),
     };
-    if let Some(named) = named.as_ref().filter(|named| named.size != viewport) {
-        return Err(other_size(&factors[0], &named.file, named.size));
+    if let Some(named) = &named {
+        check_size((&factors[0].file, viewport), (&named.file, named.size))?;
     }
     let scene = Arc::new(scene);
     let how = (judging.oracle, judging.reference_samples);
@@ -239,15 +238,6 @@ pub fn judge(
     Ok(Judged { record, files })
 }
 
-fn other_size(factor: &Factor, file: &str, other: [u32; 2]) -> CompareError {
-    CompareError::Input(format!(
-        "{} has {} pixels, and {file} has {}: render both in one size",
-        factor.file,
-        size(factor.size),
-        size(other)
-    ))
-}
-
 /// Reads the pictures, which are of one size.
 fn factors(judging: &Judging) -> Result<Vec<Factor>, CompareError> {
     let unshadowed = judging
@@ -261,10 +251,11 @@ fn factors(judging: &Judging) -> Result<Vec<Factor>, CompareError> {
         .iter()
         .map(read)
         .collect::<Result<_, _>>()?;
-    match factors.iter().find(|it| it.size != factors[0].size) {
-        Some(other) => Err(other_size(&factors[0], &other.file, other.size)),
-        None => Ok(factors),
+    for other in &factors {
+        let first = (&*factors[0].file, factors[0].size);
+        check_size(first, (&other.file, other.size))?;
     }
+    Ok(factors)
 }
 
 /// Surfaces as another renderer names them.

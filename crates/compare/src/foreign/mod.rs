@@ -3,10 +3,9 @@
 //! ```no_run
 //! use skiagraph_compare::foreign::judging::{Judging, judge};
 //! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //!
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let (scene, _) = SceneLibrary::default().load("park")?;
 //! let view = scene.views[0].clone();
 //! let judging = Judging { pictures: vec!["factor.exr".into()], ..Judging::default() };
 //! let judged = judge(&judging, scene, &view, &GpuRequest::default(), &Silent)?;

@@ -2,36 +2,26 @@
 
 use crate::foreign::decoded::{Decoded, FLOAT, HALF, checked};
 use exr::prelude::f16;
+use itertools::Itertools;
 
 /// Longest header of an array of numbers.
 const LONGEST_HEADER: usize = 4096;
 
-/// Type of the numbers of an array.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Bool,
-    U8,
-    U16,
-    U32,
-    I32,
-    I64,
-    F16,
-    F32,
-    F64,
-}
+/// A type of numbers as NumPy names it, with the bytes of a number, and how it is read from them,
+/// the first byte being the lowest.
+type Kind = (&'static str, usize, fn(u64) -> f64);
 
-/// The types, as NumPy names them.
-const KINDS: [(&str, Kind, usize); 10] = [
-    ("|b1", Kind::Bool, 1),
-    ("|u1", Kind::U8, 1),
-    ("<u1", Kind::U8, 1),
-    ("<u2", Kind::U16, 2),
-    ("<u4", Kind::U32, 4),
-    ("<i4", Kind::I32, 4),
-    ("<i8", Kind::I64, 8),
-    ("<f2", Kind::F16, 2),
-    ("<f4", Kind::F32, 4),
-    ("<f8", Kind::F64, 8),
+const KINDS: [Kind; 10] = [
+    ("|b1", 1, |bits| f64::from(u8::from(bits != 0))),
+    ("|u1", 1, |bits| bits as f64),
+    ("<u1", 1, |bits| bits as f64),
+    ("<u2", 2, |bits| bits as f64),
+    ("<u4", 4, |bits| bits as f64),
+    ("<i4", 4, |bits| f64::from(bits as i32)),
+    ("<i8", 8, |bits| bits as i64 as f64),
+    ("<f2", 2, |bits| f16::from_bits(bits as u16).into()),
+    ("<f4", 4, |bits| f32::from_bits(bits as u32).into()),
+    ("<f8", 8, f64::from_bits),
 ];
 
 /// Decodes an array of the shape (height, width) or (height, width, channels).
@@ -59,7 +49,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
             .to_owned()
     })?;
     let known = KINDS.iter().find(|(of, ..)| *of == name);
-    let Some(&(_, kind, width)) = known else {
+    let Some(&(_, width, read)) = known else {
         return Err(format!(
             "its numbers are of the type `{name}`; expected <f4, <f2, <f8, |u1, <u2, <u4, <i4, \
              <i8 or |b1: save array.astype('<f4')"
@@ -78,11 +68,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
             return Err(format!(
                 "its shape is ({}); expected (height, width) or (height, width, channels) of 1 to \
                  4 channels",
-                shape
-                    .iter()
-                    .map(u64::to_string)
-                    .collect::<Vec<_>>()
-                    .join(", ")
+                shape.iter().join(", ")
             ));
         }
     };
@@ -97,51 +83,32 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
             numbers.len()
         ));
     }
-    let values: Vec<f64> = numbers
-        .chunks_exact(width)
-        .map(|it| number(kind, it))
-        .collect();
+    let number = |bytes: &[u8]| {
+        let mut eight = [0; 8];
+        eight[..width].copy_from_slice(bytes);
+        read(u64::from_le_bytes(eight))
+    };
+    let values: Vec<f64> = numbers.chunks_exact(width).map(number).collect();
+    // The number that stands for 1: integers are 0 and 1 unless one is greater.
+    let greatest = match name {
+        "|u1" | "<u1" => Some(255.0),
+        "<u2" => Some(65_535.0),
+        _ => None,
+    };
+    let is_of_greatest = values.iter().any(|value| *value > 1.0);
     Ok(Decoded {
         size,
         channels: channels as usize,
         has_alpha: matches!(channels, 2 | 4),
-        whole: whole(kind, &values),
-        precision: match kind {
-            Kind::F16 => HALF,
-            Kind::U8 => 1.0 / 255.0,
-            Kind::U16 => 1.0 / 65_535.0,
-            _ => FLOAT,
+        whole: greatest.filter(|_| is_of_greatest),
+        precision: match greatest {
+            Some(greatest) => 1.0 / greatest,
+            None if name == "<f2" => HALF,
+            None => FLOAT,
         },
         values,
         format: format!("NPY, {}", name.trim_start_matches(['<', '|'])),
     })
-}
-
-/// Number that stands for 1: integers are 0 and 1 unless one is greater.
-fn whole(kind: Kind, values: &[f64]) -> Option<f64> {
-    let whole = match kind {
-        Kind::U8 => 255.0,
-        Kind::U16 => 65_535.0,
-        _ => return None,
-    };
-    values.iter().any(|value| *value > 1.0).then_some(whole)
-}
-
-fn number(kind: Kind, bytes: &[u8]) -> f64 {
-    let mut eight = [0; 8];
-    eight[..bytes.len()].copy_from_slice(bytes);
-    let [a, b, c, d, ..] = eight;
-    match kind {
-        Kind::Bool => f64::from(u8::from(a != 0)),
-        Kind::U8 => a.into(),
-        Kind::U16 => u16::from_le_bytes([a, b]).into(),
-        Kind::U32 => u32::from_le_bytes([a, b, c, d]).into(),
-        Kind::I32 => i32::from_le_bytes([a, b, c, d]).into(),
-        Kind::I64 => i64::from_le_bytes(eight) as f64,
-        Kind::F16 => f16::from_bits(u16::from_le_bytes([a, b])).into(),
-        Kind::F32 => f32::from_le_bytes([a, b, c, d]).into(),
-        Kind::F64 => f64::from_le_bytes(eight),
-    }
 }
 
 /// The text behind a key of the header's dictionary.

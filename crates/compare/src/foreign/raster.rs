@@ -177,15 +177,16 @@ fn samples(picture: &DynamicImage, bits: u32) -> Vec<f64> {
 ///
 /// # Errors
 /// [`CompareError::Input`] that names both files with their sizes.
-pub fn check_size(one: &Raster, other: &Raster) -> Result<(), CompareError> {
-    if one.size == other.size {
+pub fn check_size(
+    (one, own): (&str, [u32; 2]),
+    (other, its): (&str, [u32; 2]),
+) -> Result<(), CompareError> {
+    if own == its {
         return Ok(());
     }
     Err(CompareError::Input(format!(
-        "{} has {} pixels, and {} has {}: render both in one size",
-        one.file,
-        size(one.size),
-        other.file,
-        size(other.size)
+        "{one} has {} pixels, and {other} has {}: render both in one size",
+        size(own),
+        size(its)
     )))
 }

@@ -3,11 +3,10 @@
 //! ```no_run
 //! use skiagraph_compare::foreign::truth::{TruthRequest, write_truth};
 //! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //! use std::path::Path;
 //!
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let (scene, _) = SceneLibrary::default().load("park")?;
 //! let (view, gpu) = (scene.views[0].clone(), GpuRequest::default());
 //! let what = TruthRequest::new([640, 480]);
 //! for line in write_truth(&what, scene, &view, Path::new("truth"), &gpu, &Silent)? {

@@ -2,10 +2,9 @@
 //!
 //! ```
 //! use skiagraph_compare::measuring::camera_pose::CameraPose;
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //!
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let (scene, _) = SceneLibrary::default().load("park")?;
 //! // Four frames of one view, each with a place of its own within the pixel.
 //! let poses = CameraPose::numbered(vec![scene.views[0].clone(); 4], Some(4));
 //! let jitters = poses.iter().map(|pose| pose.camera([64, 64]).jitter);

@@ -5,11 +5,10 @@
 //! use skiagraph_compare::{comparison::Comparison, graphs::shadow_method::load_methods};
 //! use skiagraph_compare::measuring::cell;
 //! use skiagraph_passes::EmbeddedSources;
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //! use std::sync::Arc;
 //!
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = SceneLibrary::default().load(&request)?;
+//! let (scene, _) = SceneLibrary::default().load("park")?;
 //! let words = ["nsm", "nsm@bias=0", "nsm@bias=0.01"];
 //! let methods = load_methods(&words, &[], &[512], &EmbeddedSources)?;
 //! let comparison = Comparison::new(Arc::new(scene), methods)?;
@@ -198,17 +197,13 @@ mod tests {
     use crate::graphs::shadow_method::load_methods;
     use glam::DQuat;
     use skiagraph_passes::EmbeddedSources;
-    use skiagraph_scene::{PoseKey, RigidKey, SceneLibrary, SceneRequest};
+    use skiagraph_scene::{PoseKey, RigidKey, SceneLibrary};
     use std::collections::BTreeSet;
     use std::sync::Arc;
 
     /// `nsm` in a map of 512² on the views of `park`.
     fn comparison() -> Comparison {
-        let request = SceneRequest {
-            argument: "park".into(),
-            obj: None,
-        };
-        let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+        let (scene, _) = SceneLibrary::default().load("park").unwrap();
         let methods = load_methods(&["nsm"], &[], &[512], &EmbeddedSources).unwrap();
         Comparison::new(Arc::new(scene), methods).unwrap()
     }

@@ -9,9 +9,9 @@
 //! use std::time::Duration;
 //!
 //! let presets = preset::load_all(&["crsm".into()], &EmbeddedSources)?;
-//! let request = GpuRequest::default()
-//!     .with_adapter("llvmpipe")
-//!     .with_timeout(Duration::from_secs(60));
+//! let mut request = GpuRequest::default();
+//! request.adapter = Some("llvmpipe".into());
+//! request.timeout = Some(Duration::from_secs(60));
 //! let gpu = device::open(&request, preset::graphs(&presets))?;
 //! println!("{}", device::describe(&gpu, device::timestamp_trust(&gpu)));
 //! # Ok::<(), skiagraph_compare::error::CompareError>(())
@@ -43,36 +43,6 @@ pub struct GpuRequest {
     /// Time after which an unfinished frame is abandoned, and the device with it; `None` to wait
     /// without limit.
     pub timeout: Option<Duration>,
-}
-
-impl GpuRequest {
-    /// Sets [`adapter`](Self::adapter).
-    #[must_use]
-    pub fn with_adapter(mut self, adapter: impl Into<String>) -> Self {
-        self.adapter = Some(adapter.into());
-        self
-    }
-
-    /// Sets [`backends`](Self::backends).
-    #[must_use]
-    pub fn with_backends(mut self, backends: wgpu::Backends) -> Self {
-        self.backends = Some(backends);
-        self
-    }
-
-    /// Sets [`memory_limit`](Self::memory_limit), in bytes.
-    #[must_use]
-    pub fn with_memory_limit(mut self, bytes: u64) -> Self {
-        self.memory_limit = Some(bytes);
-        self
-    }
-
-    /// Sets [`timeout`](Self::timeout).
-    #[must_use]
-    pub fn with_timeout(mut self, timeout: Duration) -> Self {
-        self.timeout = Some(timeout);
-        self
-    }
 }
 
 /// Opens the requested adapter, with those features that `graphs` need or can use and that it has.

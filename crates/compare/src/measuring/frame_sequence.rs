@@ -2,11 +2,10 @@
 //!
 //! ```
 //! use skiagraph_compare::measuring::{frame_sequence::FrameSequence, view_or_path::ViewOrPath};
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //!
 //! let library = SceneLibrary::default();
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = library.load(&request)?;
+//! let (scene, _) = library.load("park")?;
 //! for path in library.paths("park")? {
 //!     let frames = FrameSequence::new(&ViewOrPath::Path(path), &scene, None, Some(2))?;
 //!     match &frames.meshes {

@@ -293,30 +293,20 @@ impl MeasureContext<'_> {
             certain: counts.certain,
             uncertain: counts.uncertain,
             split: counts.split,
-            rays: None,
             wrong: counts.wrong,
-            certain_wrong_blockers: None,
-            hint: None,
             facing_mismatch: counts.facing_mismatch,
             answer: if answers_in_shares {
                 Answer::Graded
             } else {
                 Answer::Hard
             },
-            graded: Default::default(),
-            edges: Default::default(),
             passes: times.passes,
             frame: times.frame,
-            cached: None,
             memory_bytes,
             saved_bytes,
             scene_bytes: prepared.scene_bytes,
             steady: prepared.steady.clone(),
-            turns: None,
-            texels: None,
-            layer_jump: None,
-            sequence: None,
-            images: None,
+            ..Measured::default()
         }
     }
 

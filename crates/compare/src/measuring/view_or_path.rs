@@ -2,11 +2,10 @@
 //!
 //! ```
 //! use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
-//! use skiagraph_scene::{SceneLibrary, SceneRequest};
+//! use skiagraph_scene::SceneLibrary;
 //!
 //! let library = SceneLibrary::default();
-//! let request = SceneRequest { argument: "park".into(), obj: None };
-//! let (scene, _) = library.load(&request)?;
+//! let (scene, _) = library.load("park")?;
 //! let mut places = ViewOrPath::paths(&scene, library.paths("park")?, "all", None)?;
 //! let views = under_lights(&scene, scene.views.clone(), None)?;
 //! places.extend(views.into_iter().map(ViewOrPath::Still));

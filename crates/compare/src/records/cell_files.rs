@@ -12,6 +12,7 @@
 //! ```
 
 use crate::error::CompareError;
+use crate::lists::entry;
 use crate::records::cell_plan::{self, CellPlan, PlannedCell, version};
 use crate::records::read_back;
 use crate::records::results::{PROGRAM, Results, Run};
@@ -174,10 +175,7 @@ pub fn join(places: &[PathBuf]) -> Result<Joined, CompareError> {
     let mut plans: Vec<(CellPlan, Vec<&Path>)> = Vec::new();
     for place in places.iter().filter(|place| is_folder(place)) {
         let plan = CellPlan::read(&place.join(cell_plan::FILE))?;
-        match plans.iter_mut().find(|(known, _)| *known == plan) {
-            Some((_, folders)) => folders.push(place),
-            None => plans.push((plan, vec![place.as_path()])),
-        }
+        entry(&mut plans, plan).push(place);
     }
     let mut joined = Joined::default();
     if let [(first, folders), others @ ..] = &plans[..] {

@@ -136,10 +136,18 @@ pub fn kept(place: &Path) -> Result<Results, CompareError> {
     };
     let found = read(&KEPT, &file).map_err(refused)?;
     let file = found.ok_or_else(|| refused(missing))?;
-    parse_results(&file.text).map_err(|mistake| {
-        let summary = "the results cannot be used";
-        mistake.in_file(&file, "results.json", COMPARE_FIRST, summary)
-    })
+    let advice = [COMPARE_FIRST, "the results cannot be used"];
+    checked(&file, parse_results, "results.json", advice)
+}
+
+/// Parses a file; a mistake says what kind of file it is not, and gives advice and a summary.
+fn checked<T>(
+    file: &SourceFile,
+    parse: fn(&str) -> Result<T, Mistake>,
+    what_for: &str,
+    [help, summary]: [&str; 2],
+) -> Result<T, CompareError> {
+    parse(&file.text).map_err(|mistake| mistake.in_file(file, what_for, help, summary))
 }
 
 /// Reads the stress.json in a folder; `None` if the file does not exist.
@@ -148,13 +156,9 @@ pub fn kept(place: &Path) -> Result<Results, CompareError> {
 /// A file that cannot be read, or is not a stress.json; the message shows the place.
 pub fn stress(folder: &Path) -> Result<Option<Report>, CompareError> {
     let file = read(&KEPT, &folder.join("stress.json")).map_err(CompareError::Input)?;
-    let matrix = file.map(|file| {
-        parse_stress(&file.text).map_err(|mistake| {
-            let help = "`skiagraph stress --out DIR` writes it anew";
-            let summary = "the matrix cannot be used";
-            mistake.in_file(&file, "stress.json", help, summary)
-        })
-    });
+    let help = "`skiagraph stress --out DIR` writes it anew";
+    let advice = [help, "the matrix cannot be used"];
+    let matrix = file.map(|file| checked(&file, parse_stress, "stress.json", advice));
     matrix.transpose()
 }
 
@@ -169,11 +173,9 @@ fn parse_stress(text: &str) -> Result<Report, Mistake> {
 }
 
 fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
-    parse_profile(&file.text).map_err(|mistake| {
-        let help = "a baseline is what `skiagraph profile --json FILE` writes";
-        let summary = "the baseline cannot be used";
-        mistake.in_file(file, "profile to compare with", help, summary)
-    })
+    let help = "a baseline is what `skiagraph profile --json FILE` writes";
+    let advice = [help, "the baseline cannot be used"];
+    checked(file, parse_profile, "profile to compare with", advice)
 }
 
 /// Parses the text of a results.json, to continue from its runs.
@@ -181,10 +183,8 @@ fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
 /// # Errors
 /// Text that is not a results.json; the message shows the place.
 pub fn results_of(file: &SourceFile) -> Result<Results, CompareError> {
-    parse_results(&file.text).map_err(|mistake| {
-        let summary = "nothing was measured";
-        mistake.in_file(file, "results.json to resume", WITHOUT_RESULTS, summary)
-    })
+    let advice = [WITHOUT_RESULTS, "nothing was measured"];
+    checked(file, parse_results, "results.json to resume", advice)
 }
 
 /// Fields that tell our files from each other and from other JSON. Any other file lacks many

@@ -465,7 +465,7 @@ pub struct Published {
 }
 
 /// Measurements of a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Numbers of pixels facing the light that the method calls certain by its output `status`: its
     /// shadow map decides them.
@@ -600,6 +600,14 @@ impl Measured {
     /// without GPU times. A G-buffer under another name is included.
     pub fn ms_without_gbuffer(&self) -> Option<f64> {
         Some(self.frame.gpu_ms?.median - self.gbuffer_ms().unwrap_or(0.0))
+    }
+
+    /// Returns the times of frames in which every pass ran: those of a camera path's second walk,
+    /// if there was one.
+    pub fn full_times(&self) -> &FrameTimes {
+        let path = self.sequence.as_ref();
+        let every_pass = path.and_then(|path| path.every_pass.as_ref());
+        every_pass.unwrap_or(&self.frame)
     }
 
     /// Returns the number of wrong pixels outside the band (the pixels whose right answer rounding

@@ -2,7 +2,7 @@
 //!
 //! Errors repeat to the pixel on one adapter and driver, so there any growth is worse; on another
 //! one a [`Tolerance`] is granted. Times are compared on one machine, adapter and driver that was
-//! not loaded, by [`UnpairedRatio`], and never scaled.
+//! not loaded, by [`unpaired::ratio`], and never scaled.
 //!
 //! ```
 //! use skiagraph_compare::records::results_baseline::{Baseline, Change};
@@ -26,9 +26,8 @@ use crate::error::CompareError;
 use crate::lists::unique;
 use crate::records::read_back;
 use crate::records::results::{Measured, Results, Run};
-use crate::records::statistics::FrameTimes;
-use crate::records::turns::LEAST_TURNS;
-use crate::records::unpaired::UnpairedRatio;
+use crate::records::turns::{LEAST_TURNS, Ratio};
+use crate::records::unpaired;
 use crate::wording::{plural, size, thousands};
 use itertools::Itertools;
 use std::path::Path;
@@ -79,7 +78,7 @@ pub struct CellChange {
     pub errors: Change,
     /// Ratio of the new time of a frame to the old one; `None` if they are not compared, for
     /// example on another machine.
-    pub ratio: Option<UnpairedRatio>,
+    pub ratio: Option<Ratio>,
 }
 
 /// Figures of a method on one view that are compared.
@@ -328,7 +327,7 @@ impl Baseline {
 impl CellChange {
     /// Returns the change of the frame times; [`Change::Same`] if they are not compared.
     pub fn times(&self) -> Change {
-        match self.ratio.filter(UnpairedRatio::is_told_apart) {
+        match self.ratio.filter(Ratio::is_told_apart) {
             None => Change::Same,
             Some(ratio) if ratio.median < 1.0 => Change::Better,
             Some(_) => Change::Worse,
@@ -388,15 +387,8 @@ impl Measurement<'_> {
         self.results.adapter.to_string() == other.adapter.to_string()
     }
 
-    /// Times of frames with every pass run.
-    fn times(&self) -> &FrameTimes {
-        let path = self.measured.sequence.as_ref();
-        let every_pass = path.and_then(|path| path.every_pass.as_ref());
-        every_pass.unwrap_or(&self.measured.frame)
-    }
-
     fn figures(&self) -> Figures {
-        let (measured, times) = (self.measured, self.times());
+        let (measured, times) = (self.measured, self.measured.full_times());
         let cycle = measured.steady.as_ref().and_then(|steady| steady.judged);
         let wrong = cycle.map(|cycle| cycle.wrong_outside_band_mean.ceil() as u64);
         let rmse = measured.graded.rmse_outside_band;
@@ -409,7 +401,7 @@ impl Measurement<'_> {
 }
 
 /// The ratio of the new times to the old ones, or why there is none.
-fn ratio(then: Measurement, now: Measurement) -> Result<UnpairedRatio, String> {
+fn ratio(then: Measurement, now: Measurement) -> Result<Ratio, String> {
     let machines = [then, now].map(|of| of.results.machine_of(of.run));
     if !machines[0].is_same(machines[1]) {
         let [there, here] = machines;
@@ -427,9 +419,10 @@ fn ratio(then: Measurement, now: Measurement) -> Result<UnpairedRatio, String> {
             ));
         }
     }
-    let by_wall = [then, now].iter().any(|of| of.times().gpu_frames.is_none());
-    let [then, now] = [&then, &now].map(|of| of.times().frames(by_wall).unwrap_or(&[]));
-    UnpairedRatio::new(now, then).ok_or_else(|| {
+    let times = [then.measured, now.measured].map(Measured::full_times);
+    let by_wall = times.iter().any(|of| of.gpu_frames.is_none());
+    let [then, now] = times.map(|of| of.frames(by_wall).unwrap_or(&[]));
+    unpaired::ratio(now, then).ok_or_else(|| {
         format!(
             "{} then and {} now, and both must be {LEAST_TURNS} or more",
             plural(then.len(), "frame"),
@@ -492,6 +485,7 @@ fn differences(
 mod tests {
     use super::*;
     use crate::records::results::{Answer, tests::sample};
+    use crate::records::statistics::FrameTimes;
     use std::time::Duration;
 
     /// `sample()` with ten frames of around so many milliseconds.

@@ -15,6 +15,7 @@
 //! assert_eq!(samples.wall, [Duration::from_millis(16); 2]);
 //! ```
 
+use crate::lists::find_or_push;
 use skiagraph_gpu::FrameTiming;
 use std::time::Duration;
 
@@ -65,16 +66,13 @@ impl Samples {
             samples.cpu.push(timing.cpu());
             for pass in &timing.passes {
                 let known = |samples: &PassSamples| samples.name == pass.name;
-                let index = samples.passes.iter().position(known).unwrap_or_else(|| {
-                    samples.passes.push(PassSamples {
-                        name: pass.name.clone(),
-                        gpu: Vec::new(),
-                        cpu: Vec::new(),
-                    });
-                    samples.passes.len() - 1
+                let own = find_or_push(&mut samples.passes, known, || PassSamples {
+                    name: pass.name.clone(),
+                    gpu: Vec::new(),
+                    cpu: Vec::new(),
                 });
-                samples.passes[index].gpu.push(pass.gpu);
-                samples.passes[index].cpu.push(pass.cpu);
+                own.gpu.push(pass.gpu);
+                own.cpu.push(pass.cpu);
             }
         }
         samples

@@ -21,7 +21,7 @@
 //! ```
 
 use crate::error::CompareError;
-use crate::lists::unique;
+use crate::lists::{find_or_push, place, unique};
 use crate::records::read_back;
 use crate::records::results::{Results, Run};
 use std::path::{Path, PathBuf};
@@ -65,20 +65,16 @@ fn by_machine(mut results: Results) -> Vec<Results> {
     for run in std::mem::take(&mut results.runs) {
         let machine = results.machine_of(&run).clone();
         let is_known = |part: &Results| part.joins(&part.machine, &machine);
-        let known = parts.iter().position(is_known);
-        let index = known.unwrap_or_else(|| {
-            parts.push(Results {
-                // Load is that of the comparison, where it is the same machine.
-                machine: if results.joins(&machine, &results.machine) {
-                    results.machine.clone()
-                } else {
-                    machine
-                },
-                ..results.clone()
-            });
-            parts.len() - 1
+        let part = find_or_push(&mut parts, is_known, || Results {
+            // Load is that of the comparison, where it is the same machine.
+            machine: if results.joins(&machine, &results.machine) {
+                results.machine.clone()
+            } else {
+                machine.clone()
+            },
+            ..results.clone()
         });
-        parts[index].runs.push(run);
+        part.runs.push(run);
     }
     if parts.is_empty() {
         parts.push(results);
@@ -161,11 +157,7 @@ impl Source {
     }
 
     fn add(&mut self, folder: PathBuf, other: Results) {
-        let known = self.folders.iter().position(|known| *known == folder);
-        let place = known.unwrap_or_else(|| {
-            self.folders.push(folder);
-            self.folders.len() - 1
-        });
+        let place = place(&mut self.folders, folder);
         let commands = [&self.results.commands[..], &other.commands].concat();
         let machine = other.machine.clone();
         let plan = self.results.plan.clone().or_else(|| other.plan.clone());
@@ -207,12 +199,7 @@ pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
     for Kept { folder, results } in kept {
         let fits = |of: &Source| of.is_like(&results) && !of.is_at_odds(&results);
-        let index = sources.iter().position(fits);
-        let index = index.unwrap_or_else(|| {
-            sources.push(Source::new(&results));
-            sources.len() - 1
-        });
-        sources[index].add(folder, results);
+        find_or_push(&mut sources, fits, || Source::new(&results)).add(folder, results);
     }
     sources.iter_mut().for_each(Source::name_machines);
     sources

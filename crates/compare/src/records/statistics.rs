@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// Order statistics of times over frames, in milliseconds, without the samples.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Least sample, in milliseconds.
     pub min: f64,
@@ -31,7 +31,7 @@ pub struct Spread {
 }
 
 /// Times of frames in milliseconds, by the GPU's clock and by the CPU's.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameTimes {
     /// Order statistics of the GPU times from the start of a frame's first pass to the end of its
     /// last; null if there are no timestamps or they cannot be trusted.

@@ -4,14 +4,14 @@
 //! ratio of two methods in each turn tells more than the ratio of their medians.
 //!
 //! ```
-//! use skiagraph_compare::records::turns::PairedRatio;
+//! use skiagraph_compare::records::turns::Ratio;
 //!
 //! let fast = [1.0, 1.1, 1.0, 5.0, 1.0, 1.2, 1.0, 1.1];
 //! let slow = fast.map(|ms| 2.0 * ms);
-//! let ratio = PairedRatio::new(&slow, &fast).ok_or("too few frames")?;
+//! let ratio = Ratio::paired(&slow, &fast).ok_or("too few frames")?;
 //! assert_eq!((ratio.low, ratio.median, ratio.high), (2.0, 2.0, 2.0));
 //! assert!(ratio.is_told_apart());
-//! assert!(!PairedRatio::new(&fast, &fast).ok_or("too few")?.is_told_apart());
+//! assert!(!Ratio::paired(&fast, &fast).ok_or("too few")?.is_told_apart());
 //! # Ok::<(), &str>(())
 //! ```
 
@@ -37,19 +37,20 @@ pub struct Turns {
     pub anchor: FrameTimes,
 }
 
-/// Ratio of the frame times of two methods that took turns, with an interval.
+/// Ratio of the frame times of two methods, with an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PairedRatio {
-    /// Lower end of the interval that contains the true median of the ratio with a confidence of at
-    /// least 99 %, for any distribution of the times (order statistics).
+pub struct Ratio {
+    /// Lower end of the interval that contains the true ratio with the confidence of
+    /// [`paired`](Self::paired) or [`unpaired::ratio`](super::unpaired::ratio).
     pub low: f64,
-    /// Median of the ratios, one per turn.
+    /// Median of the ratios: one per turn, or of every frame of one run to every frame of the
+    /// other.
     pub median: f64,
     /// Upper end of the interval whose lower end is `low`.
     pub high: f64,
 }
 
-/// The confidence of an interval.
+/// The confidence of an interval of turns.
 const CONFIDENCE: f64 = 0.99;
 
 /// Least number of turns for which there is an interval: of fewer, even if all agree, the
@@ -58,25 +59,34 @@ pub const LEAST_TURNS: usize = 8;
 
 /// Times that differ by less than this share are level whatever the interval says: it knows nothing
 /// of how memory happens to lie.
-pub(crate) const LEVEL: f64 = 0.03;
+const LEVEL: f64 = 0.03;
 
 /// One nanosecond in milliseconds, so that nothing is divided by zero.
-pub(crate) const RESOLUTION_MS: f64 = 1e-6;
+const RESOLUTION_MS: f64 = 1e-6;
 
-impl PairedRatio {
+impl Ratio {
     /// Divides the time of each frame of `one` by that of the same turn of `other`; entry `i` of
     /// both lists is of turn `i`, in the same unit. Entries of the longer list without a partner
-    /// are left out. Returns `None` for fewer than [`LEAST_TURNS`] turns.
-    pub fn new(one: &[f64], other: &[f64]) -> Option<Self> {
+    /// are left out. The interval has a confidence of at least 99 %, for any distribution of the
+    /// times (order statistics). Returns `None` for fewer than [`LEAST_TURNS`] turns.
+    pub fn paired(one: &[f64], other: &[f64]) -> Option<Self> {
         let pairs = one.iter().zip(other);
+        Self::within(pairs, rank(one.len().min(other.len()))?)
+    }
+
+    /// The ratios of some pairs, the interval without so many at each end.
+    pub(super) fn within<'t>(
+        pairs: impl Iterator<Item = (&'t f64, &'t f64)>,
+        outside: usize,
+    ) -> Option<Self> {
         let ratio = |(one, other): (&f64, &f64)| one.max(RESOLUTION_MS) / other.max(RESOLUTION_MS);
         let mut ratios: Vec<f64> = pairs.map(ratio).collect();
         ratios.sort_by(f64::total_cmp);
-        let (count, rank) = (ratios.len(), rank(ratios.len())?);
+        let last = ratios.len().checked_sub(1)?;
         Some(Self {
-            low: ratios[rank],
-            median: (ratios[(count - 1) / 2] + ratios[count / 2]) * 0.5,
-            high: ratios[count - 1 - rank],
+            low: ratios[outside],
+            median: (ratios[last / 2] + ratios[ratios.len() / 2]) * 0.5,
+            high: ratios[last - outside],
         })
     }
 
@@ -121,13 +131,13 @@ mod tests {
     fn only_what_all_turns_agree_on_is_told_apart() {
         let even: Vec<f64> = (0..10).map(|turn| 10.0 + f64::from(turn)).collect();
         let scaled = |by: f64| even.iter().map(|ms| ms * by).collect::<Vec<f64>>();
-        let apart = |other: &[f64]| PairedRatio::new(&even, other).unwrap().is_told_apart();
+        let apart = |other: &[f64]| Ratio::paired(&even, other).unwrap().is_told_apart();
         assert!(apart(&scaled(1.1)) && apart(&scaled(0.9)));
         assert!(!apart(&scaled(1.02)), "level");
         let mut one_faster = scaled(1.1);
         one_faster[3] = 0.5 * even[3];
         assert!(!apart(&one_faster));
-        assert_eq!(PairedRatio::new(&even[..7], &even[..7]), None);
-        assert!(PairedRatio::new(&[0.0; 8], &[0.0; 8]).unwrap().median == 1.0);
+        assert_eq!(Ratio::paired(&even[..7], &even[..7]), None);
+        assert!(Ratio::paired(&[0.0; 8], &[0.0; 8]).unwrap().median == 1.0);
     }
 }

@@ -153,7 +153,7 @@ fn the_default_presets_are_judged_back_to_the_pixel() {
 
 #[test]
 fn soft_shadows_are_judged_back() {
-    let scene = scene("park_soft", None);
+    let scene = scene("park_soft");
     let methods = shown(&scene, &["rt_area", "hybrid_pcf_area"], 512);
     check_judged_back(&scene, &methods);
 }
@@ -278,7 +278,7 @@ fn warned(scene: &Arc<Scene>, name: &str, shares: &[f32]) -> String {
 fn a_picture_that_is_read_wrongly_is_told_with_the_way_out() {
     let scene = park();
     let rt = shown(&scene, &["rt"], 64).remove(0);
-    let soft = crate::support::scene("park_soft", None);
+    let soft = crate::support::scene("park_soft");
     let rt_area = shown(&soft, &["rt_area"], 64).remove(0);
     let width = SIZE[0] as usize;
     let flipped: Vec<f32> = rt

@@ -302,7 +302,8 @@ fn a_surface_that_another_one_hides_is_counted() {
 fn what_fits_is_measured_and_the_rest_says_why_it_does_not() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("lit.ron"), LIT).unwrap();
-    let request = GpuRequest::default().with_memory_limit(1 << 20);
+    let mut request = GpuRequest::default();
+    request.memory_limit = Some(1 << 20);
     let compare = |methods: &[&str]| {
         let mut comparison = comparison(park(), methods, folder.path(), &[]);
         comparison.viewports = vec![[16, 16]];

@@ -46,7 +46,7 @@ fn a_views_own_light_is_drawn_judged_and_remembered() {
         );
         let file = folder.path().join("s.ron");
         fs::write(&file, text).unwrap();
-        let scene = scene(file.to_str().unwrap(), None);
+        let scene = scene(file.to_str().unwrap());
         let mut comparison = comparison(scene, &["rt"], NOWHERE.as_ref(), &[]);
         comparison.viewports = vec![[48, 48]];
         let (heard, results) = keep(&comparison, folder.path(), kept).unwrap();
@@ -85,7 +85,7 @@ fn a_light_with_extent_is_judged_by_shares() {
     write("soft.ron", SOFT);
     let methods = ["lit.ron", "half.ron", "odd.ron"];
     let compared = |argument: &str| {
-        let mut comparison = comparison(scene(argument, None), &methods, folder.path(), &[]);
+        let mut comparison = comparison(scene(argument), &methods, folder.path(), &[]);
         comparison.viewports = vec![[32, 32]];
         comparison
     };
@@ -141,7 +141,7 @@ fn surfaces_inside_of_a_lamp_are_told() {
         );
         let file = folder.path().join("s.ron");
         fs::write(&file, text).unwrap();
-        let scene = scene(file.to_str().unwrap(), None);
+        let scene = scene(file.to_str().unwrap());
         let mut comparison = comparison(scene, &["rt_area"], NOWHERE.as_ref(), &[]);
         comparison.viewports = vec![[32, 32]];
         comparison.protocol.reference_samples = 4;
@@ -190,7 +190,7 @@ fn a_layer_for_each_light_is_judged_by_itself() {
     fs::write(folder.path().join("turned.ron"), turned).unwrap();
     let compare = |light: &str| {
         let methods = ["each.ron", "turned.ron"];
-        let mut comparison = comparison(scene(LAMPS, None), &methods, folder.path(), &[]);
+        let mut comparison = comparison(scene(LAMPS), &methods, folder.path(), &[]);
         comparison.viewports = vec![[64, 48]];
         runs(&under(comparison, light))
     };
@@ -220,7 +220,7 @@ fn a_layer_for_each_light_is_judged_by_itself() {
 fn params_without_effect_are_told_once() {
     let fit = ["fit=camera".parse().unwrap()];
     let methods = load_methods(&["nsm", "rt"], &fit, &[], &EmbeddedSources).unwrap();
-    let mut comparison = Comparison::new(scene(LAMPS, None), methods).unwrap();
+    let mut comparison = Comparison::new(scene(LAMPS), methods).unwrap();
     comparison.viewports = vec![[16, 16]];
     let told = |heard: &Heard| {
         let text = heard.notes();
@@ -261,7 +261,7 @@ fn params_that_a_kind_of_light_has_no_use_for_are_named() {
 /// just that, whatever else it lacks there.
 #[test]
 fn every_preset_is_planned_under_its_lights_and_names_the_others() {
-    let scene = scene(LAMPS, None);
+    let scene = scene(LAMPS);
     let views = under_lights(&scene, scene.views.clone(), Some("all")).unwrap();
     let methods = load_methods(&preset::built_in(), &[], &[], &EmbeddedSources).unwrap();
     let mut provider = SceneProvider::new(scene);
@@ -350,7 +350,7 @@ fn whatever_cannot_run_is_a_row_with_its_reason() {
         ("values.ron", Some("status is 7")),
     ];
     let methods = each(folder.path(), &rows.map(|(word, _)| word));
-    let mut compared = Comparison::new(scene(LAMPS, None), methods).unwrap();
+    let mut compared = Comparison::new(scene(LAMPS), methods).unwrap();
     compared.protocol = Protocol {
         frames: 1,
         warmup: 0,
@@ -430,7 +430,7 @@ fn a_document_of_two_lights_in_a_scene_of_three_is_judged_on_those_it_names() {
         fs::write(folder.path().join(name), text).unwrap();
     }
     let methods = ["first.ron", "ends.ron", "last.ron"];
-    let mut compared = comparison(scene(LAMPS, None), &methods, folder.path(), &[]);
+    let mut compared = comparison(scene(LAMPS), &methods, folder.path(), &[]);
     compared.viewports = vec![[32, 24]];
     let runs = runs(&under(compared, "all"));
     let judged: Vec<bool> = runs.iter().map(|run| run["wrong"].is_object()).collect();

@@ -171,10 +171,7 @@ fn a_part_that_is_not_there_is_refused_with_those_that_are() {
     let file = folder.path().join("own.ron");
     fs::write(&file, text).unwrap();
     let file = file.to_str().unwrap();
-    let (scene, paths) = (
-        scene(file, None),
-        SceneLibrary::default().paths(file).unwrap(),
-    );
+    let (scene, paths) = (scene(file), SceneLibrary::default().paths(file).unwrap());
     let paths = ViewOrPath::paths(&scene, paths, "p", None).unwrap();
     let told = FrameSequence::new(&paths[0], &scene, None, Some(2));
     let told = told.err().unwrap().to_string();

@@ -16,9 +16,7 @@ use skiagraph_compare::{
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{FolderSources, LayeredSources};
 use skiagraph_passes::EmbeddedSources;
-use skiagraph_scene::{
-    Concave, Light, MaterialUse, ObjSetup, QuadDiagonal, Scene, SceneLibrary, SceneRequest, View,
-};
+use skiagraph_scene::{Light, MeshFile, MeshFileOptions, Scene, SceneLibrary, View};
 use std::{
     fs,
     path::Path,
@@ -47,14 +45,13 @@ pub fn gpu() -> &'static Gpu {
 
 /// The scene `park`.
 pub fn park() -> Arc<Scene> {
-    static PARK: LazyLock<Arc<Scene>> = LazyLock::new(|| scene("park", None));
+    static PARK: LazyLock<Arc<Scene>> = LazyLock::new(|| scene("park"));
     PARK.clone()
 }
 
-/// The scene of a name or of a file, with what a mesh file lacks.
-pub fn scene(argument: &str, obj: Option<ObjSetup>) -> Arc<Scene> {
-    let argument = argument.to_owned();
-    let loaded = SceneLibrary::default().load(&SceneRequest { argument, obj });
+/// The scene of a name.
+pub fn scene(argument: &str) -> Arc<Scene> {
+    let loaded = SceneLibrary::default().load(argument);
     Arc::new(loaded.unwrap_or_else(|error| panic!("{error}")).0)
 }
 
@@ -67,14 +64,14 @@ pub fn mesh(folder: &Path, text: &str, view: View, light: impl Into<Light>) -> A
 
 /// The mesh of a file under a light and seen so.
 pub fn mesh_file(file: &Path, view: View, light: impl Into<Light>) -> Arc<Scene> {
-    let setup = ObjSetup {
-        view,
-        light: light.into(),
-        quads: QuadDiagonal::default(),
-        concave: Concave::default(),
-        materials: MaterialUse::default(),
-    };
-    scene(file.to_str().unwrap(), Some(setup))
+    let loaded = MeshFile::load(file, &MeshFileOptions::default());
+    let loaded = loaded.unwrap_or_else(|error| panic!("{error}"));
+    Arc::new(Scene {
+        name: loaded.name,
+        mesh: loaded.mesh,
+        views: vec![view],
+        lights: vec![light.into()],
+    })
 }
 
 /// Documents of a folder, and those that are built in.

@@ -6,7 +6,7 @@
 
 use crate::common::f32_shading;
 use skiagraph_reference::{GroundTruthPixels, Oracle, OracleMode, Progress, Statistics};
-use skiagraph_scene::{Bvh, Camera, Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_scene::{Bvh, Camera, Scene, SceneLibrary, View};
 use std::{path::Path, sync::OnceLock, time::Instant};
 
 /// Most indeterminate pixels, as a share of those facing the light.
@@ -40,13 +40,7 @@ fn sponza() -> Option<&'static Scene> {
 }
 
 fn scene(name: &str, library: SceneLibrary) -> Scene {
-    let request = SceneRequest {
-        argument: name.to_owned(),
-        obj: None,
-    };
-    let (scene, _) = library
-        .load(&request)
-        .unwrap_or_else(|error| panic!("{error}"));
+    let (scene, _) = library.load(name).unwrap_or_else(|error| panic!("{error}"));
     scene
 }
 

@@ -6,7 +6,7 @@ use skiagraph_reference::{
     unattributable, wrong_surfaces,
 };
 use skiagraph_scene::{
-    Camera, DirectionalLight, Indexed, LightKind, Mesh, Scene, SceneLibrary, SceneRequest, View,
+    Camera, DirectionalLight, Indexed, LightKind, Mesh, Scene, SceneLibrary, View,
 };
 
 const VIEWPORT: [u32; 2] = [64, 64];
@@ -99,11 +99,7 @@ fn snapped(camera: &Camera, by: f64) -> Camera {
 }
 
 fn park() -> Scene {
-    let request = SceneRequest {
-        argument: "park".into(),
-        obj: None,
-    };
-    SceneLibrary::default().load(&request).unwrap().0
+    SceneLibrary::default().load("park").unwrap().0
 }
 
 /// Receivers lie within their triangles however coarse the grid is, and touch no neighbour.

@@ -95,7 +95,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::{results as sample, stress};
+    use crate::test_support::{results as sample, stress};
     use serde_json::Value;
     use skiagraph_compare::records::results::Results;
     use skiagraph_compare::records::sources::{Kept, sources};

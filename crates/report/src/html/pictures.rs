@@ -5,6 +5,7 @@ use crate::notes::map_figures;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use itertools::Itertools;
 use serde::Serialize;
+use skiagraph_compare::lists::find_or_push;
 use skiagraph_compare::pictures::run_pictures::graph_name;
 use skiagraph_compare::records::results::{Images, Run};
 use skiagraph_compare::records::sources::Source;
@@ -154,20 +155,15 @@ impl Pictures {
             (set.source, &set.view, set.viewport, &set.label, set.frame)
                 == (of.source, &run.view, run.viewport, &label, of.frame)
         };
-        let index = self.sets.iter().position(is_of);
-        let index = index.unwrap_or_else(|| {
-            self.sets.push(Set {
-                source: of.source,
-                view: run.view.clone(),
-                viewport: run.viewport,
-                label,
-                frame: of.frame,
-                graded: !run.is_hard(),
-                ..Set::default()
-            });
-            self.sets.len() - 1
+        let set = find_or_push(&mut self.sets, is_of, || Set {
+            source: of.source,
+            view: run.view.clone(),
+            viewport: run.viewport,
+            label: label.clone(),
+            frame: of.frame,
+            graded: !run.is_hard(),
+            ..Set::default()
         });
-        let set = &mut self.sets[index];
         let place = match of.kind {
             Kind::Error => &mut set.error,
             Kind::Shaded => &mut set.shaded,

@@ -134,30 +134,21 @@ impl LightSpace {
     pub fn refit(&self, bvh: &Bvh, mesh: &Mesh) -> Option<Vec<LightSpaceNode>> {
         let places = mesh.positions.iter().map(|&p| Bounds::at(self.place(p)));
         let places: Vec<Bounds> = places.collect();
-        let mut nodes: Vec<Option<Bounds>> = vec![None; bvh.nodes.len()];
-        // A node is done when its children are.
-        let mut open: Vec<usize> = (!bvh.nodes.is_empty()).then_some(0).into_iter().collect();
-        while let Some(&index) = open.last() {
-            let node = &bvh.nodes[index];
-            let children = [node.first as usize, node.first as usize + 1];
-            let bounds_of = |child: usize| nodes.get(child).copied().flatten();
-            let bounds = match (node.count, children.map(bounds_of)) {
-                (0, [Some(first), Some(second)]) => Some(first.or(second)),
-                (0, _) => None,
-                _ => corners(&bvh.primitives, mesh, node)
-                    .map(|corner| places[corner as usize])
-                    .reduce(Bounds::or),
-            };
-            match bounds {
-                Some(_) => {
-                    nodes[index] = bounds;
-                    open.pop();
+        let mut bounds = vec![Bounds::NOTHING; bvh.nodes.len()];
+        // Children before their parents.
+        for index in bvh.order().into_iter().rev() {
+            let node = &bvh.nodes[index as usize];
+            let first = node.first as usize;
+            bounds[index as usize] = match node.count {
+                0 => bounds[first].or(bounds[first + 1]),
+                _ => {
+                    let corners = corners(&bvh.primitives, mesh, node);
+                    Bounds::around(corners.map(|corner| places[corner as usize]))
                 }
-                None => open.extend(children),
-            }
+            };
         }
-        let nodes = bvh.nodes.iter().zip(nodes);
-        nodes.map(|(node, bounds)| bounds?.rounded(node)).collect()
+        let nodes = bvh.nodes.iter().zip(bounds);
+        nodes.map(|(node, bounds)| bounds.rounded(node)).collect()
     }
 
     /// Fits nodes to a hierarchy of two levels over a mesh: those of some pieces, which have moved
@@ -191,9 +182,7 @@ impl LightSpace {
                     let corners = corners(&tree.primitives, mesh, node);
                     let places = corners.map(|corner| mesh.positions[corner as usize]);
                     let bounds = places.map(|place| Bounds::at(self.place(place)));
-                    let nothing = || Bounds::at((DVec2::ZERO, DVec3::ZERO));
-                    let bounds = bounds.reduce(Bounds::or).unwrap_or_else(nothing);
-                    bounds.rounded(node)?
+                    Bounds::around(bounds).rounded(node)?
                 }
             };
             fitted += 1;
@@ -233,6 +222,16 @@ struct Bounds {
 }
 
 impl Bounds {
+    const NOTHING: Self = Self {
+        low: DVec2::ZERO,
+        high: DVec2::ZERO,
+        farthest: DVec3::ZERO,
+    };
+
+    fn around(all: impl Iterator<Item = Self>) -> Self {
+        all.reduce(Self::or).unwrap_or(Self::NOTHING)
+    }
+
     fn at((seen, up): (DVec2, DVec3)) -> Self {
         Self {
             low: seen,

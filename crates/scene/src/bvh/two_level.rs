@@ -65,7 +65,7 @@ pub struct TwoLevelBvh {
 }
 
 /// Tree of a piece. Its nodes but the root follow each other; the root is in the top level.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Subtree {
     root: BvhNode,
     nodes: Range<usize>,
@@ -174,8 +174,7 @@ impl TwoLevelBvh {
                 slots,
                 order,
                 depth: tree.depth,
-                cost: 0.0,
-                stated: None,
+                ..Subtree::default()
             }],
             nodes: tree.nodes,
             primitives,
@@ -295,13 +294,9 @@ impl TwoLevelBvh {
             self.primitives.resize(slots.end, 0);
         }
         let added = Subtree {
-            root: BvhNode::default(),
             nodes,
             slots,
-            order: Arc::default(),
-            depth: 0,
-            cost: 0.0,
-            stated: None,
+            ..Subtree::default()
         };
         match self.pieces.get_mut(piece) {
             Some(before) => {
@@ -386,13 +381,9 @@ impl TwoLevelBvh {
         self.nodes.resize(nodes.end, BvhNode::default());
         self.primitives.resize(slots.end, 0);
         self.pieces.push(Subtree {
-            root: BvhNode::default(),
             nodes,
             slots,
-            order: Arc::default(),
-            depth: 0,
-            cost: 0.0,
-            stated: None,
+            ..Subtree::default()
         });
         self.put(self.pieces.len() - 1, tree, order, triangles);
     }

@@ -29,7 +29,7 @@ fn unnamed_floats<const N: usize>(
     }
     let (ty, normalized) = (accessor.data_type(), accessor.normalized());
     let item = |bytes: &[u8]| -> [f32; N] {
-        std::array::from_fn(|at| number(&bytes[at * ty.size()..], ty, normalized))
+        std::array::from_fn(|at| number(&bytes[at * ty.size()..], ty, normalized) as f32)
     };
     let mut items: Vec<[f32; N]> = match accessor.view() {
         Some(view) => raw(
@@ -144,15 +144,17 @@ fn whole(bytes: &[u8], ty: DataType) -> u32 {
     }
 }
 
-fn number(bytes: &[u8], ty: DataType, normalized: bool) -> f32 {
+/// The number that bytes begin with; a normalised integer as a fraction.
+pub(super) fn number(bytes: &[u8], ty: DataType, normalized: bool) -> f64 {
     let word = whole(bytes, ty);
     let (value, most) = match ty {
-        DataType::F32 => return f32::from_bits(word),
-        DataType::I8 => (f32::from(word as u8 as i8), 127.0),
-        DataType::I16 => (f32::from(word as u16 as i16), 32767.0),
-        DataType::U8 => (word as f32, 255.0),
-        DataType::U16 => (word as f32, 65535.0),
-        DataType::U32 => (word as f32, 4_294_967_295.0),
+        DataType::F32 => return f64::from(f32::from_bits(word)),
+        DataType::I8 => (f64::from(word as u8 as i8), 127.0),
+        DataType::I16 => (f64::from(word as u16 as i16), 32767.0),
+        DataType::U8 => (f64::from(word), 255.0),
+        DataType::U16 => (f64::from(word), 65535.0),
+        // Not more exact than a single float.
+        DataType::U32 => (f64::from(word as f32), 4_294_967_296.0),
     };
     if normalized {
         (value / most).max(-1.0)

@@ -2,6 +2,7 @@
 //! keeps a mesh from being read.
 
 use super::{
+    accessor,
     beside::{index, items},
     buffers::{Buffers, GLTF_FILE, data_uri, path_of},
     extensions::{self, Kind},
@@ -9,6 +10,7 @@ use super::{
 };
 use crate::error::{beginning, plural};
 use glam::{DQuat, DVec3};
+use gltf::accessor::DataType;
 use serde_json::Value;
 use std::{
     collections::{BTreeMap, HashSet},
@@ -201,13 +203,12 @@ impl Animations {
             let kind = kind.unwrap_or("nothing");
             return Err(format!("its items are {kind}, expected {width} numbers"));
         }
-        let component = index(accessor.get("componentType"));
-        let (size, most) = match component {
-            Some(5126) => (4, None),
-            Some(5120) => (1, Some(127.0)),
-            Some(5121) => (1, Some(255.0)),
-            Some(5122) => (2, Some(32767.0)),
-            Some(5123) => (2, Some(65535.0)),
+        let ty = match index(accessor.get("componentType")) {
+            Some(5126) => DataType::F32,
+            Some(5120) => DataType::I8,
+            Some(5121) => DataType::U8,
+            Some(5122) => DataType::I16,
+            Some(5123) => DataType::U16,
             _ => return Err("its numbers are of a kind that keys do not have".to_owned()),
         };
         let view = index(accessor.get("bufferView")).ok_or("it has no buffer view")?;
@@ -223,7 +224,7 @@ impl Animations {
         let buffer = index(view.get("buffer")).ok_or("its buffer view has no buffer")?;
         let data = self.bytes(buffer, bytes)?;
         let field = |of: &Value, name: &str| index(of.get(name)).unwrap_or(0);
-        let item = width * size;
+        let item = width * ty.size();
         let stride = Some(field(view, "byteStride")).filter(|&stride| stride >= item);
         let stride = stride.unwrap_or(item);
         let offset = field(view, "byteOffset").saturating_add(field(accessor, "byteOffset"));
@@ -236,21 +237,12 @@ impl Animations {
         if end.is_none_or(|end| end > data.len()) {
             return Err(format!("it reaches beyond buffer {buffer}"));
         }
-        let number = |at: usize| {
-            let word = &data[at..at + size];
-            match component {
-                Some(5120) => f64::from(word[0] as i8),
-                Some(5121) => f64::from(word[0]),
-                Some(5122) => f64::from(i16::from_le_bytes([word[0], word[1]])),
-                Some(5123) => f64::from(u16::from_le_bytes([word[0], word[1]])),
-                _ => f64::from(f32::from_le_bytes([word[0], word[1], word[2], word[3]])),
-            }
-        };
-        // Whole numbers are normalised ones, which is what keys may be.
-        let scaled = |number: f64| most.map_or(number, |most: f64| (number / most).max(-1.0));
         let items = (0..count).map(|item| offset + item * stride);
-        let numbers = items.flat_map(|at| (0..width).map(move |axis| at + axis * size));
-        Ok(numbers.map(|at| scaled(number(at))).collect())
+        let places = items.flat_map(|at| (0..width).map(move |axis| at + axis * ty.size()));
+        // Whole numbers are normalised ones, which is what keys may be.
+        Ok(places
+            .map(|at| accessor::number(&data[at..], ty, true))
+            .collect())
     }
 
     /// The bytes of a buffer: those that the mesh needs are there, others are read.

@@ -321,13 +321,9 @@ impl<'a> Poses<'a> {
             if !source.mesh.groups.iter().any(|group| group.name == part) {
                 continue;
             }
-            let rest = source
-                .nodes
-                .worlds
-                .get(&number)
-                .copied()
-                .unwrap_or_default();
-            let maps = worlds.iter().map(|world| *world * rest.inverse());
+            let rest = source.nodes.worlds.get(&number).copied();
+            let from_rest = rest.unwrap_or_default().inverse();
+            let maps = worlds.iter().map(|world| *world * from_rest);
             let Some(keys) = maps.enumerate().map(pose_key).collect::<Option<Vec<_>>>() else {
                 said.push(format!(
                     "{place}: its size or shape changes, and only rigid motions are followed: it \
@@ -357,7 +353,7 @@ fn pose_key((frame, map): (usize, DMat4)) -> Option<PoseKey> {
         .into_iter()
         .fold(0.0, |most: f64, of| most.max(of.abs()));
     (error < NEARLY_RIGID && linear.determinant() > 0.0).then(|| PoseKey {
-        at: frame as f64 / RATE,
+        at: at(frame),
         translation: map.w_axis.truncate(),
         rotation: DQuat::from_mat3(&linear).normalize(),
     })

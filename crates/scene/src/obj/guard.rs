@@ -422,7 +422,7 @@ impl<'a> Guard<'a> {
 }
 
 /// A statement's keyword, and what follows.
-fn split(line: &str) -> (&str, &str) {
+pub(super) fn split(line: &str) -> (&str, &str) {
     line.split_once(char::is_whitespace).unwrap_or((line, ""))
 }
 

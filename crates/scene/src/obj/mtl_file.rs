@@ -4,6 +4,7 @@
 //! Every other statement may say what it likes. `tobj`'s own reader refuses the whole file over a
 //! number that is missing from a highlight, and dies where `Kd` has one number instead of three.
 
+use super::guard::split;
 use crate::{
     error::beginning,
     text::{line_text, next_line, without_comment, without_mark},
@@ -80,10 +81,7 @@ pub(super) fn parse(bytes: &[u8]) -> Vec<MtlMaterial> {
     let lines = std::iter::from_fn(|| next_line(&mut rest));
     for (number, (line, _)) in (1..).zip(lines) {
         let line = line_text(line.trim_ascii());
-        let (keyword, rest) = line
-            .trim()
-            .split_once(char::is_whitespace)
-            .unwrap_or((line.trim(), ""));
+        let (keyword, rest) = split(line.trim());
         let rest = rest.trim();
         if keyword.eq_ignore_ascii_case("newmtl") {
             is_named = !rest.is_empty();

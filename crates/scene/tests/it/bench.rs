@@ -1,6 +1,6 @@
 //! The dissertation's own park, where its folder is at hand.
 
-use skiagraph_scene::{Parts, SceneLibrary, SceneRequest, library::ASSETS_VARIABLE};
+use skiagraph_scene::{Parts, SceneLibrary, library::ASSETS_VARIABLE};
 
 #[test]
 fn bench_has_the_dissertations_triangles_and_few_closed_parts() {
@@ -10,11 +10,7 @@ fn bench_has_the_dissertations_triangles_and_few_closed_parts() {
         );
         return;
     }
-    let request = SceneRequest {
-        argument: "bench".into(),
-        obj: None,
-    };
-    let (scene, report) = SceneLibrary::from_environment().load(&request).unwrap();
+    let (scene, report) = SceneLibrary::from_environment().load("bench").unwrap();
     // The dissertation's 55,026 triangles are about its 55,020 indices.
     assert_eq!(3 * scene.mesh.triangles.len(), 55_020);
     assert_eq!(

@@ -6,7 +6,7 @@ use crate::solids::{are_apart, are_closed, are_welded, winding};
 use glam::DVec3;
 use proptest::prelude::*;
 use skiagraph_scene::{
-    Bvh, Mesh, Scene, SceneError, SceneLibrary, SceneRequest,
+    Bvh, Mesh, Scene, SceneError, SceneLibrary,
     generate::{Generator, TRIANGLES},
 };
 
@@ -18,11 +18,7 @@ fn generators(triangles: u32) -> [Generator; 2] {
 }
 
 fn scene(argument: &str) -> Result<Scene, SceneError> {
-    let request = SceneRequest {
-        argument: argument.into(),
-        obj: None,
-    };
-    let loaded = SceneLibrary::default().load(&request);
+    let loaded = SceneLibrary::default().load(argument);
     loaded.map(|(scene, _)| scene)
 }
 

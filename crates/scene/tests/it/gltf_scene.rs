@@ -3,7 +3,7 @@
 use glam::DVec3;
 use insta::assert_snapshot;
 use skiagraph_scene::{
-    LightKind, MaterialUse, SceneLibrary, SceneRequest,
+    LightKind, MaterialUse, SceneLibrary,
     gltf::{GltfScene, parse_gltf_scene},
 };
 use std::{fs, path::Path};
@@ -180,12 +180,7 @@ fn lights_that_light_nothing_are_told() {
 fn a_file_with_a_camera_and_a_light_is_a_scene() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("room.gltf");
-    let load = || {
-        SceneLibrary::default().load(&SceneRequest {
-            argument: path.to_str().unwrap().to_owned(),
-            obj: None,
-        })
-    };
+    let load = || SceneLibrary::default().load(path.to_str().unwrap());
     let nodes = r#",
         {"name": "Camera", "camera": 0},
         {"name": "Lamp", "extensions": {"KHR_lights_punctual": {"light": 0}}}"#;

@@ -4,8 +4,8 @@
 use crate::bounds::bounded;
 use skiagraph_located_ron::diagnostics::Diagnostic;
 use skiagraph_scene::{
-    Bvh, Concave, ImportReport, Limit, MaterialUse, Mesh, ObjOptions, ObjSetup, QuadDiagonal,
-    SceneError, SceneFile, SceneLibrary, SceneRequest, obj::parse_obj,
+    Bvh, Concave, ImportReport, Limit, Mesh, MeshFile, MeshFileOptions, ObjOptions, SceneError,
+    SceneFile, SceneLibrary, obj::parse_obj,
 };
 use std::path::Path;
 
@@ -319,19 +319,14 @@ fn scene_files_of_nothing_and_without_end() {
 #[track_caller]
 fn said_of_file(path: &Path) -> String {
     let argument = path.display().to_string();
-    let camera = parse_scene(SCENE).unwrap();
-    let request = SceneRequest {
-        obj: argument.ends_with(".obj").then(|| ObjSetup {
-            view: camera.views[0].clone(),
-            light: camera.lights[0].clone(),
-            quads: QuadDiagonal::default(),
-            concave: Concave::default(),
-            materials: MaterialUse::default(),
-        }),
-        argument,
+    let load = || {
+        if MeshFile::is_one(path) {
+            MeshFile::load(path, &MeshFileOptions::default()).err()
+        } else {
+            SceneLibrary::default().load(&argument).err()
+        }
     };
-    let load = || SceneLibrary::default().load(&request).unwrap_err();
-    bounded(&request.argument, load).to_string()
+    bounded(&argument, load).unwrap().to_string()
 }
 
 #[test]

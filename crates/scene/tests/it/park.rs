@@ -4,15 +4,11 @@
 use crate::common::{cast, nearest};
 use crate::solids::{CLEARANCE, are_apart, are_closed, are_welded, area, components, winding};
 use glam::DVec3;
-use skiagraph_scene::{Bvh, Parts, Scene, SceneLibrary, SceneRequest};
+use skiagraph_scene::{Bvh, Parts, Scene, SceneLibrary};
 use std::{collections::HashMap, sync::LazyLock};
 
 static PARK: LazyLock<(Scene, Bvh)> = LazyLock::new(|| {
-    let request = SceneRequest {
-        argument: "park".into(),
-        obj: None,
-    };
-    let (scene, _) = SceneLibrary::default().load(&request).unwrap();
+    let (scene, _) = SceneLibrary::default().load("park").unwrap();
     let bvh = Bvh::build(&scene.mesh);
     (scene, bvh)
 });

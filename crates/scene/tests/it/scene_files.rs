@@ -2,10 +2,7 @@
 
 use insta::assert_snapshot;
 use skiagraph_located_ron::diagnostics::{Diagnostic, Diagnostics};
-use skiagraph_scene::{
-    Concave, DirectionalLight, MaterialUse, ObjSetup, QuadDiagonal, SceneError, SceneFile,
-    SceneLibrary, SceneRequest, View,
-};
+use skiagraph_scene::{SceneError, SceneFile, SceneLibrary};
 use std::{fs, path::Path};
 
 const GOOD: &str = r#"(
@@ -267,25 +264,8 @@ fn broken_lights_are_explained() {
     }
 }
 
-fn request(argument: impl AsRef<Path>) -> SceneRequest {
-    SceneRequest {
-        argument: argument.as_ref().to_string_lossy().into_owned(),
-        obj: None,
-    }
-}
-
-fn setup() -> ObjSetup {
-    let view = SceneFile::parse(GOOD, "garden.ron")
-        .unwrap()
-        .views
-        .remove(0);
-    ObjSetup {
-        view,
-        light: DirectionalLight::new(glam::DVec3::NEG_Y).into(),
-        quads: QuadDiagonal::FirstThird,
-        concave: Concave::Cut,
-        materials: MaterialUse::All,
-    }
+fn request(argument: impl AsRef<Path>) -> String {
+    argument.as_ref().to_string_lossy().into_owned()
 }
 
 #[test]
@@ -459,46 +439,12 @@ fn a_mesh_of_ones_own_has_no_source_and_a_folder_is_no_mesh() {
 }
 
 #[test]
-fn a_bare_obj_needs_a_view_and_a_light() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("T.OBJ");
-    fs::write(&path, TRIANGLE).unwrap();
+fn a_bare_obj_lacks_a_view_and_a_light() {
     let library = SceneLibrary::default();
     assert_snapshot!(library.load(&request("t.obj")).unwrap_err(), @"t.obj: it holds no camera \
         or no light: give --eye x,y,z --look x,y,z (direction) and --light x,y,z (the \
         direction in which the light travels); --fov DEGREES, --near and --far if the defaults do \
         not suit it");
-    let (scene, report) = library
-        .load(&SceneRequest {
-            obj: Some(setup()),
-            ..request(&path)
-        })
-        .unwrap();
-    assert_eq!(
-        (scene.name.as_str(), scene.views.len(), report.faces),
-        ("T", 1, 1)
-    );
-
-    let flat = View {
-        direction: glam::DVec3::ZERO,
-        ..setup().view
-    };
-    let bad = SceneRequest {
-        obj: Some(ObjSetup {
-            view: flat,
-            ..setup()
-        }),
-        ..request("t.obj")
-    };
-    assert_snapshot!(library.load(&bad).unwrap_err(), @"t.obj: view \"a\": direction [0, 0, 0] and \
-        up [0, 1, 0] must be finite and longer than 0");
-    let unwanted = SceneRequest {
-        obj: Some(setup()),
-        ..request("park")
-    };
-    assert_snapshot!(library.load(&unwanted).unwrap_err(), @"scene \"park\" has its own views and \
-        light: a view and a light (--eye, --look, --light …) can only be given with a mesh \
-        file");
 }
 
 #[test]

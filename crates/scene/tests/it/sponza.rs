@@ -1,7 +1,7 @@
 //! The real Sponza, where its folder is at hand.
 
 use crate::common;
-use skiagraph_scene::{Bvh, SceneLibrary, SceneRequest, library::ASSETS_VARIABLE};
+use skiagraph_scene::{Bvh, SceneLibrary, library::ASSETS_VARIABLE};
 
 #[test]
 fn sponza_has_the_dissertations_triangles() {
@@ -11,11 +11,7 @@ fn sponza_has_the_dissertations_triangles() {
         );
         return;
     }
-    let request = SceneRequest {
-        argument: "sponza".into(),
-        obj: None,
-    };
-    let (scene, report) = SceneLibrary::from_environment().load(&request).unwrap();
+    let (scene, report) = SceneLibrary::from_environment().load("sponza").unwrap();
     assert_eq!(scene.mesh.triangles.len(), 262_267);
     assert_eq!(scene.mesh.groups.len(), 381);
     assert!(

@@ -19,7 +19,7 @@ use bevy::{
     },
     window::ExitCondition,
 };
-use skiagraph_scene::{Scene, SceneLibrary, SceneRequest, View};
+use skiagraph_scene::{Scene, SceneLibrary, View};
 use std::{error::Error, fs, path::Path, process::ExitCode};
 
 /// Frames until the picture stands: meshes and pipelines come with the first ones.
@@ -45,11 +45,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     };
     let size = parse_size(size)
         .ok_or_else(|| format!("size {size:?}: expected WIDTHxHEIGHT, each 1 to {LARGEST}"))?;
-    let request = SceneRequest {
-        argument: scene.clone(),
-        ..default()
-    };
-    let (scene, _) = SceneLibrary::from_environment().load(&request)?;
+    let (scene, _) = SceneLibrary::from_environment().load(scene)?;
     let names = scene.views.iter().map(|view| view.name.as_str());
     let names = names.collect::<Vec<_>>().join(", ");
     let missing = || format!("{} has no view {view:?}; its views: {names}", scene.name);

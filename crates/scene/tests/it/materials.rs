@@ -216,8 +216,8 @@ fn surfaces_without_texture_coordinates_are_padded_and_replaced() {
     assert_eq!(bare.base_color(2, [0.2, 0.3, 0.5]), [1.0, 0.0, 0.0]);
 }
 
-/// Masks are looked up by texture coordinates: without these, all tracers and maps take the triangle
-/// for opaque, also once its mesh stands beside one that has some.
+/// Masks are looked up by texture coordinates: without these, all tracers and maps take the
+/// triangle for opaque, also once its mesh stands beside one that has some.
 #[test]
 fn masks_of_surfaces_without_texture_coordinates_hide_nothing() {
     let folder = folder(Some("newmtl leaf\nmap_d textures/mask.tga\n"));

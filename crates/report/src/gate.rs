@@ -1,7 +1,7 @@
 //! Conditions under which `compare` or `judge` fails, for continuous integration:
 //! `nsm: wrong > 0.1%`.
 
-use crate::summary::{Row, by_wall};
+use crate::summary::{Row, Worst, by_wall};
 use crate::summary_table::summaries;
 use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::records::judged_pictures::{
@@ -25,19 +25,19 @@ pub struct Gate {
     pub most: f64,
 }
 
-/// A figure of a method that a [`Gate`] can limit, taken over all views of a viewport.
+/// A figure of a method that a [`Gate`] can limit: every view, and every frame of a camera path,
+/// must keep to the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
-    /// Wrong pixels, in percent of the pixels that face the light, both summed over the views.
-    /// Pixels whose answer rounding decides (the band) do not count as wrong.
+    /// Wrong pixels, in percent of the pixels that face the light. Pixels whose answer rounding
+    /// decides (the band) do not count as wrong.
     Wrong,
-    /// Root mean square error of the [shares of light](skiagraph_compare#terms), which are 0 to 1,
-    /// over all views.
+    /// Root mean square error of the [shares of light](skiagraph_compare#terms), which are 0 to 1.
     Rmse,
-    /// FLIP error (perceptual difference) of the shaded pictures, 0 to 1, as the mean of the views.
+    /// FLIP error (perceptual difference) of the shaded picture, 0 to 1.
     Flip,
-    /// Milliseconds of a frame in which every pass runs, as the mean of the views' medians: GPU
-    /// time, or wall time if any method has no GPU time in the same viewport under the same light.
+    /// Milliseconds of a frame in which every pass runs, the median of a view's frames: GPU time,
+    /// or wall time if any method has no GPU time in the same viewport under the same light.
     Frame,
     /// Bytes of the textures and buffers of the method and of the scene buffers that it reads; the
     /// largest value of all views.
@@ -65,13 +65,20 @@ impl Figure {
         }
     }
 
-    fn of(self, row: &Row, by_wall: bool) -> Option<f64> {
+    /// The greatest value over views and frames; `None` if the method could not run.
+    fn worst(self, row: &Row, by_wall: bool) -> Option<Worst> {
         match self {
-            Self::Wrong => Some(100.0 * row.wrong().share()),
-            Self::Rmse => row.rmse(),
-            Self::Flip => row.flip(),
-            Self::Frame => row.frame_ms(by_wall),
-            Self::Memory => Some(row.bytes() as f64),
+            Self::Wrong => row.most_wrong().map(|worst| Worst {
+                value: 100.0 * worst.value,
+                ..worst
+            }),
+            Self::Rmse => row.greatest_rmse(),
+            Self::Flip => row.greatest_flip(),
+            Self::Frame => row.slowest(by_wall),
+            Self::Memory => (row.views() > 0).then(|| Worst {
+                value: row.bytes() as f64,
+                place: None,
+            }),
         }
     }
 
@@ -111,8 +118,9 @@ impl Gate {
         })
     }
 
-    /// Returns a line of text for each row that is beyond this limit. A row is the method with one
-    /// map size, in one viewport and under one light, over all views. A row that could not run
+    /// Returns a line of text for each row that is beyond this limit on any view, or in any frame
+    /// of a camera path: the worst of them is named. A row is the method with one map size, in one
+    /// viewport and under one light, over all views. A row that could not run
     /// fails as well. The list is empty if all rows pass, or if the results have no row of the
     /// method.
     pub fn failures(&self, results: &Results) -> Vec<String> {
@@ -122,15 +130,15 @@ impl Gate {
             let viewport = size(summary.viewport);
             for row in summary.rows.iter().filter(|row| row.method == self.method) {
                 let (label, word) = (&row.label, self.figure.word());
-                let value = self.figure.of(row, by_wall).filter(|_| row.views() > 0);
                 let text = |value| self.figure.text(value);
-                match value {
+                match self.figure.worst(row, by_wall) {
                     None => lines.push(format!(
                         "`{label}` at {viewport} has no {word}: it could not run"
                     )),
-                    Some(value) if value > self.most => lines.push(format!(
-                        "`{label}` at {viewport}: {word} {} is more than {}",
-                        text(value),
+                    Some(worst) if worst.value > self.most => lines.push(format!(
+                        "`{label}` at {viewport}: {word} {}{} is more than {}",
+                        text(worst.value),
+                        worst.on(),
                         text(self.most)
                     )),
                     Some(_) => {}
@@ -199,6 +207,8 @@ impl Gate {
 mod tests {
     use super::*;
     use crate::test_support::results as sample;
+    use skiagraph_compare::records::sequence::{Sequence, SequenceFrame};
+    use skiagraph_reference::Shimmer;
 
     #[test]
     fn a_condition_fails_for_what_is_above_it_or_could_not_run() {
@@ -222,5 +232,42 @@ mod tests {
             failures("rt_hw", Figure::Frame, 1e9),
             ["`rt_hw` at 512x256 has no frame: it could not run"]
         );
+    }
+
+    /// A mean hides a view beyond the limit, and the sum over a path its worst frame.
+    #[test]
+    fn the_worst_view_and_the_worst_frame_keep_to_a_condition() {
+        let mut results = sample();
+        let mut roofs = results.runs[0].clone();
+        roofs.view = "roofs".into();
+        let measured = roofs.measured.as_mut().unwrap();
+        measured.wrong.total *= 4;
+        let frame = |wrong_outside_band| {
+            serde_json::from_value::<SequenceFrame>(serde_json::json!({
+                "facing_light": 100, "wrong": 9, "wrong_outside_band": wrong_outside_band,
+                "graded": {}, "rays": null, "gpu_ms": 1.0, "wall_ms": 1.0
+            }))
+        };
+        let mut path = roofs.clone();
+        path.view = "walk".into();
+        path.measured.as_mut().unwrap().sequence = Some(Sequence {
+            frames: vec![frame(0).unwrap(), frame(9).unwrap()],
+            shimmer: Shimmer::default(),
+            every_pass: None,
+        });
+        let gate = |most| Gate {
+            method: "nsm".into(),
+            figure: Figure::Wrong,
+            most,
+        };
+        results.runs.insert(1, roofs);
+        let told = gate(1.5).failures(&results);
+        let on_roofs = "`nsm 1024` at 512x256: wrong 2.0060 % on `roofs` is more than 1.5000 %";
+        assert_eq!(told, [on_roofs]);
+        results.runs.insert(2, path);
+        let told = gate(3.0).failures(&results);
+        let on_path =
+            "`nsm 1024` at 512x256: wrong 9.0000 % on frame 2 of `walk` is more than 3.0000 %";
+        assert_eq!(told, [on_path]);
     }
 }

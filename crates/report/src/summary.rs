@@ -30,6 +30,25 @@ pub struct Row<'a> {
 /// A run and its measurements.
 type Measurement<'a> = (&'a Run, &'a Measured);
 
+/// Greatest value of a figure among the views, and the frames of camera paths, that a [`Row`]
+/// combines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worst {
+    /// The value, in the unit of the figure.
+    pub value: f64,
+    /// Place of the value in words, such as `` `roofs` `` or `` frame 12 of `wind` ``. `None` if
+    /// the row has one view alone and no path.
+    pub place: Option<String>,
+}
+
+impl Worst {
+    /// Returns the place behind ` on `; nothing if there is only one.
+    pub fn on(&self) -> String {
+        let place = self.place.as_ref();
+        place.map_or(String::new(), |place| format!(" on {place}"))
+    }
+}
+
 /// Number of wrong pixels of a method over all views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wrong {
@@ -112,6 +131,67 @@ impl<'a> Row<'a> {
                 band: sum.band + run.band,
             }
         })
+    }
+
+    /// Returns the view or frame with the greatest share of wrong pixels outside the band (the
+    /// pixels whose answer rounding decides) among the pixels that face the light, 0 to 1; `None`
+    /// without runs.
+    pub fn most_wrong(&self) -> Option<Worst> {
+        let share = |wrong: u64, facing: u64| Some(wrong as f64 / facing.max(1) as f64);
+        self.worst(
+            |run, of| share(of.wrong_outside_band(), run.pixels.facing_light),
+            |_, _, frame| share(frame.wrong_outside_band, frame.facing_light),
+        )
+    }
+
+    /// Returns the view or frame with the greatest root mean square error of the [shares of
+    /// light](skiagraph_compare#terms), 0 to 1; `None` without runs.
+    pub fn greatest_rmse(&self) -> Option<Worst> {
+        let rmse = |_: &Run, of: &Measured| Some(of.graded.rmse);
+        self.worst(rmse, |_, _, frame| Some(frame.graded.rmse))
+    }
+
+    /// Returns the view or frame with the greatest FLIP error (perceptual difference, 0 to 1) of
+    /// the shaded picture; `None` without runs.
+    pub fn greatest_flip(&self) -> Option<Worst> {
+        let flip = |_: &Run, of: &Measured| Some(of.graded.flip);
+        self.worst(flip, |_, _, frame| Some(frame.graded.flip))
+    }
+
+    /// Returns the slowest view, by the median of its frames in which every pass runs, or the
+    /// slowest frame of a path, in milliseconds. `None` if a view has no such time. `by_wall`
+    /// selects wall time instead of GPU time.
+    pub fn slowest(&self, by_wall: bool) -> Option<Worst> {
+        self.worst(
+            |_, of| median(of.full_times(), by_wall),
+            |of, index, _| of.full_times().frames(by_wall)?.get(index).copied(),
+        )
+    }
+
+    /// The greatest value of a figure over views and frames of paths, the first of equal ones.
+    fn worst(
+        &self,
+        of_view: impl Fn(&Run, &Measured) -> Option<f64>,
+        of_frame: impl Fn(&Measured, usize, &SequenceFrame) -> Option<f64>,
+    ) -> Option<Worst> {
+        let mut worst: Option<Worst> = None;
+        let mut add = |value: f64, place: Option<String>| {
+            if worst.as_ref().is_none_or(|worst| value > worst.value) {
+                worst = Some(Worst { value, place });
+            }
+        };
+        for (run, of) in &self.runs {
+            let Some(path) = &of.sequence else {
+                let name = (self.views() > 1).then(|| format!("`{}`", run.view));
+                add(of_view(run, of)?, name);
+                continue;
+            };
+            for (index, frame) in path.frames.iter().enumerate() {
+                let place = format!("frame {} of `{}`", index + 1, run.view);
+                add(of_frame(of, index, frame)?, Some(place));
+            }
+        }
+        worst
     }
 
     /// Returns the start of the newest comparison among those that measured the runs, in UTC:

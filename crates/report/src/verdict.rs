@@ -1,6 +1,6 @@
 //! The verdict of a comparison: which method to take, in one or two sentences.
 
-use crate::summary::{Row, Wrong, by_wall};
+use crate::summary::{Row, Worst, Wrong, by_wall};
 use crate::tuning;
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
@@ -37,8 +37,9 @@ pub struct Verdict {
 
 /// Judges rows that were measured on the same views: recommends a method. A row takes no part if it
 /// has fewer views than others, was measured an hour or more before the newest one (the machine may
-/// have been loaded differently), was cut short, or could not run. Rows beyond a budget are not
-/// recommended. Of a method and its tuned setting only the one with less error is recommended.
+/// have been loaded differently), was cut short, or could not run. A row that is beyond a budget on
+/// any view, or in any frame of a camera path, is not recommended. Of a method and its tuned
+/// setting only the one with less error is recommended.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let most = rows.iter().map(Row::views).max().unwrap_or_default();
     let by_wall = by_wall(rows);
@@ -72,14 +73,16 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
         verdict.is_taken = false;
     }
     if !budgets.is_empty() && !within.is_empty() {
-        let (count, all) = (within.len(), plural(full.len(), "method"));
+        let (count, methods) = (within.len(), plural(full.len(), "method"));
         verdict
             .sentences
-            .insert(0, format!("Within {budgets}: {count} of {all}."));
+            .insert(0, format!("Within {budgets}: {count} of {methods}."));
     }
     if let Some(condition) = full.iter().find_map(|of| of.condition) {
         verdict.sentences = conditioned(condition, verdict.sentences, &full);
     }
+    let beyond = full.iter().filter_map(|method| method.beyond(budgets));
+    verdict.sentences.extend(beyond);
     verdict.sentences.extend(tuning::sentences(rows));
     verdict
 }
@@ -159,6 +162,10 @@ struct Contender<'a> {
     condition: Option<Condition>,
     frame: f64,
     kept: f64,
+    /// The slowest view, or frame of a path, in milliseconds.
+    slowest: Worst,
+    /// The view, or frame of a path, with the greatest share of wrong pixels, 0 to 1.
+    most_wrong: Worst,
 }
 
 impl<'a> Contender<'a> {
@@ -180,6 +187,8 @@ impl<'a> Contender<'a> {
             condition: Condition::new(wrong),
             frame,
             kept: row.kept_ms(by_wall).unwrap_or(frame),
+            slowest: row.slowest(by_wall)?,
+            most_wrong: row.most_wrong()?,
         })
     }
 
@@ -230,14 +239,35 @@ impl<'a> Contender<'a> {
     }
 
     fn is_within(&self, budgets: &Budgets) -> bool {
-        let is_quick = budgets.frame_ms.is_none_or(|most| self.frame <= most);
+        let is_quick = budgets
+            .frame_ms
+            .is_none_or(|most| self.slowest.value <= most);
         let is_right = budgets
             .wrong_percent
-            .is_none_or(|most| 100.0 * self.wrong.share() < most);
+            .is_none_or(|most| 100.0 * self.most_wrong.value < most);
         let is_small = budgets
             .memory_bytes
             .is_none_or(|most| self.row.bytes() <= most);
         is_quick && is_right && is_small
+    }
+
+    /// The view or frame that breaks a budget which the method keeps to over all views.
+    fn beyond(&self, budgets: &Budgets) -> Option<String> {
+        let (slowest, most_wrong) = (&self.slowest, &self.most_wrong);
+        let is_slow = |most: &f64| self.frame <= *most && slowest.value > *most;
+        let slow = budgets.frame_ms.filter(is_slow).map(|_| {
+            let [mean, worst] = [self.frame, slowest.value].map(ms);
+            format!("takes {worst} ms{} (mean {mean})", slowest.on())
+        });
+        let shares = [self.wrong.share(), most_wrong.value].map(|share| 100.0 * share);
+        let is_wrong = |most: &f64| shares[0] < *most && shares[1] >= *most;
+        let wrong = budgets.wrong_percent.filter(is_wrong).map(|_| {
+            let [all, worst] = shares.map(|share| format!("{share:.3} %"));
+            format!("is wrong on {worst}{} ({all} in all)", most_wrong.on())
+        });
+        let beyond: Vec<String> = slow.into_iter().chain(wrong).collect();
+        let name = self.name();
+        (!beyond.is_empty()).then(|| format!("{name} {}.", beyond.join(" and ")))
     }
 
     /// That no pixel is wrong, as far as that can be judged.
@@ -556,12 +586,18 @@ fn none_within(all: &[Contender], budgets: &Budgets) -> Verdict {
         }
     };
     if budgets.frame_ms.is_some() {
-        add("the fastest", &|of| of.frame, |of| {
-            per_frame(of, When::AnythingMoves)
+        add("the fastest", &|of| of.slowest.value, |of| {
+            format!("{} ms a frame{}", ms(of.slowest.value), of.slowest.on())
         });
     }
     if budgets.wrong_percent.is_some() {
-        add("the least wrong", &|of| of.wrong.share(), |of| of.error());
+        add("the least wrong", &|of| of.most_wrong.value, |of| {
+            let share = 100.0 * of.most_wrong.value;
+            match of.most_wrong.on() {
+                place if place.is_empty() || of.is_exact => of.error(),
+                place => format!("wrong on {share:.3} %{place}"),
+            }
+        });
     }
     if budgets.memory_bytes.is_some() {
         add("the smallest", &|of| of.row.bytes() as f64, |of| {
@@ -890,6 +926,46 @@ mod tests {
         };
         let (_, said) = within(&runs, &memory);
         assert!(said[0].starts_with("No method keeps to at most 1.0 MiB; the smallest is"));
+    }
+
+    #[test]
+    fn every_view_and_every_frame_keeps_to_a_budget() {
+        let on = |view: &str, mut run: Run| {
+            run.view = view.into();
+            run
+        };
+        let runs = [
+            on("main", run("rt", 0, 5.1, 5.1)),
+            on("roofs", run("rt", 0, 53.7, 53.7)),
+            on("main", run("pssm", 400, 8.0, 8.0)),
+            on("roofs", run("pssm", 2_120, 9.0, 9.0)),
+            on("main", run("nsm", 900, 20.0, 20.0)),
+            on("roofs", run("nsm", 990, 20.0, 20.0)),
+        ];
+        let budget = |frame_ms, wrong_percent| Budgets {
+            frame_ms,
+            wrong_percent,
+            memory_bytes: None,
+        };
+        let (marked, said) = within(&runs, &budget(Some(30.0), None));
+        assert_eq!(marked, None);
+        let on_roofs = "`rt` takes 53.7 ms on `roofs` (mean 29.4).";
+        assert_eq!(said[0], "Within at most 30 ms a frame: 2 of 3 methods.");
+        assert!(said[1].contains("`nsm` is the least wrong"), "{said:?}");
+        assert_eq!(said.last().unwrap(), on_roofs);
+        let (_, said) = within(&runs, &budget(None, Some(1.5)));
+        assert!(said[1].starts_with("Take `nsm`"), "{said:?}");
+        let wrong = "`pssm` is wrong on 2.120 % on `roofs` (1.260 % in all).";
+        assert_eq!(said.last().unwrap(), wrong);
+        let (_, said) = within(&runs, &budget(Some(8.5), None));
+        assert_eq!(
+            said,
+            [
+                "No method keeps to at most 8.5 ms a frame; the fastest is `pssm` (9.00 ms a \
+                 frame on `roofs`).",
+                "`pssm` takes 9.00 ms on `roofs` (mean 8.50).",
+            ]
+        );
     }
 
     #[test]

@@ -102,8 +102,9 @@ pub struct CompareArgs {
     /// the best ones, too. They are chosen on every second view and judged on the others.
     #[arg(long, conflicts_with = "path")]
     pub tune: bool,
-    /// End with exit code 4 if a figure of a method is greater: `nsm: wrong > 0.1%`, `rmse > 0.05`,
-    /// `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
+    /// End with exit code 4 if a figure of a method is greater on any view or in any frame of a
+    /// path: `nsm: wrong > 0.1%`, `rmse > 0.05`, `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`.
+    /// May be repeated.
     #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
     pub fail_if: Vec<Gate>,
     /// Compare each method on each view with older results: a results.json or its folder. End with

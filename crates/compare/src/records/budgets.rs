@@ -15,21 +15,23 @@ use crate::wording::bytes;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Limits that an acceptable method keeps, set by the user; `None` for no limit. They are recorded
-/// with the results and change no measurement: a report recommends no method that exceeds one.
+/// Limits that an acceptable method keeps on every view and in every frame of a camera path, set by
+/// the user; `None` for no limit. They are recorded with the results and change no measurement: a
+/// report recommends no method that exceeds one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Budgets {
-    /// Most milliseconds of a frame in which every pass runs: the mean of the views' medians, of
-    /// GPU times. If any method of the comparison lacks GPU times, wall times of all are taken.
+    /// Most milliseconds of a frame in which every pass runs: the median of a view's frames, or
+    /// any frame of a camera path, of GPU times. If any method of the comparison lacks GPU times,
+    /// wall times of all are taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_ms: Option<f64>,
     /// Limit on wrong pixels outside the band (pixels whose answer rounding decides), in percent of
-    /// the pixels facing the light, both summed over all views. A method must stay below it.
+    /// the pixels facing the light. A method must stay below it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wrong_percent: Option<f64>,
     /// Most bytes that the textures and buffers of the method, and the scene data that it reads,
-    /// may take together, on the view where that is the most.
+    /// may take together.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub memory_bytes: Option<u64>,
 }

@@ -1,14 +1,15 @@
 //! Conditions under which `compare` or `judge` fails, for continuous integration:
 //! `nsm: wrong > 0.1%`.
 
-use crate::summary::{Row, Worst, by_wall};
+use crate::summary::{Row, Worst, by_wall, share};
 use crate::summary_table::summaries;
 use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::records::judged_pictures::{
     JudgedPicture, JudgedPictures, MOST_WITHOUT_ANSWER,
 };
-use skiagraph_compare::records::results::Results;
+use skiagraph_compare::records::results::{Part, Results};
 use skiagraph_compare::wording::{bytes, ms, percent, size, unknown};
+use skiagraph_reference::PixelCounts;
 use std::path::Path;
 
 /// Upper limit for one figure of a method or picture, beyond which `--fail-if` makes `compare` or
@@ -32,6 +33,10 @@ pub enum Figure {
     /// Wrong pixels, in percent of the pixels that face the light. Pixels whose answer rounding
     /// decides (the band) do not count as wrong.
     Wrong,
+    /// Shadow that is missing: lit pixels, in percent of those in the reference's shadow.
+    Missing,
+    /// Shadow that is false: dark pixels, in percent of those that the reference lights.
+    False,
     /// Root mean square error of the [shares of light](skiagraph_compare#terms), which are 0 to 1.
     Rmse,
     /// FLIP error (perceptual difference) of the shaded picture, 0 to 1.
@@ -46,8 +51,10 @@ pub enum Figure {
 
 impl Figure {
     /// All figures.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 7] = [
         Self::Wrong,
+        Self::Missing,
+        Self::False,
         Self::Rmse,
         Self::Flip,
         Self::Frame,
@@ -58,6 +65,8 @@ impl Figure {
     pub fn word(self) -> &'static str {
         match self {
             Self::Wrong => "wrong",
+            Self::Missing => "missing",
+            Self::False => "false",
             Self::Rmse => "rmse",
             Self::Flip => "flip",
             Self::Frame => "frame",
@@ -67,11 +76,14 @@ impl Figure {
 
     /// The greatest value over views and frames; `None` if the method could not run.
     fn worst(self, row: &Row, by_wall: bool) -> Option<Worst> {
+        let in_percent = |worst: Worst| Worst {
+            value: 100.0 * worst.value,
+            ..worst
+        };
         match self {
-            Self::Wrong => row.most_wrong().map(|worst| Worst {
-                value: 100.0 * worst.value,
-                ..worst
-            }),
+            Self::Wrong => row.most_wrong().map(in_percent),
+            Self::Missing => row.most_missing().map(in_percent),
+            Self::False => row.most_false().map(in_percent),
             Self::Rmse => row.greatest_rmse(),
             Self::Flip => row.greatest_flip(),
             Self::Frame => row.slowest(by_wall),
@@ -82,11 +94,14 @@ impl Figure {
         }
     }
 
-    /// The figure of a judged picture, of which `facing` pixels face the light; `None` if pictures
-    /// have no such figure.
-    fn of_picture(self, of: &JudgedPicture, facing: f64) -> Option<f64> {
+    /// The figure of a judged picture of a view with these pixels; `None` if pictures have no such
+    /// figure.
+    fn of_picture(self, of: &JudgedPicture, pixels: &PixelCounts) -> Option<f64> {
+        let percent = |count: u64, of: u64| Some(100.0 * share(Part { count, of }));
         match self {
-            Self::Wrong => Some(100.0 * of.wrong_attributable() as f64 / facing),
+            Self::Wrong => percent(of.wrong_attributable(), pixels.facing_light),
+            Self::Missing => percent(of.wrong.lit, pixels.shadow),
+            Self::False => percent(of.wrong.shadow, pixels.lit),
             Self::Rmse => Some(of.graded.rmse_outside_band),
             Self::Flip => Some(of.graded.flip),
             Self::Frame | Self::Memory => None,
@@ -95,7 +110,7 @@ impl Figure {
 
     fn text(self, value: f64) -> String {
         match self {
-            Self::Wrong => format!("{value:.4} %"),
+            Self::Wrong | Self::Missing | Self::False => format!("{value:.4} %"),
             Self::Rmse | Self::Flip => format!("{value:.5}"),
             Self::Frame => format!("{} ms", ms(value)),
             Self::Memory => bytes(value as u64),
@@ -158,7 +173,7 @@ impl Gate {
         let (name, word) = (&self.method, self.figure.word());
         if matches!(self.figure, Figure::Frame | Figure::Memory) {
             return Err(format!(
-                "--fail-if: a picture has no {word}; expected wrong, rmse or flip"
+                "--fail-if: a picture has no {word}; expected wrong, missing, false, rmse or flip"
             ));
         }
         if files.iter().any(|file| self.is_of(file)) {
@@ -177,7 +192,6 @@ impl Gate {
     /// pixels and RMSE leave out pixels in the [band](skiagraph_compare#terms),
     /// [unattributable](JudgedPictures::unattributable) ones and those without an answer.
     pub fn picture_failures(&self, judged: &JudgedPictures) -> Vec<String> {
-        let facing = judged.pixels.facing_light.max(1) as f64;
         let apart = judged.band + judged.unattributable;
         let wanted = judged.pixels.facing_light.saturating_sub(apart);
         let pictures = judged.pictures.iter().filter(|of| self.is_of(&of.file));
@@ -190,7 +204,7 @@ impl Gate {
                     of.file
                 ));
             }
-            let value = self.figure.of_picture(of, facing)?;
+            let value = self.figure.of_picture(of, &judged.pixels)?;
             let (value, most) = (value > self.most).then(|| (text(value), text(self.most)))?;
             Some(format!("`{}`: {word} {value} is more than {most}", of.file))
         };
@@ -227,7 +241,11 @@ mod tests {
         );
         assert_eq!(failures("nsm", Figure::Wrong, 0.5), [""; 0]);
         let all = Figure::ALL.map(|figure| failures("nsm", figure, 0.0).len());
-        assert_eq!(all, [1; 5]);
+        assert_eq!(all, [1; 7]);
+        assert_eq!(
+            failures("nsm", Figure::Missing, 0.5),
+            ["`nsm 1024` at 512x256: missing 1.0000 % is more than 0.5000 %"]
+        );
         assert_eq!(
             failures("rt_hw", Figure::Frame, 1e9),
             ["`rt_hw` at 512x256 has no frame: it could not run"]

@@ -137,10 +137,10 @@ impl<'a> Row<'a> {
     /// pixels whose answer rounding decides) among the pixels that face the light, 0 to 1; `None`
     /// without runs.
     pub fn most_wrong(&self) -> Option<Worst> {
-        let share = |wrong: u64, facing: u64| Some(wrong as f64 / facing.max(1) as f64);
+        let wrong = |count: u64, of: u64| Some(share(Part { count, of }));
         self.worst(
-            |run, of| share(of.wrong_outside_band(), run.pixels.facing_light),
-            |_, _, frame| share(frame.wrong_outside_band, frame.facing_light),
+            |run, of| wrong(of.wrong_outside_band(), run.pixels.facing_light),
+            |_, _, frame| wrong(frame.wrong_outside_band, frame.facing_light),
         )
     }
 
@@ -166,6 +166,49 @@ impl<'a> Row<'a> {
             |_, of| median(of.full_times(), by_wall),
             |of, index, _| of.full_times().frames(by_wall)?.get(index).copied(),
         )
+    }
+
+    /// Returns the pixels that the method lights although they are in the reference's shadow, of
+    /// all in that shadow: the shadow that is missing, over all views. Pixels in the band count.
+    pub fn missing_shadow(&self) -> Part {
+        self.sum(missing)
+    }
+
+    /// Returns the pixels that the method darkens although the reference lights them, of all that
+    /// it lights: the shadow that is false, over all views. Pixels in the band count.
+    pub fn false_shadow(&self) -> Part {
+        self.sum(falsely_dark)
+    }
+
+    /// Returns the view or path with the greatest share of [missing shadow](Self::missing_shadow),
+    /// 0 to 1; `None` without runs.
+    pub fn most_missing(&self) -> Option<Worst> {
+        self.greatest_share(missing)
+    }
+
+    /// Returns the view or path with the greatest share of [false shadow](Self::false_shadow), 0 to
+    /// 1; `None` without runs.
+    pub fn most_false(&self) -> Option<Worst> {
+        self.greatest_share(falsely_dark)
+    }
+
+    fn sum(&self, part: fn(&Run, &Measured) -> Part) -> Part {
+        let parts = self.runs.iter().map(|(run, of)| part(run, of));
+        parts.fold(Part { count: 0, of: 0 }, |sum, part| Part {
+            count: sum.count + part.count,
+            of: sum.of + part.of,
+        })
+    }
+
+    fn greatest_share(&self, part: fn(&Run, &Measured) -> Part) -> Option<Worst> {
+        let shares = self.runs.iter().map(|(run, of)| Worst {
+            value: share(part(run, of)),
+            place: (self.views() > 1).then(|| format!("`{}`", run.view)),
+        });
+        shares.reduce(|worst, other| {
+            let is_more = other.value > worst.value;
+            if is_more { other } else { worst }
+        })
     }
 
     /// The greatest value of a figure over views and frames of paths, the first of equal ones.
@@ -411,6 +454,27 @@ fn anchors(one: &Measured, other: &Measured, by_wall: bool) -> Option<Vec<f64>> 
     let frames = |of: &Turns| Some(of.anchor.frames(by_wall)?.to_vec());
     let pairs = frames(one)?.into_iter().zip(frames(other)?);
     Some(pairs.map(|(one, other)| one / other.max(1e-6)).collect())
+}
+
+/// Shadow of a run that is missing, of all that the reference has.
+fn missing(run: &Run, of: &Measured) -> Part {
+    Part {
+        count: of.wrong.lit,
+        of: run.pixels.shadow,
+    }
+}
+
+/// Light of a run that is dark, of all that the reference has.
+fn falsely_dark(run: &Run, of: &Measured) -> Part {
+    Part {
+        count: of.wrong.shadow,
+        of: run.pixels.lit,
+    }
+}
+
+/// The share of a part in its whole, 0 to 1.
+pub(crate) fn share(part: Part) -> f64 {
+    part.count as f64 / part.of.max(1) as f64
 }
 
 /// The steady state of a method that remembers, as it was judged.

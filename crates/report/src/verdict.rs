@@ -1,6 +1,6 @@
 //! The verdict of a comparison: which method to take, in one or two sentences.
 
-use crate::summary::{Row, Worst, Wrong, by_wall};
+use crate::summary::{Row, Worst, Wrong, by_wall, share};
 use crate::tuning;
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
@@ -10,6 +10,10 @@ use skiagraph_compare::wording::{bytes, ms, percent, plural};
 /// Share of the pixels facing the light in the band (the pixels whose answer rounding decides)
 /// beyond which a verdict holds for the other pixels only.
 pub(crate) const MAX_BAND: f64 = 0.01;
+
+/// Share of the reference's shadow that is missing, or of its light that is dark, from which on a
+/// verdict says so first.
+const LARGE: f64 = 0.25;
 
 /// Verdict on the rows of a summary: the methods that it recommends, in figures and in words.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -210,8 +214,19 @@ impl<'a> Contender<'a> {
                 format!("wrong on {} of these", percent(outside_band, judged))
             }
             None => {
-                let share = percent(outside_band, facing_light);
-                format!("wrong on {share} of the surfaces that face the light")
+                let wrong = percent(outside_band, facing_light);
+                let wrong = format!("wrong on {wrong} of the surfaces that face the light");
+                // A small share of all surfaces may be all of the shadow.
+                let (missing, dark) = (self.row.missing_shadow(), self.row.false_shadow());
+                if share(missing) >= LARGE {
+                    let missing = percent(missing.count, missing.of);
+                    format!("without {missing} of the shadow, {wrong}")
+                } else if share(dark) >= LARGE {
+                    let dark = percent(dark.count, dark.of);
+                    format!("falsely dark on {dark} of the light, {wrong}")
+                } else {
+                    wrong
+                }
             }
         }
     }
@@ -966,6 +981,29 @@ mod tests {
                 "`pssm` takes 9.00 ms on `roofs` (mean 8.50).",
             ]
         );
+    }
+
+    #[test]
+    fn shadow_that_is_missing_is_told_before_a_small_share_of_all_surfaces() {
+        let error = |lit: u64, shadow: u64| {
+            let mut plant = run("nsm", 4_800, 9.0, 9.0);
+            (plant.pixels.lit, plant.pixels.shadow) = (95_000, 5_000);
+            let wrong = &mut plant.measured.as_mut().unwrap().wrong;
+            (wrong.lit, wrong.shadow) = (lit, shadow);
+            outcome(&[plant, run("rt", 0, 50.0, 50.0)]).1.remove(0)
+        };
+        let wrong = "wrong on 4.800 % of the surfaces that face the light";
+        for (said, first) in [
+            (error(4_780, 26), "without 95.600 % of the shadow, "),
+            (
+                error(100, 28_500),
+                "falsely dark on 30.000 % of the light, ",
+            ),
+            (error(1_200, 3_606), ""),
+        ] {
+            let expected = format!("`nsm` is 5.6 times as fast and {first}{wrong}.");
+            assert!(said.ends_with(&expected), "{said}");
+        }
     }
 
     #[test]

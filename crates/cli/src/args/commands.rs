@@ -103,8 +103,8 @@ pub struct CompareArgs {
     #[arg(long, conflicts_with = "path")]
     pub tune: bool,
     /// End with exit code 4 if a figure of a method is greater on any view or in any frame of a
-    /// path: `nsm: wrong > 0.1%`, `rmse > 0.05`, `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`.
-    /// May be repeated.
+    /// path: `nsm: wrong > 0.1%`, `missing > 5%` (of the shadow), `false > 5%` (of the light),
+    /// `rmse > 0.05`, `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
     #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
     pub fail_if: Vec<Gate>,
     /// Compare each method on each view with older results: a results.json or its folder. End with
@@ -502,7 +502,8 @@ pub struct JudgeArgs {
           value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
     pub reference_samples: u32,
     /// End with exit code 4 if a figure of a picture is greater, by its file name without ending:
-    /// `engine: wrong > 0.1%`, `rmse > 0.05`, `flip > 0.02`. May be repeated.
+    /// `engine: wrong > 0.1%`, `missing > 5%` (of the shadow), `false > 5%` (of the light),
+    /// `rmse > 0.05`, `flip > 0.02`. May be repeated.
     #[arg(long, value_name = "PICTURE: FIGURE > VALUE", value_parser = gate)]
     pub fail_if: Vec<Gate>,
     /// Folder for judge.json and pictures of the errors.

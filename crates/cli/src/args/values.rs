@@ -51,7 +51,7 @@ pub fn gate(text: &str) -> Result<Gate, String> {
         return Err(format!("unknown figure `{figure}`; expected one of {all}"));
     };
     let most = match known {
-        Figure::Wrong => percent(value),
+        Figure::Wrong | Figure::Missing | Figure::False => percent(value),
         Figure::Frame => milliseconds(value),
         Figure::Memory => bytes(value).map(|bytes| bytes as f64),
         Figure::Rmse | Figure::Flip => positive(value),
@@ -75,7 +75,7 @@ mod tests {
         for (text, told) in [
             ("nsm wrong > 1%", "METHOD: FIGURE > VALUE"),
             ("nsm: wrong < 1%", "METHOD: FIGURE > VALUE"),
-            ("nsm: wrnog > 1%", "wrong, rmse, flip, frame, memory"),
+            ("nsm: wrnog > 1%", "wrong, missing, false, rmse, flip, frame"),
             ("nsm: wrong > 1", "wrong: no sign for percent"),
             ("nsm: frame > 1", "frame: no unit"),
         ] {

@@ -243,8 +243,8 @@ mod tests {
         let all = Figure::ALL.map(|figure| failures("nsm", figure, 0.0).len());
         assert_eq!(all, [1; 7]);
         assert_eq!(
-            failures("nsm", Figure::Missing, 0.5),
-            ["`nsm 1024` at 512x256: missing 1.0000 % is more than 0.5000 %"]
+            failures("nsm", Figure::Missing, 0.1),
+            ["`nsm 1024` at 512x256: missing 0.2550 % is more than 0.1000 %"]
         );
         assert_eq!(
             failures("rt_hw", Figure::Frame, 1e9),

@@ -94,16 +94,21 @@ fn a_frame_that_is_not_done_in_time_is_waited_for_again() {
          }",
     );
     let mut executor = made(&files);
-    let mut commands = encoder();
     let wanted = Frame::new().with_read(&["sums"]);
-    executor
-        .encode(&mut commands, &wanted)
-        .unwrap_or_else(|error| panic!("{error}"));
-    GPU.queue.submit([commands.finish()]);
-    match executor.finish_within(Some(Duration::ZERO)) {
-        Err(ExecuteError::Unfinished { passes, .. }) => assert_eq!(passes, "work"),
-        other => panic!("{other:?}"),
-    }
+    // A thread that got no core after its submission may find that the frame is done.
+    let passes = (0..20).find_map(|_| {
+        let mut commands = encoder();
+        executor
+            .encode(&mut commands, &wanted)
+            .unwrap_or_else(|error| panic!("{error}"));
+        GPU.queue.submit([commands.finish()]);
+        match executor.finish_within(Some(Duration::ZERO)) {
+            Err(ExecuteError::Unfinished { passes, .. }) => Some(passes),
+            Err(error) => panic!("{error}"),
+            Ok(_) => None,
+        }
+    });
+    assert_eq!(passes.as_deref(), Some("work"));
     let report = executor.finish().unwrap_or_else(|error| panic!("{error}"));
     let expected = |first: u32| {
         let step = |sum: u32, _| sum.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -56,6 +56,7 @@ impl Sheets {
 mod tests {
     use super::*;
     use crate::{mask::Mask, material::Material, texture::Wrap};
+    use glam::Vec2;
     use std::sync::Arc;
 
     const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
@@ -80,6 +81,8 @@ mod tests {
             triangles: triangles.to_vec(),
             ..Mesh::default()
         };
+        mesh.surfaces.uvs = vec![Vec2::ZERO];
+        mesh.surfaces.uv_indices = vec![[0; 3]; triangles.len()];
         mesh.surfaces.of = materials.to_vec();
         mesh.surfaces.materials = [(false, None), (true, None), (false, mask)]
             .map(|(double_sided, mask)| Material {

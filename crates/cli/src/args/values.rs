@@ -75,7 +75,10 @@ mod tests {
         for (text, told) in [
             ("nsm wrong > 1%", "METHOD: FIGURE > VALUE"),
             ("nsm: wrong < 1%", "METHOD: FIGURE > VALUE"),
-            ("nsm: wrnog > 1%", "wrong, missing, false, rmse, flip, frame"),
+            (
+                "nsm: wrnog > 1%",
+                "wrong, missing, false, rmse, flip, frame",
+            ),
             ("nsm: wrong > 1", "wrong: no sign for percent"),
             ("nsm: frame > 1", "frame: no unit"),
         ] {

@@ -21,6 +21,10 @@ pub(super) const MORE: [u32; 2] = [84, 48];
 const SURE: [f64; 2] = [0.265, 0.04];
 const PLENTY: [f64; 2] = [0.29, 0.06];
 
+/// Share of the pixels that face the light at which rounding may decide, up to which these are left
+/// out as edges.
+const MOST_DOUBTFUL: f64 = 0.25;
+
 /// Directions that no mesh is built along, to count the surfaces around a place.
 const OBLIQUE: [DVec3; 3] = [
     DVec3::new(0.137, 0.971, 0.193),
@@ -88,10 +92,14 @@ impl Worth {
             let pixels = (0..truth.classes.len()).filter(|index| is_within(*index));
             pixels.filter(|index| is_one(*index)).count() as f64
         };
-        // Pixels on edges would count for much among few.
-        let class = |class| count(&|it| truth.classes[it] == class && !truth.indeterminate[it]);
-        let [lit, shadow] = [Class::Lit, Class::Shadow].map(class);
         let faces = |it: usize| [Class::Lit, Class::Shadow].contains(&truth.classes[it]);
+        // Pixels on edges would count for much among few. Where f32 hardly holds the mesh, most
+        // pixels are doubtful, and count.
+        let doubtful = count(&|it| faces(it) && truth.indeterminate[it]);
+        let is_sharp = doubtful < MOST_DOUBTFUL * count(&faces);
+        let is_counted = |it: usize| !is_sharp || !truth.indeterminate[it];
+        let class = |class| count(&|it| truth.classes[it] == class && is_counted(it));
+        let [lit, shadow] = [Class::Lit, Class::Shadow].map(class);
         let pixels = f64::from(columns * height);
         let subject = 0..picture.first_other as u32;
         Self {

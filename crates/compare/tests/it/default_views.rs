@@ -189,6 +189,29 @@ fn props_are_seen_from_outside_with_light_and_shadow() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Where f32 holds the mesh in few steps, rounding may decide at most of its pixels.
+#[test]
+fn props_far_from_the_origin_are_seen_with_light_and_shadow() {
+    let mut wrong = Vec::new();
+    for (number, (name, shape)) in props().iter().enumerate() {
+        for ground in [false, true] {
+            let form = Form {
+                off: DVec3::new(1e4, -1e4, 5e3),
+                is_z_up: (number % 2 == 0) == ground,
+                ..PLAIN
+            };
+            let (own, _) = load(shape, form, ground);
+            let faults = faults(&own, ground || !CONVEX.contains(name));
+            wrong.extend(
+                faults
+                    .iter()
+                    .map(|it| format!("{name}, ground {ground}, {form:?}: {it}")),
+            );
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn interiors_are_seen_at_eye_height_and_with_a_ground_from_outside() {
     let mut wrong = Vec::new();

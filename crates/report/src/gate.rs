@@ -33,9 +33,11 @@ pub enum Figure {
     /// Wrong pixels, in percent of the pixels that face the light. Pixels whose answer rounding
     /// decides (the band) do not count as wrong.
     Wrong,
-    /// Shadow that is missing: lit pixels, in percent of those in the reference's shadow.
+    /// Shadow that is missing: lit pixels, in percent of those in the reference's shadow, of a
+    /// camera path over all its frames. Pixels in the band count.
     Missing,
-    /// Shadow that is false: dark pixels, in percent of those that the reference lights.
+    /// Shadow that is false: dark pixels, in percent of those that the reference lights, of a
+    /// camera path over all its frames. Pixels in the band count.
     False,
     /// Root mean square error of the [shares of light](skiagraph_compare#terms), which are 0 to 1.
     Rmse,
@@ -135,9 +137,8 @@ impl Gate {
 
     /// Returns a line of text for each row that is beyond this limit on any view, or in any frame
     /// of a camera path: the worst of them is named. A row is the method with one map size, in one
-    /// viewport and under one light, over all views. A row that could not run
-    /// fails as well. The list is empty if all rows pass, or if the results have no row of the
-    /// method.
+    /// viewport and under one light, over all views. A row that could not run fails as well. The
+    /// list is empty if all rows pass, or if the results have no row of the method.
     pub fn failures(&self, results: &Results) -> Vec<String> {
         let mut lines = Vec::new();
         for summary in summaries(results) {

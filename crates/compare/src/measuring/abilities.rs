@@ -58,8 +58,8 @@ pub fn meshes() -> String {
         text += &format!("  {}{there}\n", folder.display());
     }
     for scene in library.list() {
-        let found = if scene.mesh_found { "found" } else { "missing" };
-        text += &format!("  mesh of the scene {}: {found}\n", scene.name);
+        let state = if scene.mesh_found { "found" } else { "missing" };
+        text += &format!("  mesh of the scene {}: {state}\n", scene.name);
     }
     text
 }

@@ -109,8 +109,8 @@ fn sampling_lines(comparison: &Comparison, view: &ViewOrPath) -> Vec<String> {
 }
 
 /// Three numbers, each as the shortest decimal that reads back as it.
-fn vector(of: DVec3) -> String {
-    format!("{},{},{}", of.x, of.y, of.z)
+fn vector(vector: DVec3) -> String {
+    format!("{},{},{}", vector.x, vector.y, vector.z)
 }
 
 fn view_text(view: &View) -> String {
@@ -127,8 +127,8 @@ fn path_lines(path: &CameraPath, lines: &mut Vec<String>) {
         lines.push(format!("key {} {eye} {direction}", key.at));
     }
     for key in &path.light_keys {
-        let [direction, position] = [key.direction, key.position].map(|of| of.map(vector));
-        let text = |of: Option<String>| of.unwrap_or_else(|| "-".into());
+        let [direction, position] = [key.direction, key.position].map(|coords| coords.map(vector));
+        let text = |numbers: Option<String>| numbers.unwrap_or_else(|| "-".into());
         let (direction, position) = (text(direction), text(position));
         lines.push(format!("light key {} {direction} {position}", key.at));
     }
@@ -264,24 +264,24 @@ mod tests {
     /// A truth waits for no method, and is another one of another light, size or mode.
     #[test]
     fn all_cells_of_a_view_wait_for_one_truth() {
-        let of = |comparison: &Comparison| {
+        let truth = |comparison: &Comparison| {
             truth_id(comparison, &comparison.views[0], comparison.viewports[0])
         };
         let (one, mut other) = (comparison(), comparison());
         other.methods = load_methods(&["rt"], &[], &[], &EmbeddedSources).unwrap();
         other.protocol.frames = 3;
-        assert_eq!(of(&one), of(&other));
-        assert_ne!(of(&one), id_of(&one));
+        assert_eq!(truth(&one), truth(&other));
+        assert_ne!(truth(&one), id_of(&one));
         type Change = fn(&mut Comparison);
         let changes: [Change; 3] = [
-            |of| of.viewports[0] = [512, 511],
-            |of| of.protocol.oracle = "offset:0.5".parse().unwrap(),
-            |of| of.protocol.jitter = Some(4),
+            |other| other.viewports[0] = [512, 511],
+            |other| other.protocol.oracle = "offset:0.5".parse().unwrap(),
+            |other| other.protocol.jitter = Some(4),
         ];
         for change in changes {
             let mut other = comparison();
             change(&mut other);
-            assert_ne!(of(&one), of(&other));
+            assert_ne!(truth(&one), truth(&other));
         }
     }
 
@@ -317,12 +317,12 @@ mod tests {
             assert!(ids.insert(id_of(&other)));
         }
         let changes: [Change; 6] = [
-            |of| of.viewports[0] = [512, 511],
-            |of| of.protocol.frames = 3,
-            |of| of.protocol.oracle = "offset:0.5".parse().unwrap(),
-            |of| of.protocol.jitter = Some(4),
-            |of| of.methods = load_methods(&["rt"], &[], &[], &EmbeddedSources).unwrap(),
-            |of| of.methods = load_methods(&["nsm"], &[], &[1024], &EmbeddedSources).unwrap(),
+            |other| other.viewports[0] = [512, 511],
+            |other| other.protocol.frames = 3,
+            |other| other.protocol.oracle = "offset:0.5".parse().unwrap(),
+            |other| other.protocol.jitter = Some(4),
+            |other| other.methods = load_methods(&["rt"], &[], &[], &EmbeddedSources).unwrap(),
+            |other| other.methods = load_methods(&["nsm"], &[], &[1024], &EmbeddedSources).unwrap(),
         ];
         for change in changes {
             let mut other = comparison();

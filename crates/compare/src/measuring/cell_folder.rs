@@ -54,9 +54,9 @@ impl CellFolder {
         let path = cell_files::path(&self.folder, &planned.cell);
         let run = match cell_files::read(&path) {
             Ok(None) => return Ok(None),
-            Ok(Some(found)) => {
-                cell_files::check_version(&path, &found, planned.commit.as_deref())?;
-                let run = found.runs.into_iter().next();
+            Ok(Some(results)) => {
+                cell_files::check_version(&path, &results, planned.commit.as_deref())?;
+                let run = results.runs.into_iter().next();
                 run.filter(|run| {
                     (&run.fingerprint, &run.params) == (&planned.fingerprint, &planned.params)
                 })
@@ -68,12 +68,12 @@ impl CellFolder {
         };
         // One that could not run elsewhere may run here.
         let is_measured = run.as_ref().is_some_and(|run| run.measured.is_some());
-        let known = if is_measured {
+        let ids = if is_measured {
             &mut self.written
         } else {
             &mut self.stale
         };
-        known.insert(planned.cell.clone());
+        ids.insert(planned.cell.clone());
         Ok(run)
     }
 
@@ -109,10 +109,10 @@ impl CellFolder {
             return Ok(());
         }
         // The same cell was measured elsewhere meanwhile: the first one stays.
-        let Some(found) = cell_files::read(&path)? else {
+        let Some(kept) = cell_files::read(&path)? else {
             return write_whole(&path, text.as_bytes());
         };
-        let other = found.runs.first().filter(|_| found.adapter == one.adapter);
+        let other = kept.runs.first().filter(|_| kept.adapter == one.adapter);
         match other.and_then(|other| disagreement(run, other)) {
             None => Ok(()),
             Some(why) => Err(cell_files::at_odds(run, [&path, Path::new("here")], &why)),

@@ -53,8 +53,8 @@ pub fn open<'a>(
     request: &GpuRequest,
     graphs: impl IntoIterator<Item = &'a Graph>,
 ) -> Result<Gpu, CompareError> {
-    let all = |all, graph: &Graph| all | graph.features();
-    let features = graphs.into_iter().fold(wgpu::Features::empty(), all);
+    let union = |features, graph: &Graph| features | graph.features();
+    let features = graphs.into_iter().fold(wgpu::Features::empty(), union);
     open_with(request, features)
 }
 

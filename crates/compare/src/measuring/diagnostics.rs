@@ -52,7 +52,7 @@ pub fn diagnose(
     };
     let plan = match method.plan_of(&names, viewport, capabilities, provider) {
         Ok(plan) if !plan.outputs().is_empty() => plan,
-        Err(found) if is_mistake(found.iter()) => return none(&reasons(found.iter())),
+        Err(faults) if is_mistake(faults.iter()) => return none(&reasons(faults.iter())),
         // This adapter may lack what they need.
         Ok(_) | Err(_) => return Ok(Diagnostics::default()),
     };
@@ -61,9 +61,9 @@ pub fn diagnose(
         Err(error) if is_fatal(&error) => return Err(error.into()),
         Err(error) => return none(&explain(&error)),
     };
-    let mut of = |name: &str| Some(of_layer(contents.remove(name)?, layer));
-    let density = of(TEXEL_DENSITY).as_ref().and_then(Content::as_f32);
-    let layers = of(MAP_LAYER).as_ref().and_then(Content::as_u32);
+    let mut output = |name: &str| Some(of_layer(contents.remove(name)?, layer));
+    let density = output(TEXEL_DENSITY).as_ref().and_then(Content::as_f32);
+    let layers = output(MAP_LAYER).as_ref().and_then(Content::as_u32);
     let footprints = density.map(|density| truth_view.footprints(&density));
     let footprints = footprints.transpose()?;
     let layer_jump = layers.map(|layers| truth_view.layer_jump(outputs, &layers));

@@ -44,12 +44,12 @@ impl FrameSequence {
     /// A moving part that the mesh does not have, that shares vertices with other parts, or whose
     /// positions f32 cannot hold.
     pub fn new(
-        of: &ViewOrPath,
+        view: &ViewOrPath,
         scene: &Scene,
         jitter: Option<u32>,
         count: Option<u32>,
     ) -> Result<Self, CompareError> {
-        let (views, meshes, frames_per_second) = match of {
+        let (views, meshes, frames_per_second) = match view {
             ViewOrPath::Still(view) => {
                 (vec![view.clone(); count.unwrap_or(1) as usize], None, 30.0)
             }
@@ -93,7 +93,7 @@ impl FrameSequence {
         self.poses[frame].show(provider, viewport);
         let Some(Mesh {
             positions, normals, ..
-        }) = self.meshes.as_ref().map(|all| &all[frame])
+        }) = self.meshes.as_ref().map(|meshes| &meshes[frame])
         else {
             return Ok(());
         };

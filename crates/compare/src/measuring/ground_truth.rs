@@ -136,8 +136,8 @@ pub struct GroundTruthView<'a> {
 impl<'a> GroundTruthView<'a> {
     /// Runs the oracle (the `f64` ray tracer) for a camera and a light. `primitives` is the visible
     /// primitive of each pixel, as [`PrimaryVisibility::ids`] returns it. `how` is the oracle's
-    /// mode, and the number of rays from a pixel to a light [with an extent](crate#terms). `of` is
-    /// a name, and the sink that receives the progress under it.
+    /// mode, and the number of rays from a pixel to a light [with an extent](crate#terms).
+    /// `listener` is a name, and the sink that receives the progress under it.
     ///
     /// # Errors
     /// An [early end](crate#terms), primitive ids of another mesh or in another number than the
@@ -148,9 +148,9 @@ impl<'a> GroundTruthView<'a> {
         light: LightKind,
         primitives: Vec<u32>,
         how: (OracleMode, u32),
-        of: (&str, &dyn Sink),
+        listener: (&str, &dyn Sink),
     ) -> Result<Self, CompareError> {
-        let truth = trace(&oracle, &camera, light, &primitives, how, of)?;
+        let truth = trace(&oracle, &camera, light, &primitives, how, listener)?;
         let (camera, seen) = ((camera, light), (primitives, how.0));
         Ok(Self::traced(oracle, camera, seen, truth))
     }
@@ -222,9 +222,9 @@ impl<'a> GroundTruthView<'a> {
         let is_inside = |index: usize| {
             let pixel = [index as u32 % width, index as u32 / width];
             let (mesh, camera) = (self.oracle.mesh(), &self.camera);
-            let found = Receiver::from_pixel(mesh, &self.primitives, camera, pixel, &self.light);
+            let receiver = Receiver::from_pixel(mesh, &self.primitives, camera, pixel, &self.light);
             // The oracle has found all of them before.
-            matches!(found, Ok(Some(receiver)) if receiver.towards.distance <= radius)
+            matches!(receiver, Ok(Some(receiver)) if receiver.towards.distance <= radius)
         };
         facing.filter(|(index, _)| is_inside(*index)).count() as u64
     }
@@ -236,7 +236,7 @@ impl<'a> GroundTruthView<'a> {
     /// An [early end](crate#terms).
     pub fn nearest_blockers(&self, progress: Progress) -> Result<Vec<u32>, CompareError> {
         let (camera, primitives) = (&self.camera, &self.primitives);
-        let found = nearest_blockers(
+        let blockers = nearest_blockers(
             &self.oracle,
             camera,
             self.light,
@@ -244,7 +244,7 @@ impl<'a> GroundTruthView<'a> {
             self.mode,
             progress,
         );
-        found.map_err(|_| CompareError::interrupted())
+        blockers.map_err(|_| CompareError::interrupted())
     }
 
     /// Measures how far a method's wrong pixels lie from the edges of the
@@ -308,8 +308,8 @@ pub(crate) fn trace(
     how: (OracleMode, u32),
     (what, sink): (&str, &dyn Sink),
 ) -> Result<Truth, CompareError> {
-    let begin = |of: &str| {
-        let (name, rows) = (format!("{of}, {what}"), camera.viewport[1]);
+    let begin = |stage: &str| {
+        let (name, rows) = (format!("{stage}, {what}"), camera.viewport[1]);
         Step::begin(sink, &name, rows.into(), "rows")
     };
     let failed = |error: Error| match error {
@@ -381,11 +381,11 @@ impl<'a> GroundTruthFrames<'a> {
     /// Counts the pixels of the [reference](crate#terms) itself over all frames, as [`own_counts`]
     /// does for one.
     pub fn own_counts(&self) -> Statistics {
-        let mut all = Statistics::default();
+        let mut total = Statistics::default();
         for truth_view in &self.truth_views {
-            all += own_counts(&truth_view.ground_truth.pixels);
+            total += own_counts(&truth_view.ground_truth.pixels);
         }
-        all
+        total
     }
 }
 

@@ -137,9 +137,9 @@ mod tests {
             ("nsm", "", false),
         ] {
             let method = method(&presets, name, set);
-            let found = find(&method, &[]).unwrap();
-            assert_eq!(found.is_some(), guaranteed, "{name} {set}");
-            let word = found.map(|(guarantee, _)| guarantee.word());
+            let claim = find(&method, &[]).unwrap();
+            assert_eq!(claim.is_some(), guaranteed, "{name} {set}");
+            let word = claim.map(|(guarantee, _)| guarantee.word());
             assert!(word.is_none_or(|word| (word == "certain") == (name == "crsm_single")));
             let asked = find(&method, &[name.into()]).unwrap();
             assert_eq!(

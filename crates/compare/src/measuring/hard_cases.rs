@@ -36,8 +36,8 @@ pub fn cases(names: &[String]) -> Result<Vec<HardCase>, CompareError> {
     }
     let find = |name: &String| {
         skiagraph_cases::case(name).ok_or_else(|| {
-            let known = skiagraph_cases::cases();
-            let hint = did_you_mean(name, known.iter().map(|case| case.name));
+            let cases = skiagraph_cases::cases();
+            let hint = did_you_mean(name, cases.iter().map(|case| case.name));
             CompareError::Input(format!(
                 "unknown case `{name}`{hint}\n  `skiagraph stress --list` names them"
             ))

@@ -85,8 +85,8 @@ fn candidates(method: &Method, cause: Cause) -> Vec<ParamValues> {
         let param = param.filter(|_| !method.params.contains_key(name));
         let values = param.map(|param| param.tune.clone()).unwrap_or_default();
         let now = method.value(name);
-        let others = values.into_iter().filter(move |value| Some(value) != now);
-        others.collect::<Vec<ParamValue>>()
+        let alternatives = values.into_iter().filter(move |value| Some(value) != now);
+        alternatives.collect::<Vec<ParamValue>>()
     };
     let own = match method.value(SLOPE_BIAS) {
         Some(ParamValue::F32(own)) => *own,

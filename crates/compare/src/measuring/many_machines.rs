@@ -80,15 +80,16 @@ pub fn plan(
     session: Session,
     arguments: Vec<String>,
 ) -> Result<CellPlan, CompareError> {
-    let commit = scenes.first().and_then(|of| of.comparison.commit.clone());
+    let commit = scenes
+        .first()
+        .and_then(|scene| scene.comparison.commit.clone());
     let mut plan = CellPlan {
         head: Head::new(arguments, commit),
         truths: Vec::new(),
         cells: Vec::new(),
     };
     let silent = Session::new(session.gpu, &Silent);
-    for of in scenes {
-        let SceneCells { comparison, folder } = of;
+    for SceneCells { comparison, folder } in scenes {
         let series = Series::new(comparison, silent, None)?;
         let mut runs = series.planned_runs().iter();
         for view in &comparison.views {
@@ -119,9 +120,9 @@ pub fn plan(
         }
     }
     plan.head.cells = plan.cells.len();
-    let mut known: BTreeMap<&str, &PlannedCell> = BTreeMap::new();
+    let mut by_id: BTreeMap<&str, &PlannedCell> = BTreeMap::new();
     for cell in &plan.cells {
-        if let Some(other) = known.insert(&cell.cell, cell) {
+        if let Some(other) = by_id.insert(&cell.cell, cell) {
             return Err(CompareError::Input(format!(
                 "`{}` and `{}` are the same cell: leave one of them out",
                 plan.label(other),
@@ -149,8 +150,8 @@ pub fn measure(
     session: Session,
 ) -> Result<ShardOutcome, CompareError> {
     let Share { plan, shard, out } = *share;
-    let here = self::plan(scenes, session, plan.head.arguments.clone())?;
-    check_alike(plan, &here)?;
+    let own_plan = self::plan(scenes, session, plan.head.arguments.clone())?;
+    check_alike(plan, &own_plan)?;
     check_folder(out)?;
     copy_plan(plan, out)?;
     let chosen = &plan.cells[shard.of(&plan.pixels())];
@@ -196,31 +197,31 @@ fn interrupted(share: &Share) -> CompareError {
 }
 
 /// Refuses to measure what was not planned.
-fn check_alike(plan: &CellPlan, here: &CellPlan) -> Result<(), CompareError> {
+fn check_alike(plan: &CellPlan, own_plan: &CellPlan) -> Result<(), CompareError> {
     let refused = |why: String| {
         Err(CompareError::Input(format!(
             "the plan is of other cells than this machine would measure\n  {why}\n  measure all \
              cells with the same files, in the same folder, or plan anew (--plan)"
         )))
     };
-    let (planned, found) = (plan.cells.len(), here.cells.len());
-    if planned != found {
+    let (planned, own) = (plan.cells.len(), own_plan.cells.len());
+    if planned != own {
         let planned = plural(planned, "cell");
-        return refused(format!("planned are {planned}, and here are {found}"));
+        return refused(format!("planned are {planned}, and here are {own}"));
     }
-    let mut pairs = plan.cells.iter().zip(&here.cells);
-    let Some((planned, found)) = pairs.find(|(planned, found)| planned != found) else {
+    let mut pairs = plan.cells.iter().zip(&own_plan.cells);
+    let Some((planned, own)) = pairs.find(|(planned, own)| planned != own) else {
         return Ok(());
     };
     let label = plan.label(planned);
     let mut params = planned.params.iter();
-    let param = params.find(|(name, value)| found.params.get(*name) != Some(*value));
+    let param = params.find(|(name, value)| own.params.get(*name) != Some(*value));
     refused(match param {
-        _ if label != here.label(found) => {
-            format!("planned is {label}, and here is {}", here.label(found))
+        _ if label != own_plan.label(own) => {
+            format!("planned is {label}, and here is {}", own_plan.label(own))
         }
         Some((name, value)) => {
-            let now = found.params.get(name).cloned().unwrap_or_default();
+            let now = own.params.get(name).cloned().unwrap_or_default();
             format!(
                 "{label}: the param {name} was planned as {value}, and is {now} here; a default \
                  that depends on the GPU is settled by --set {name}={}",

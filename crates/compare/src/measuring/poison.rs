@@ -97,8 +97,8 @@ pub fn check(
 /// Outputs whose bytes differ, with the share of these.
 fn differences(one: &Contents, other: &Contents) -> Vec<(String, String)> {
     let share = |(name, content): (&String, &Content)| {
-        let others = other.get(name).map_or(&[][..], Content::bytes);
-        let bytes = content.bytes().iter().zip(others);
+        let other_bytes = other.get(name).map_or(&[][..], Content::bytes);
+        let bytes = content.bytes().iter().zip(other_bytes);
         let count = bytes.filter(|(a, b)| a != b).count();
         (count > 0).then(|| {
             let share = percent(count as u64, content.bytes().len() as u64);

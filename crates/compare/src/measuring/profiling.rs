@@ -76,9 +76,9 @@ pub fn profile(
     let name = format!("{}, {name}", method.name);
     let total = u64::from(warmup) + u64::from(frames);
     let step = Step::begin(session.sink, &name, total, "frames");
-    let (count, all) = ([warmup, frames], FrameMode::AllPasses);
+    let (count, mode) = ([warmup, frames], FrameMode::AllPasses);
     let set_done = |frames| step.set_done(frames);
-    let timed = timing::sample(session, &mut executor, all, count, set_done).map_err(failed)?;
+    let timed = timing::sample(session, &mut executor, mode, count, set_done).map_err(failed)?;
     step.end();
 
     match Profile::new(conditions, &passes, &Samples::new(&timed), memory) {

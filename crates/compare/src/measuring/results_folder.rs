@@ -84,10 +84,10 @@ impl ResultsFolder {
             return Ok(());
         };
         if self.known.as_deref() != Some(&*file.text) {
-            let found = read_back::results_of(&file)?;
-            check_alike(&path, &found, own)?;
-            self.commands = unique([found.commands, self.commands.clone()].concat());
-            self.others = found.runs;
+            let earlier = read_back::results_of(&file)?;
+            check_alike(&path, &earlier, own)?;
+            self.commands = unique([earlier.commands, self.commands.clone()].concat());
+            self.others = earlier.runs;
             self.others.retain(|run| !self.dropped.contains(run));
         }
         // Runs that were measured here count.

@@ -61,8 +61,8 @@ pub(crate) fn earlier(
     let none = vec![None; planned.len()];
     if keep == Kept::Nothing {
         // A file that cannot be read is overwritten as well.
-        let found = read_back::results(&path).ok().flatten();
-        opened.dropped = found.map_or_else(Vec::new, |earlier| earlier.runs);
+        let earlier = read_back::results(&path).ok().flatten();
+        opened.dropped = earlier.map_or_else(Vec::new, |earlier| earlier.runs);
         return Ok((opened, none));
     }
     let Some(earlier) = read_back::results(&path)? else {
@@ -75,16 +75,16 @@ pub(crate) fn earlier(
     };
     check_alike(&path, &earlier, now)?;
     let is_planned = |run: &Run| planned.iter().any(|planned| planned.is_in_place_of(run));
-    let (mut runs, others): (Vec<Run>, Vec<Run>) = earlier.runs.into_iter().partition(is_planned);
-    if !others.is_empty() {
-        let stay = if others.len() == 1 { "stays" } else { "stay" };
-        let runs = plural(others.len(), "other run");
+    let (mut runs, rest): (Vec<Run>, Vec<Run>) = earlier.runs.into_iter().partition(is_planned);
+    if !rest.is_empty() {
+        let stay = if rest.len() == 1 { "stays" } else { "stay" };
+        let runs = plural(rest.len(), "other run");
         sink.note(&format!("{runs} that {name} holds already {stay} in it"));
     }
-    if resumes || !others.is_empty() {
+    if resumes || !rest.is_empty() {
         opened.commands = earlier.commands;
     }
-    opened.others = others;
+    opened.others = rest;
     let total = runs.len();
     let is_tuned = planned.iter().any(|run| run.tuned.is_some());
     let take = |planned: &Run| {
@@ -107,8 +107,8 @@ pub(crate) fn earlier(
     let kept: Vec<Option<Run>> = planned.iter().map(take).collect();
     if resumes {
         let measured = kept.iter().flatten().filter(|run| run.measured.is_some());
-        let (count, of) = (measured.count(), planned.len());
-        sink.note(&format!("{count} of {of} runs are kept from {name}"));
+        let (count, planned) = (measured.count(), planned.len());
+        sink.note(&format!("{count} of {planned} runs are kept from {name}"));
     }
     if resumes && !runs.is_empty() {
         sink.note(&format!(

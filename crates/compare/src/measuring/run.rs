@@ -125,20 +125,25 @@ impl MeasureContext<'_> {
         let wrong = &judgement.counts.wrong;
         let wrong = wrong.total.saturating_sub(wrong.in_band);
         let hint = match blockers.filter(|_| self.hints) {
-            Some(of) => {
+            Some(blockers) => {
                 let seen = (self.truth_view, layer);
-                hint::find(self.session, method, seen, (wrong, of), provider)?
+                hint::find(self.session, method, seen, (wrong, blockers), provider)?
             }
             None => None,
         };
-        let found = diagnose(
+        let diagnostics = diagnose(
             self.session,
             method,
             self.truth_view,
             (&outputs, layer),
             provider,
         )?;
-        let images = self.draw(method, None, ground_truth, (&outputs, &judgement, &found))?;
+        let images = self.draw(
+            method,
+            None,
+            ground_truth,
+            (&outputs, &judgement, &diagnostics),
+        )?;
         Ok(Judged {
             method: method.clone(),
             planned: planned.clone(),
@@ -148,8 +153,8 @@ impl MeasureContext<'_> {
             answers_in_shares: outputs.shares.is_some(),
             blockers,
             hint,
-            texels: found.texels,
-            layer_jump: found.layer_jump,
+            texels: diagnostics.texels,
+            layer_jump: diagnostics.layer_jump,
             pictures: self
                 .pictures
                 .as_ref()
@@ -165,8 +170,8 @@ impl MeasureContext<'_> {
     ///
     /// # Errors
     /// An early end, a lost device.
-    pub fn first_frame(&self, of: &mut Judged) -> Result<Run, CompareError> {
-        let executors = &mut [&mut of.prepared.executor];
+    pub fn first_frame(&self, judged: &mut Judged) -> Result<Run, CompareError> {
+        let executors = &mut [&mut judged.prepared.executor];
         let timed = timing::in_turns(
             self.session,
             executors,
@@ -178,10 +183,10 @@ impl MeasureContext<'_> {
         let times = timed
             .map_err(Stop::from)
             .and_then(|timed| Ok(Times::new(timed)?));
-        let measured = times.map(|times| self.timed(of, times));
-        Ok(match attempt(self.session, &of.method, measured)? {
-            Ok(measured) => self.run(&of.method, &of.planned, measured),
-            Err(reason) => self.unavailable(&of.method, &of.planned, reason),
+        let measured = times.map(|times| self.timed(judged, times));
+        Ok(match attempt(self.session, &judged.method, measured)? {
+            Ok(measured) => self.run(&judged.method, &judged.planned, measured),
+            Err(reason) => self.unavailable(&judged.method, &judged.planned, reason),
         })
     }
 
@@ -199,20 +204,22 @@ impl MeasureContext<'_> {
         group: u32,
         done: impl Fn(u64),
     ) -> Result<Vec<Run>, CompareError> {
-        let executors = methods.iter_mut().map(|of| &mut of.prepared.executor);
+        let executors = methods
+            .iter_mut()
+            .map(|judged| &mut judged.prepared.executor);
         let mut executors: Vec<&mut Executor> = executors.collect();
         let (warmup, frames) = (self.protocol.warmup, self.protocol.frames);
-        let (count, all) = ([warmup, frames], FrameMode::AllPasses);
-        let timed = timing::in_turns(self.session, &mut executors, all, count, done)?;
+        let (count, mode) = ([warmup, frames], FrameMode::AllPasses);
+        let timed = timing::in_turns(self.session, &mut executors, mode, count, done)?;
         let cached = timing::cached(self.session, &mut executors, self.protocol.cached_frames)?;
         let mut anchor = None;
         let mut runs = Vec::new();
-        for ((of, timed), cached) in methods.iter().zip(timed).zip(cached) {
+        for ((judged, timed), cached) in methods.iter().zip(timed).zip(cached) {
             let times = timed
                 .map_err(Stop::from)
                 .and_then(|timed| Ok(Times::new(timed)?));
             let measured = times.and_then(|times| {
-                let mut measured = self.timed(of, times);
+                let mut measured = self.timed(judged, times);
                 let anchor = anchor.get_or_insert_with(|| measured.frame.clone());
                 measured.turns = Some(Turns {
                     group,
@@ -224,30 +231,30 @@ impl MeasureContext<'_> {
                 }
                 Ok(measured)
             });
-            runs.push(match attempt(self.session, &of.method, measured)? {
-                Ok(measured) => self.run(&of.method, &of.planned, measured),
-                Err(reason) => self.unavailable(&of.method, &of.planned, reason),
+            runs.push(match attempt(self.session, &judged.method, measured)? {
+                Ok(measured) => self.run(&judged.method, &judged.planned, measured),
+                Err(reason) => self.unavailable(&judged.method, &judged.planned, reason),
             });
         }
         Ok(runs)
     }
 
     /// The measurements of a judged method.
-    fn timed(&self, of: &Judged, times: Times) -> Measured {
+    fn timed(&self, judged: &Judged, times: Times) -> Measured {
         Measured {
-            rays: of.rays,
-            certain_wrong_blockers: of.blockers,
-            hint: of.hint.clone(),
-            graded: of.judgement.graded,
-            edges: of.edges,
-            texels: of.texels,
-            layer_jump: of.layer_jump,
-            images: of.images.clone(),
+            rays: judged.rays,
+            certain_wrong_blockers: judged.blockers,
+            hint: judged.hint.clone(),
+            graded: judged.judgement.graded,
+            edges: judged.edges,
+            texels: judged.texels,
+            layer_jump: judged.layer_jump,
+            images: judged.images.clone(),
             ..self.measured(
-                &of.prepared,
+                &judged.prepared,
                 times,
-                &of.judgement.counts,
-                of.answers_in_shares,
+                &judged.judgement.counts,
+                judged.answers_in_shares,
             )
         }
     }
@@ -351,7 +358,7 @@ impl MeasureContext<'_> {
         method: &Method,
         frame: Option<usize>,
         ground_truth: &GroundTruth,
-        (outputs, judgement, found): (&Outputs, &Judgement, &Diagnostics),
+        (outputs, judgement, diagnostics): (&Outputs, &Judgement, &Diagnostics),
     ) -> Result<Option<Images>, CompareError> {
         let Some(pictures) = &self.pictures else {
             return Ok(None);
@@ -363,7 +370,7 @@ impl MeasureContext<'_> {
         };
         let (mut images, mut files) = (None, Vec::new());
         if self.protocol.pictures {
-            let footprints = found.footprints.as_deref();
+            let footprints = diagnostics.footprints.as_deref();
             let answers = (outputs, judgement);
             let (drawn, pictures) = draw_pictures(&place, ground_truth, answers, footprints)?;
             (images, files) = (Some(drawn), pictures);

@@ -21,10 +21,10 @@ use std::path::Path;
 /// The folder holds results of the other kind. The text for the user says so, with advice.
 pub fn check_kind(folder: &Path, of_several: bool) -> Result<(), String> {
     let (own, page) = (folder.join("results.json"), folder.join("report.html"));
-    let refused = |holds: &str, others: &str| {
+    let refused = |holds: &str, other_kind: &str| {
         Err(format!(
-            "{} holds results of {holds}, which do not go together with those of {others}: name \
-             another folder (--out), or delete it",
+            "{} holds results of {holds}, which do not go together with those of {other_kind}: \
+             name another folder (--out), or delete it",
             folder.display()
         ))
     };

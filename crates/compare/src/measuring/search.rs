@@ -132,15 +132,16 @@ impl<E, T: FnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
     /// Tries all values of two params together; true as soon as the values of two help.
     fn pairs(&mut self) -> Result<bool, E> {
         let axes = self.axes;
-        let all = (0..axes.len()).flat_map(|one| (one + 1..axes.len()).map(move |two| (one, two)));
-        let mut all: Vec<(usize, usize)> = all.collect();
+        let pairs =
+            (0..axes.len()).flat_map(|one| (one + 1..axes.len()).map(move |two| (one, two)));
+        let mut pairs: Vec<(usize, usize)> = pairs.collect();
         // Words with numbers, then words with words, then numbers with numbers.
-        all.sort_by_key(|&(one, two)| match (axes[one].is_word, axes[two].is_word) {
+        pairs.sort_by_key(|&(one, two)| match (axes[one].is_word, axes[two].is_word) {
             (true, true) => 1,
             (false, false) => 2,
             _ => 0,
         });
-        for (one, two) in all {
+        for (one, two) in pairs {
             let mut helps = false;
             for value in 0..axes[one].values {
                 helps |= self.change([(one, Some(value)), (two, None)])?;
@@ -203,7 +204,7 @@ mod tests {
     /// Searches with at most `most` trials; checks that none is repeated.
     fn searched(most: usize, error: impl Fn(&[usize]) -> f64) -> Found {
         let mut seen: Vec<Point> = Vec::new();
-        let found = search(&AXES, |point, best| {
+        let outcome = search(&AXES, |point, best| {
             if seen.len() == most {
                 return Ok::<_, ()>(Trial::Ended);
             }
@@ -216,9 +217,9 @@ mod tests {
                 Trial::Worse
             })
         });
-        let found = found.unwrap();
-        assert_eq!(found.tried as usize, seen.len());
-        found
+        let outcome = outcome.unwrap();
+        assert_eq!(outcome.tried as usize, seen.len());
+        outcome
     }
 
     /// Like a map whose casters may be culled: without culling, only a bias makes it right.
@@ -233,14 +234,19 @@ mod tests {
 
     #[test]
     fn two_params_that_help_only_together_are_found() {
-        let found = searched(usize::MAX, culled);
+        let outcome = searched(usize::MAX, culled);
         let best = grid()
             .map(|point| culled(&point))
             .fold(f64::INFINITY, f64::min);
-        assert_eq!(found.error, best);
-        assert_eq!(found.point, [1, 3, 0, 2]);
-        assert!(found.is_whole);
-        assert!(found.tried < 90, "{} of {}", found.tried, grid().count());
+        assert_eq!(outcome.error, best);
+        assert_eq!(outcome.point, [1, 3, 0, 2]);
+        assert!(outcome.is_whole);
+        assert!(
+            outcome.tried < 90,
+            "{} of {}",
+            outcome.tried,
+            grid().count()
+        );
     }
 
     #[test]
@@ -267,25 +273,29 @@ mod tests {
             let best = grid()
                 .map(|point| error(&point))
                 .fold(f64::INFINITY, f64::min);
-            let found = searched(usize::MAX, error);
-            assert!(found.error <= 1.2 * best, "{seed}: {} {best}", found.error);
+            let outcome = searched(usize::MAX, error);
+            assert!(
+                outcome.error <= 1.2 * best,
+                "{seed}: {} {best}",
+                outcome.error
+            );
         }
     }
 
     #[test]
     fn it_ends_with_the_trials_and_keeps_what_it_has() {
         for most in 0..40 {
-            let found = searched(most, culled);
-            assert_eq!((found.tried as usize, found.is_whole), (most, false));
-            assert!(most == 0 || found.error <= culled(&[0; 4]));
+            let outcome = searched(most, culled);
+            assert_eq!((outcome.tried as usize, outcome.is_whole), (most, false));
+            assert!(most == 0 || outcome.error <= culled(&[0; 4]));
         }
         assert_eq!(searched(0, culled).point, [0; 4]);
     }
 
     #[test]
     fn of_equal_errors_the_defaults_stay() {
-        let found = searched(usize::MAX, |_| 0.5);
-        assert_eq!(found.point, [0; 4]);
+        let outcome = searched(usize::MAX, |_| 0.5);
+        assert_eq!(outcome.point, [0; 4]);
         // Nothing is better than no error.
         assert_eq!(searched(usize::MAX, |_| 0.0).tried, 1);
         // One that cannot run has no error at all.
@@ -295,11 +305,11 @@ mod tests {
     #[test]
     fn a_change_that_helped_on_the_way_only_is_taken_back() {
         // The third param helps at once, and no more when the first two are right.
-        let found = searched(usize::MAX, |point| match point {
+        let outcome = searched(usize::MAX, |point| match point {
             [1, 2, ..] => 0.1,
             [_, _, 1, _] => 0.4,
             _ => 0.5,
         });
-        assert_eq!((found.point, found.error), (vec![1, 2, 0, 0], 0.1));
+        assert_eq!((outcome.point, outcome.error), (vec![1, 2, 0, 0], 0.1));
     }
 }

@@ -28,9 +28,9 @@ fn ms(time: Duration) -> f64 {
 
 /// Lists the resources that were made between two moments.
 fn remade(before: &[Built], now: &[Built]) -> Vec<Remade> {
-    let times = |of: &Built| {
-        let known = before.iter().find(|known| known.name == of.name);
-        known.map_or(0, |known| known.times)
+    let times = |built: &Built| {
+        let earlier = before.iter().find(|earlier| earlier.name == built.name);
+        earlier.map_or(0, |earlier| earlier.times)
     };
     let made = now.iter().filter(|built| built.times > times(built));
     let remade = made.map(|built| Remade {
@@ -82,9 +82,9 @@ pub fn follow(
     path.frames.show(0, plan.viewport(), provider)?;
     let mut prepared = context.prepare(plan, provider)?;
     if prepared.steady.is_none() {
-        let all = Frame::new().with_all(true);
+        let request = Frame::new().with_all(true);
         for _ in 0..warmup {
-            frame::run(context.session, &mut prepared.executor, &all)?;
+            frame::run(context.session, &mut prepared.executor, &request)?;
         }
     }
     let mut walk = Walk {
@@ -101,24 +101,24 @@ pub fn follow(
     let every_pass = walk.every_pass()?;
     let account = walk.account;
     let times = Times::new(account.timed)?;
-    let (mut images, mut found) = (None, Diagnostics::default());
+    let (mut images, mut diagnostics) = (None, Diagnostics::default());
     if let Some((index, outputs, judgement)) = &account.worst {
         let truth_view = &path.truth_views[*index];
         let ground_truth = &truth_view.ground_truth;
         path.frames
             .show(*index, ground_truth.pixels.viewport, provider)?;
         let answer = (outputs, context.layer(prepared.executor.plan()));
-        found = diagnose(context.session, method, truth_view, answer, provider)?;
+        diagnostics = diagnose(context.session, method, truth_view, answer, provider)?;
         images = context.draw(
             method,
             Some(*index),
             ground_truth,
-            (outputs, judgement, &found),
+            (outputs, judgement, &diagnostics),
         )?;
     }
-    let mut all = Shimmer::default();
+    let mut total = Shimmer::default();
     for frame in &account.frames {
-        all += frame.shimmer.unwrap_or_default();
+        total += frame.shimmer.unwrap_or_default();
     }
     Ok(Measured {
         rays: account.rays,
@@ -126,11 +126,11 @@ pub fn follow(
         graded: Graded::together(account.graded),
         edges: account.edges,
         images,
-        texels: found.texels,
-        layer_jump: found.layer_jump,
+        texels: diagnostics.texels,
+        layer_jump: diagnostics.layer_jump,
         sequence: Some(Sequence {
             frames: account.frames,
-            shimmer: all,
+            shimmer: total,
             every_pass,
         }),
         ..context.measured(&prepared, times, &account.counts, account.shares)
@@ -178,12 +178,12 @@ impl Walk<'_> {
         }
     }
 
-    /// Runs a frame, `all` of its passes if asked to; returns its outputs, times, and the resources
-    /// that were made for it.
+    /// Runs a frame, with every pass if `all_passes` is true; returns its outputs, times,
+    /// and the resources that were made for it.
     fn run(
         &mut self,
         index: usize,
-        all: bool,
+        all_passes: bool,
     ) -> Result<(Contents, TimedFrame, Vec<Remade>), Stop> {
         let (session, frames) = (self.context.session, self.context.path.frames);
         session.check_stopped()?;
@@ -195,7 +195,7 @@ impl Walk<'_> {
         let read = self.method.preset.judged();
         let request = Frame::new()
             .with_timing(true)
-            .with_all(all)
+            .with_all(all_passes)
             .with_read(&read)
             .with_seconds(frames.seconds(index));
         let (mut report, wall) = frame::run(session, self.executor, &request)?;

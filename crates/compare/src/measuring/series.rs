@@ -463,22 +463,22 @@ impl<'a> Series<'a> {
             Capabilities::new(self.session.gpu),
         );
         let diagnostics = method.plan_of(&names, planned.viewport, device, &self.provider);
-        let wrong = diagnostics.err().filter(|found| is_mistake(found.iter()));
-        let wrong = wrong.map(|found| format!("`{}`: {}", planned.preset, reasons(found.iter())));
+        let wrong = diagnostics.err().filter(|faults| is_mistake(faults.iter()));
+        let wrong = wrong.map(|faults| format!("`{}`: {}", planned.preset, reasons(faults.iter())));
         self.broken.extend(wrong);
         let name = conditions(method, context.view.name(), planned.viewport);
         let name = format!("{}, {name}", method.name);
         let step = Step::begin(self.session.sink, &name, frames, "frames");
-        let came = run(plan, &mut self.provider, &step);
-        match attempt(self.session, method, came) {
+        let outcome = run(plan, &mut self.provider, &step);
+        match attempt(self.session, method, outcome) {
             Err(CompareError::InvalidOutputs(reason)) => {
                 let run = unavailable(reason.clone());
                 self.broken.insert(reason);
                 Ok(Err(run))
             }
-            came => {
+            outcome => {
                 step.end();
-                Ok(came?.map_err(unavailable))
+                Ok(outcome?.map_err(unavailable))
             }
         }
     }

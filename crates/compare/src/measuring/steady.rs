@@ -121,18 +121,18 @@ impl Pictures {
             self.last.pop_front();
         }
         self.last.push_back(Rc::clone(&shown));
-        for (index, of) in self.periods.iter_mut().enumerate() {
+        for (index, period) in self.periods.iter_mut().enumerate() {
             let length = index + 1;
-            let like = of.first_turn.get(of.repeated % length);
-            if like.is_some_and(|like| of.first_turn.len() == length && like.is_like(&shown)) {
-                of.repeated += 1;
+            let like = period.first_turn.get(period.repeated % length);
+            if like.is_some_and(|like| period.first_turn.len() == length && like.is_like(&shown)) {
+                period.repeated += 1;
                 continue;
             }
             let skipped = self.last.len().saturating_sub(length);
-            of.first_turn = self.last.iter().skip(skipped).cloned().collect();
-            of.repeated = 0;
+            period.first_turn = self.last.iter().skip(skipped).cloned().collect();
+            period.repeated = 0;
         }
-        let is_steady = |of: &Period| of.repeated >= REPEATED;
+        let is_steady = |period: &Period| period.repeated >= REPEATED;
         self.period = self
             .periods
             .iter()

@@ -45,10 +45,10 @@ impl From<CompareError> for Stop {
 pub fn attempt<T>(
     session: Session,
     method: &Method,
-    came: Result<T, Stop>,
+    outcome: Result<T, Stop>,
 ) -> Result<Result<T, String>, CompareError> {
-    match came {
-        Ok(came) => Ok(Ok(came)),
+    match outcome {
+        Ok(outcome) => Ok(Ok(outcome)),
         Err(Stop::Refused(error)) if !is_fatal(&error) => Ok(Err(explain(&error))),
         Err(stop) => Err(stop.into_error(session, &method.name)),
     }

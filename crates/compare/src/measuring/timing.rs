@@ -87,7 +87,7 @@ pub fn in_turns(
     [warmup, frames]: [u32; 2],
     done: impl Fn(u64),
 ) -> Result<Vec<Result<Vec<TimedFrame>, ExecuteError>>, CompareError> {
-    let mut all: Vec<Result<Vec<TimedFrame>, ExecuteError>> =
+    let mut outcomes: Vec<Result<Vec<TimedFrame>, ExecuteError>> =
         executors.iter().map(|_| Ok(Vec::new())).collect();
     let first = Instant::now();
     let turns = u64::from(warmup) + u64::from(frames);
@@ -95,21 +95,21 @@ pub fn in_turns(
         for place in 0..executors.len() {
             session.check_stopped()?;
             let index = (place + turn as usize) % executors.len();
-            let Ok(timed) = &mut all[index] else {
+            let Ok(timed) = &mut outcomes[index] else {
                 continue;
             };
             match one_frame(session, executors[index], mode, first) {
                 Err(ExecuteError::Unfinished { .. }) if session.is_stopped() => {
                     return Err(CompareError::interrupted());
                 }
-                Err(error) => all[index] = Err(error),
+                Err(error) => outcomes[index] = Err(error),
                 Ok(_) if turn < u64::from(warmup) => {}
                 Ok(frame) => timed.push(frame),
             }
         }
         done(turn + 1);
     }
-    Ok(all)
+    Ok(outcomes)
 }
 
 /// Returns the times of a frame that was run with timing. `began` is the time from the start of the
@@ -179,10 +179,10 @@ pub fn cached(
     executors: &mut [&mut Executor],
     frames: u32,
 ) -> Result<Vec<Option<Result<Cached, ExecuteError>>>, CompareError> {
-    let mut all: Vec<Option<Result<Cached, ExecuteError>>> =
+    let mut outcomes: Vec<Option<Result<Cached, ExecuteError>>> =
         executors.iter().map(|_| None).collect();
     if frames == 0 {
-        return Ok(all);
+        return Ok(outcomes);
     }
     let moves = FrameMode::CameraMoves;
     let tried = in_turns(session, executors, moves, [0, 1], |_| {})?;
@@ -202,10 +202,10 @@ pub fn cached(
         let times = timed
             .map(Times::new)
             .map(|times| times.map(|Times { frame, skipped, .. }| Cached { frame, skipped }));
-        all[place] = match times {
+        outcomes[place] = match times {
             Ok(times) => Some(Ok(times?)),
             Err(error) => Some(Err(error)),
         };
     }
-    Ok(all)
+    Ok(outcomes)
 }

@@ -116,8 +116,8 @@ impl<'a> Trials<'a> {
 
     /// True if there are limits of memory or frame time.
     pub fn has_budgets(&self) -> bool {
-        let of = &self.limits.budgets;
-        of.memory_bytes.is_some() || of.frame_ms.is_some()
+        let budgets = &self.limits.budgets;
+        budgets.memory_bytes.is_some() || budgets.frame_ms.is_some()
     }
 
     /// Raises the number of plans and frames that may still be run by `more`.

@@ -158,8 +158,8 @@ fn keep(path: &Path, truth: &Truth, what: &str) -> Result<(), CompareError> {
 
 /// How many pixels have another answer.
 fn differing(one: &Truth, other: &Truth) -> String {
-    let [classes, others] = [one, other].map(|truth| &truth.ground_truth.pixels.classes);
-    let count = classes.iter().zip(others).filter(|(a, b)| a != b).count();
+    let [classes, theirs] = [one, other].map(|truth| &truth.ground_truth.pixels.classes);
+    let count = classes.iter().zip(theirs).filter(|(a, b)| a != b).count();
     match count {
         0 => "another one".to_owned(),
         count => format!(
@@ -197,12 +197,12 @@ mod tests {
         let keep = |class| keep(&path, &truth(class), "main 2x1");
         keep(Class::Lit).unwrap();
         keep(Class::Lit).unwrap();
-        let told = keep(Class::Shadow).unwrap_err().to_string();
+        let error = keep(Class::Shadow).unwrap_err().to_string();
         assert!(
-            told.contains("main 2x1 is another one in 1 pixel of 2 here"),
-            "{told}"
+            error.contains("main 2x1 is another one in 1 pixel of 2 here"),
+            "{error}"
         );
-        assert!(told.contains("a.truth, where another machine"), "{told}");
+        assert!(error.contains("a.truth, where another machine"), "{error}");
         // A torn one is replaced.
         let bytes = fs::read(&path).unwrap();
         fs::write(&path, &bytes[..20]).unwrap();

@@ -108,15 +108,15 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
         has_timestamps: device::timestamp_trust(session.gpu) == Trust::Trusted,
     };
     let names: Vec<String> = views.iter().map(|view| view.view.name.clone()).collect();
-    let (mut all, mut tuned) = (Vec::new(), Vec::new());
+    let (mut compared, mut tuned) = (Vec::new(), Vec::new());
     for (own, method) in comparison.methods.iter().zip(&methods) {
-        all.push(own.clone());
+        compared.push(own.clone());
         if !needs_tuning(method) {
             continue;
         }
         let method = method.at(viewport);
         let trials = Trials::new(session, &method, &views, &mut provider, limits);
-        let Some((params, found)) = best(session, &method, trials, most)? else {
+        let Some((params, record)) = best(session, &method, trials, most)? else {
             session.sink.note(&format!(
                 "{} is not tuned: it cannot run on the views that settings are chosen on, \
                  remembers earlier frames, or no pixel faces a light that it takes",
@@ -124,25 +124,25 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
             ));
             continue;
         };
-        let found = Tuned {
+        let record = Tuned {
             chosen_on: names.clone(),
-            ..found
+            ..record
         };
-        if !found.set.is_empty() {
+        if !record.set.is_empty() {
             let name = named(&own.name, &label(&method, &params));
             let set = Method::new(own.preset.clone(), params).named(&name);
-            let is_set = |of: &Method| of.name == name && of.map_size == set.map_size;
-            if comparison.methods.iter().chain(&all).any(is_set) {
+            let is_set = |other: &Method| other.name == name && other.map_size == set.map_size;
+            if comparison.methods.iter().chain(&compared).any(is_set) {
                 let text = format!("{} tuned is {name}, which is compared already", own.name);
                 session.sink.note(&text);
                 continue;
             }
-            all.push(set);
+            compared.push(set);
         }
-        tuned.push((all.len() - 1, found));
+        tuned.push((compared.len() - 1, record));
     }
     drop(views);
-    comparison.methods = all;
+    comparison.methods = compared;
     comparison.tuned = tuned.into_iter().collect();
     comparison.views = judged;
     Ok(())
@@ -200,10 +200,10 @@ fn axes(method: &Method) -> Vec<Values> {
     let free = marked.filter(|param| !method.params.contains_key(param.name.as_str()));
     let axis = |param: &Param| {
         let now = method.value(param.name.as_str())?.clone();
-        let others = param.tune.iter().filter(|value| **value != now).cloned();
+        let alternatives = param.tune.iter().filter(|value| **value != now).cloned();
         Some(Values {
             name: param.name.value.clone(),
-            values: [now.clone()].into_iter().chain(others).collect(),
+            values: [now.clone()].into_iter().chain(alternatives).collect(),
             is_word: matches!(param.ty, ParamType::Choice(_) | ParamType::Bool),
         })
     };
@@ -280,16 +280,16 @@ fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
     let like = views.first().ok_or_else(none)?;
     let is_other = |other: &&View| (other.eye, other.direction) != (like.eye, like.direction);
     let own = scene.views.iter().filter(is_other).take(OTHERS);
-    let mut others: Vec<Vec<View>> = own.map(|other| under_lights(other, views)).collect();
-    others.extend(generated(views, scene, 0, OTHERS - others.len()));
-    if others.is_empty() {
+    let mut other_views: Vec<Vec<View>> = own.map(|other| under_lights(other, views)).collect();
+    other_views.extend(generated(views, scene, 0, OTHERS - other_views.len()));
+    if other_views.is_empty() {
         return Err(CompareError::Input(format!(
             "view `{}` is the only one that shows the scene: settings are chosen on other views \
              than they are judged on, so name two at least (--view all)",
             like.name
         )));
     }
-    Ok(others.concat())
+    Ok(other_views.concat())
 }
 
 /// At most `count` views like a given one, which stands there once for each of its lights: the
@@ -374,7 +374,7 @@ fn best(
     // Every setting that was the best so far, the defaults first.
     let mut bests: Vec<(ParamValues, f64)> = Vec::new();
     let mut default_error = None;
-    let found = search(&ways.collect::<Vec<_>>(), |point, best| {
+    let outcome = search(&ways.collect::<Vec<_>>(), |point, best| {
         let params = params_of(point);
         let trial = trials.run(&params, best)?;
         step.set_done(most - trials.left());
@@ -386,7 +386,7 @@ fn best(
         }
         Ok::<_, CompareError>(trial)
     })?;
-    bests.retain(|(params, error)| *error > found.error || *params == params_of(&found.point));
+    bests.retain(|(params, error)| *error > outcome.error || *params == params_of(&outcome.point));
     trials.allow(most / RESERVE);
     let mut chosen = None;
     while let (None, Some(best)) = (&chosen, bests.pop()) {
@@ -413,8 +413,8 @@ fn best(
             of: method.name.clone(),
             given: as_json(&method.given()),
             set: changed.collect(),
-            tried: found.tried,
-            is_whole: found.is_whole,
+            tried: outcome.tried,
+            is_whole: outcome.is_whole,
             default_error,
             error,
             ..Tuned::default()

@@ -63,11 +63,11 @@ impl ViewOrPath {
         view.ends_with('@').then_some(light)
     }
 
-    /// Returns the hash `of` extended by all fields of the view or path.
-    pub fn fingerprint(&self, of: Fingerprint) -> Fingerprint {
+    /// Returns `hash` extended by all fields of the view or path.
+    pub fn fingerprint(&self, hash: Fingerprint) -> Fingerprint {
         match self {
-            Self::Still(view) => of.with_view(view),
-            Self::Path(path) => of.with_text(&format!("{path:?}")),
+            Self::Still(view) => hash.with_view(view),
+            Self::Path(path) => hash.with_text(&format!("{path:?}")),
         }
     }
 

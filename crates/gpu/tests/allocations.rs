@@ -114,10 +114,10 @@ fn owner_of(name: &str, file: Option<&str>) -> Option<Owner> {
     let name = name.trim_start_matches(['<', '&', '*', '[', '(']);
     let name = name.trim_start_matches("mut ").trim_start_matches("dyn ");
     // A hash may stand behind the crate's name.
-    let of = name.split([':', '[', ' ']).next()?;
-    match of {
-        _ if ON_BEHALF.contains(&of) => None,
-        _ if of.starts_with("skiagraph") => Some(Owner::Ours),
+    let crate_name = name.split([':', '[', ' ']).next()?;
+    match crate_name {
+        _ if ON_BEHALF.contains(&crate_name) => None,
+        _ if crate_name.starts_with("skiagraph") => Some(Owner::Ours),
         _ => Some(Owner::Other),
     }
 }
@@ -128,24 +128,24 @@ type Known = HashMap<*mut c_void, Option<(Owner, String)>>;
 /// Returns the owner of an allocation, and the function that asked for it.
 fn owner(
     stack: &Stack,
-    known: &mut HashMap<*mut c_void, Option<(Owner, String)>>,
+    origins: &mut HashMap<*mut c_void, Option<(Owner, String)>>,
 ) -> (Owner, String) {
     for &place in stack {
-        let found = known.entry(place).or_insert_with(|| {
-            let mut found = None;
+        let origin = origins.entry(place).or_insert_with(|| {
+            let mut origin = None;
             // Functions that were inlined come first.
             backtrace::resolve(place, |symbol| {
                 let name = symbol.name().map_or(String::new(), |name| name.to_string());
                 let file = symbol.filename().map(|file| file.display().to_string());
                 let owner = owner_of(&name, file.as_deref());
-                found = found
+                origin = origin
                     .take()
                     .or(owner.map(|owner| (owner, format!("{name} in {file:?}"))));
             });
-            found
+            origin
         });
-        if let Some(found) = found {
-            return found.clone();
+        if let Some(origin) = origin {
+            return origin.clone();
         }
     }
     (Owner::Tests, String::new())
@@ -153,8 +153,8 @@ fn owner(
 
 /// The functions among those that asked for some allocations that are these crates'.
 fn ours(stacks: &[Stack]) -> Vec<String> {
-    let mut known = Known::new();
-    let owners = stacks.iter().map(|stack| owner(stack, &mut known));
+    let mut origins = Known::new();
+    let owners = stacks.iter().map(|stack| owner(stack, &mut origins));
     let ours = owners.filter(|(owner, _)| *owner == Owner::Ours);
     ours.map(|(_, function)| function).collect()
 }

@@ -17,8 +17,8 @@ fn run(files: &Files) -> (Executor, [[u32; 2]; 3]) {
     let mut executor = executor(files, &request(&NoProvider));
     let seen = [0; 3].map(|_| {
         // As if something had changed in each.
-        let all = Frame::new().with_all(true).with_read(&["first", "second"]);
-        let report = submit(&mut executor, &all);
+        let frame = Frame::new().with_all(true).with_read(&["first", "second"]);
+        let report = submit(&mut executor, &frame);
         [0, 1].map(|index| words(&report, index)[0])
     });
     (executor, seen)
@@ -77,15 +77,15 @@ fn a_clear_stays_behind_the_last_use_of_the_memory() {
     let (executor, seen) = run(&files);
     assert_eq!(seen, [[7, 1]; 3]);
     let plan = executor.plan();
-    let of = |name: &str| {
+    let allocation = |name: &str| {
         let mut ids = plan.schedule().aliases.of.iter();
         ids.find(|(id, _)| plan.resource(**id).name == name)
             .map(|(_, at)| *at)
     };
-    assert!(of("used").is_some());
+    assert!(allocation("used").is_some());
     assert_eq!(
-        of("used"),
-        of("later"),
+        allocation("used"),
+        allocation("later"),
         "they share memory, or this tests nothing"
     );
 }

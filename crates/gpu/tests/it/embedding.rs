@@ -133,8 +133,8 @@ impl Describe for Number {
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        let known = self.names().iter().any(|known| known == name);
-        known.then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
+        let is_named = self.names().iter().any(|own_name| own_name == name);
+        is_named.then_some(Provided::new(ProvidedBinding::Storage, Some(1), 4))
     }
 }
 
@@ -269,11 +269,11 @@ fn lose_the_device(before: bool) {
     gpu.device.destroy();
     // Work done in time may still come.
     if early.is_none() {
-        let said =
-            std::iter::repeat_with(|| executor.poll()).find(|said| !matches!(said, Ok(None)));
+        let outcome =
+            std::iter::repeat_with(|| executor.poll()).find(|outcome| !matches!(outcome, Ok(None)));
         assert!(
-            matches!(said, Some(Ok(_) | Err(ExecuteError::DeviceLost(_)))),
-            "{said:?}"
+            matches!(outcome, Some(Ok(_) | Err(ExecuteError::DeviceLost(_)))),
+            "{outcome:?}"
         );
     }
     let none = &mut NoProvider;

@@ -83,10 +83,10 @@ fn params_of_every_type_arrive_in_the_shader() {
             found[12] = p.v4.z; found[13] = p.v4.w; found[14] = twice;
             found[15] = f32(C_X) + 10.0 * f32(C_Y) + 100.0 * f32(C_Z);
         }";
-    let found = buffer_floats(&files.with("gather.wgsl", gather), "found");
+    let values = buffer_floats(&files.with("gather.wgsl", gather), "found");
     let params = [-0.5, -7.0, 9.0, 1.0, 2.0];
     let vectors = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
-    assert_eq!(found, [&params[..], &vectors, &[11.0, 210.0]].concat());
+    assert_eq!(values, [&params[..], &vectors, &[11.0, 210.0]].concat());
 }
 
 #[test]
@@ -148,8 +148,8 @@ fn what_is_there_depends_on_params_sizes_and_the_device() {
             outputs: ["image"],
             "#
         ));
-        let found = floats(&files.with("value.wgsl", VALUE), "image");
-        assert_eq!(found, [1.0 + f32::from(is_there); 16], "{condition}");
+        let texels = floats(&files.with("value.wgsl", VALUE), "image");
+        assert_eq!(texels, [1.0 + f32::from(is_there); 16], "{condition}");
     }
 }
 
@@ -281,8 +281,8 @@ fn a_graph_knows_its_frame_and_what_was_before() {
     ] {
         let names = if read { &["history", "total"][..] } else { &[] };
         let report = running.frame_at(seconds, names);
-        if let [found, counted] = &report.readbacks[..] {
-            assert_eq!(found.content.as_f32(), Some(history.repeat(16)));
+        if let [texels, counted] = &report.readbacks[..] {
+            assert_eq!(texels.content.as_f32(), Some(history.repeat(16)));
             assert_eq!(counted.content.as_u32(), Some(vec![total]));
         }
     }
@@ -361,8 +361,8 @@ fn a_repeated_pass_knows_its_index_and_those_around_it() {
         @compute @workgroup_size(1) fn main() {
             found[params.at] = params.scale + 10u * params.row + index;
         }";
-    let found = words(&files.with("column.wgsl", column), "found");
-    assert_eq!(found, [100, 101, 110, 111, 120, 121]);
+    let values = words(&files.with("column.wgsl", column), "found");
+    assert_eq!(values, [100, 101, 110, 111, 120, 121]);
 }
 
 #[test]
@@ -466,8 +466,8 @@ fn a_pass_sets_constants_words_and_vectors() {
             found[4] = f32(params.n); found[5] = f32(flag); found[6] = f32(shift);
             found[7] = half;
         }";
-    let found = buffer_floats(&files.with("gather.wgsl", gather), "found");
-    assert_eq!(found, [1.0, 2.0, 1.5, 0.5, 3.0, 1.0, -2.0, 1.5]);
+    let values = buffer_floats(&files.with("gather.wgsl", gather), "found");
+    assert_eq!(values, [1.0, 2.0, 1.5, 0.5, 3.0, 1.0, -2.0, 1.5]);
 }
 
 #[test]

@@ -64,8 +64,8 @@ fn depths_are_compared_with_what_stands_there() {
                 r#"set: {{"z": {z}, "turned": false}},
                 depth: (target: "depth", load: Load, compare: {compare})"#
             );
-            let found = covered(&fields, depth, before);
-            assert_eq!(found, f32::from(passes), "{z} {compare} 0.5");
+            let coverage = covered(&fields, depth, before);
+            assert_eq!(coverage, f32::from(passes), "{z} {compare} 0.5");
         }
     }
 }
@@ -183,8 +183,8 @@ fn the_stencil_is_written_and_tested() {
         (7, "front: (depth_fail: Zero)", 7),
         (7, "back: (pass: Zero)", 7),
     ] {
-        let found = stencil_after(start, 1.0, false, fields);
-        assert_eq!(found, [expected; 16], "{start} with {fields}");
+        let stencil = stencil_after(start, 1.0, false, fields);
+        assert_eq!(stencil, [expected; 16], "{start} with {fields}");
     }
     // Behind what is there, and of the other side.
     let z_fail = "front: (depth_fail: DecrementWrap), back: (depth_fail: IncrementWrap)";
@@ -267,9 +267,9 @@ fn a_depth_bias_grows_with_the_slope_up_to_its_clamp() {
                 let at = vec2(f32(corner & 1u), f32(corner >> 1u)) * 4.0 - 1.0;
                 return vec4(at, 0.5 + 0.25 * at.x, 1.0);
             }";
-        let found = floats(&files.with("plane.wgsl", plane), "depth");
+        let depths = floats(&files.with("plane.wgsl", plane), "depth");
         let row = [0.3125, 0.4375, 0.5625, 0.6875].map(|depth| depth + expected);
-        assert_eq!(found, row.repeat(4), "{bias}");
+        assert_eq!(depths, row.repeat(4), "{bias}");
     }
 }
 
@@ -293,9 +293,9 @@ fn a_fragment_shader_says_its_own_depth() {
             -> @builtin(frag_depth) f32 {
             return floor(centre.x) / 4.0;
         }";
-    let found = floats(&files.with("near.wgsl", near), "depths");
+    let depths = floats(&files.with("near.wgsl", near), "depths");
     let drawn = [0.0, 0.25, 0.5, 0.5].repeat(4);
-    assert_eq!(found, [&[0.5; 16][..], &drawn].concat());
+    assert_eq!(depths, [&[0.5; 16][..], &drawn].concat());
 }
 
 #[test]
@@ -327,7 +327,7 @@ fn a_depth_that_is_not_written_is_tested_and_sampled_in_one_pass() {
         @fragment fn look(@builtin(position) centre: vec4<f32>) -> @location(0) f32 {
             return 7.0 * textureLoad(depth, vec2<u32>(centre.xy), 0);
         }";
-    let found = floats(&files.with("corner.wgsl", corner), "image");
+    let texels = floats(&files.with("corner.wgsl", corner), "image");
     let upper = [0.0, 0.0, 7.0, 7.0].repeat(2);
-    assert_eq!(found, [upper, vec![7.0; 8]].concat());
+    assert_eq!(texels, [upper, vec![7.0; 8]].concat());
 }

@@ -44,8 +44,8 @@ fn a_solid_texture_is_written_by_slice_and_by_texel_and_read_everywhere() {
     let mut running = Running::new(&files.with("value.wgsl", VALUE));
     let first = [0.0, 1.0, 2.0, 3.0, 10.0, 11.0, 12.0, 13.0];
     let last = first.map(|value| value + 200.0);
-    let all = [first, [1000.0; 8], last].concat();
-    assert_eq!(running.floats("solid"), all);
+    let texels = [first, [1000.0; 8], last].concat();
+    assert_eq!(running.floats("solid"), texels);
     assert_eq!(running.floats("other"), [[0.0; 8], last].concat());
     let sum: Vec<f32> = (0..8).map(|at| first[at] + 1000.0 + last[at]).collect();
     assert_eq!(running.floats("sum"), sum);
@@ -65,10 +65,10 @@ fn a_texture_from_a_file_holds_its_picture() {
             "#
         ));
         let files = files.picture("noise.png", 3, &[0, 51, 102, 153, 204, 255]);
-        let found = floats(&files.with("read.wgsl", READ), "image");
+        let texels = floats(&files.with("read.wgsl", READ), "image");
         // Rounded to the picture's steps: 0.2 is none of a texture's.
-        let found: Vec<f32> = found.iter().map(|value| (value * 255.0).round()).collect();
-        assert_eq!(found, [0.0, 51.0, 102.0, 153.0, 204.0, 255.0], "{format}");
+        let steps: Vec<f32> = texels.iter().map(|value| (value * 255.0).round()).collect();
+        assert_eq!(steps, [0.0, 51.0, 102.0, 153.0, 204.0, 255.0], "{format}");
     }
 }
 
@@ -101,9 +101,9 @@ fn a_buffer_with_data_holds_numbers_in_the_layout_of_its_shaders() {
             }
             found[11] = f32(table.x * table.y);
         }";
-    let found = buffer_floats(&files.with("gather.wgsl", gather), "found");
+    let values = buffer_floats(&files.with("gather.wgsl", gather), "found");
     let items = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
-    assert_eq!(found, [&[0.25, 0.5, -1.0][..], &items, &[63.0]].concat());
+    assert_eq!(values, [&[0.25, 0.5, -1.0][..], &items, &[63.0]].concat());
 }
 
 /// 4 · row + column, and the means of four, of sixteen.
@@ -260,8 +260,8 @@ fn a_comparison_sampler_says_how_a_depth_compares() {
                 found[0] = textureSampleCompareLevel(depth, closer, vec2(0.5), 0.25);
                 found[1] = textureSampleCompareLevel(depth, closer, vec2(0.5), 0.75);
             }";
-        let found = buffer_floats(&files.with("look.wgsl", look), "found");
-        assert_eq!(found, expected, "{compare}");
+        let values = buffer_floats(&files.with("look.wgsl", look), "found");
+        assert_eq!(values, expected, "{compare}");
     }
 }
 
@@ -382,8 +382,8 @@ fn a_part_of_a_texture_is_stored_into_and_changed_in_place() {
             let before = textureLoad(image, vec2(1u)).x;
             textureStore(image, vec2(1u), vec4(2u * before));
         }";
-    let found = words(&files.with("fill.wgsl", fill), "maps");
-    assert_eq!(found, [&[5, 5, 5, 10][..], &[5; 8], &[5, 10, 20]].concat());
+    let texels = words(&files.with("fill.wgsl", fill), "maps");
+    assert_eq!(texels, [&[5, 5, 5, 10][..], &[5; 8], &[5, 10, 20]].concat());
 }
 
 #[test]
@@ -402,12 +402,12 @@ fn every_shape_of_texture_can_be_cleared() {
             outputs: ["image"],
             "#
         ));
-        let found = floats(&files, "image");
+        let texels = floats(&files, "image");
         assert!(
-            found.iter().all(|&found| found == expected),
-            "{texture}: {found:?}"
+            texels.iter().all(|&texel| texel == expected),
+            "{texture}: {texels:?}"
         );
-        assert!(found.len() >= 16, "{texture}");
+        assert!(texels.len() >= 16, "{texture}");
     }
 }
 

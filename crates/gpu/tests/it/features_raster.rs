@@ -24,8 +24,8 @@ fn an_area_is_the_viewport_and_cuts_what_lies_outside() {
             return Corner(vec4(at * 2.0 - 1.0, 0.0, 1.0), vec2(at.x, 1.0 - at.y));
         }
         @fragment fn fragment(corner: Corner) -> @location(0) vec2<f32> { return corner.at; }";
-    let found = floats(&files.with("quad.wgsl", quad), "image");
-    let texel = |x: usize, y: usize| [found[8 * y + 2 * x], found[8 * y + 2 * x + 1]];
+    let texels = floats(&files.with("quad.wgsl", quad), "image");
+    let texel = |x: usize, y: usize| [texels[8 * y + 2 * x], texels[8 * y + 2 * x + 1]];
     for (y, row) in [None, Some(0.25), Some(0.75), None].into_iter().enumerate() {
         for (x, column) in [None, Some(0.25), Some(0.75), None].into_iter().enumerate() {
             let expected = column.zip(row).map_or([9.0, 9.0], |(x, y)| [x, y]);
@@ -53,8 +53,8 @@ fn only_the_channels_that_are_named_are_written() {
             "#
         ));
         let ones = "@fragment fn fragment() -> @location(0) vec4<f32> { return vec4(1.0); }";
-        let found = floats(&files.with("ones.wgsl", ones), "image");
-        assert_eq!(found, expected.repeat(16), "{write}");
+        let texels = floats(&files.with("ones.wgsl", ones), "image");
+        assert_eq!(texels, expected.repeat(16), "{write}");
     }
 }
 
@@ -81,8 +81,8 @@ fn what_is_drawn_is_blended_with_what_is_there() {
         let over = "@fragment fn fragment() -> @location(0) vec4<f32> {
                 return vec4(1.0, 0.5, 0.0, 0.5);
             }";
-        let found = floats(&files.with("over.wgsl", over), "image");
-        assert_eq!(found, expected.repeat(16), "{blend}");
+        let texels = floats(&files.with("over.wgsl", over), "image");
+        assert_eq!(texels, expected.repeat(16), "{blend}");
     }
 }
 
@@ -169,9 +169,9 @@ fn a_topology_makes_triangles_lines_or_points_of_vertices() {
             outputs: ["image"],
             "#
         ));
-        let found = floats(&files.with("corners.wgsl", corners), "image");
-        let drawn = found.iter().filter(|&&value| value == 1.0).count();
-        assert_eq!(drawn, expected, "{fields}: {found:?}");
+        let texels = floats(&files.with("corners.wgsl", corners), "image");
+        let drawn = texels.iter().filter(|&&value| value == 1.0).count();
+        assert_eq!(drawn, expected, "{fields}: {texels:?}");
     }
 }
 
@@ -204,8 +204,8 @@ fn instances_are_drawn_one_after_the_other() {
             outputs: ["image"],
             "#
         ));
-        let found = floats(&files.with("all.wgsl", INSTANCES), "image");
-        assert_eq!(found, [expected; 16], "{instances}");
+        let texels = floats(&files.with("all.wgsl", INSTANCES), "image");
+        assert_eq!(texels, [expected; 16], "{instances}");
     }
 }
 
@@ -335,8 +335,8 @@ fn a_vertex_shader_writes_where_the_graph_asks_for_that() {
             return vec4(0.0);
         }
         @fragment fn fragment() -> @location(0) f32 { return 1.0; }";
-    let found = buffer_floats(&files.with("write.wgsl", write), "seen");
-    assert_eq!(found, [0.0, 1.5, 3.0]);
+    let values = buffer_floats(&files.with("write.wgsl", write), "seen");
+    assert_eq!(values, [0.0, 1.5, 3.0]);
 }
 
 #[test]

@@ -181,7 +181,7 @@ fn a_refresh_that_fails_counts_as_both() {
 /// Number and time are others in every frame, the flags are no reason to run.
 #[test]
 fn a_pass_that_reads_flags_alone_is_not_run_for_them() {
-    let told = |body: &str| {
+    let files = |body: &str| {
         let pass = compute("tell", "run: OnChange,", r#""out": "told""#);
         document("U32(name: \"seed\", default: 1)", &[], &[pass], &["told"])
             .edited(
@@ -210,13 +210,13 @@ fn a_pass_that_reads_flags_alone_is_not_run_for_them() {
         ("out[1] = number();", true),
         ("out[1] = all().changed_light;", true),
     ] {
-        let mut executor = executor(&told(body), &request(&NoProvider));
+        let mut executor = executor(&files(body), &request(&NoProvider));
         assert!(frame(&mut executor, &[]).skipped.is_empty());
         assert_eq!(frame(&mut executor, &[]).skipped.is_empty(), runs, "{body}");
     }
     // When it runs for another reason, they are those of the frame.
     let mut executor = executor(
-        &told("out[1] = frame.changed_light;"),
+        &files("out[1] = frame.changed_light;"),
         &request(&NoProvider),
     );
     assert_eq!(words(&frame(&mut executor, &["told"]), 0), [1, 1]);

@@ -171,8 +171,8 @@ fn what_did_not_change_is_not_made_again() {
         .import_buffer("host", &host)
         .unwrap_or_else(|error| panic!("{error}"));
     let step =
-        |executor: &mut Executor, all: bool, what: &str, values: [u32; 2], skipped: &[&str]| {
-            let read = Frame::new().with_all(all).with_read(&["d", "e"]);
+        |executor: &mut Executor, full: bool, what: &str, values: [u32; 2], skipped: &[&str]| {
+            let read = Frame::new().with_all(full).with_read(&["d", "e"]);
             let report = submit(executor, &read);
             assert_eq!([0, 1].map(|at| words(&report, at)[0]), values, "{what}");
             assert_eq!(report.skipped, skipped, "{what}");
@@ -239,7 +239,7 @@ proptest! {
         let names: Vec<String> = program.outputs.iter().map(|at| format!("m{at}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let expected = program.interpret().into_iter().zip(&program.losses);
-        let (mut lost, mut told) = (Vec::new(), Vec::new());
+        let (mut lost, mut faults) = (Vec::new(), Vec::new());
         for (number, (event, (expected, loss))) in program.events.iter().zip(expected).enumerate() {
             match *event {
                 Event::Nothing => {}
@@ -263,9 +263,9 @@ proptest! {
                 lost.push(host::lost(&mut executor, &wanted, *loss));
                 // A thread of another test that polls the device may be about to tell of it.
                 let began = Instant::now();
-                while told.len() < lost.len() && began.elapsed().as_secs() < 10 {
-                    let faults = executor.take_faults().unwrap().into_iter();
-                    told.extend(faults.map(|fault| (fault.index, fault.kind)));
+                while faults.len() < lost.len() && began.elapsed().as_secs() < 10 {
+                    let taken = executor.take_faults().unwrap().into_iter();
+                    faults.extend(taken.map(|fault| (fault.index, fault.kind)));
                     std::thread::yield_now();
                 }
                 continue;
@@ -281,6 +281,6 @@ proptest! {
         }
         prop_assert_eq!(executor.take_faults().unwrap(), []);
         let lost: Vec<_> = lost.into_iter().map(|index| (index, FaultKind::NeverRan)).collect();
-        prop_assert_eq!(told, lost);
+        prop_assert_eq!(faults, lost);
     }
 }

@@ -238,8 +238,8 @@ fn a_count_on_its_way_outlives_a_change_of_the_plan() {
 /// Number of items that a plan gives a buffer.
 fn items(plan: &Plan, name: &str) -> u64 {
     let mut resources = plan.resources().iter();
-    let found = resources.find(|resource| resource.name == name);
-    match &found.expect("it is there").kind {
+    let resource = resources.find(|resource| resource.name == name);
+    match &resource.expect("it is there").kind {
         ResourceKind::Buffer(buffer) => buffer.count.expect("it has a count"),
         other => panic!("{name} is {other:?}"),
     }
@@ -255,18 +255,18 @@ fn what_has_grown_stays() {
     set(&mut executor, "wanted", ParamValue::U32(11));
     shows(&mut executor, 11, 12);
     // A graph that was loaded again, once with what is known and once without.
-    for known in [true, false] {
+    for is_grown in [true, false] {
         let mut request = request(&NoProvider);
         request
             .params
             .insert("wanted".to_owned(), ParamValue::U32(11));
-        if known {
+        if is_grown {
             request.grown = executor.plan().grown().clone();
         }
         let again = planned(&filled(), &request);
         executor.replace_graph(again, &mut NoProvider).unwrap();
         let count = items(executor.plan(), "items");
-        assert_eq!(count, if known { 12 } else { 4 });
+        assert_eq!(count, if is_grown { 12 } else { 4 });
     }
     // The count of a frame of before may tell it already.
     frame(&mut executor, &[]);

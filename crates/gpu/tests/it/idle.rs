@@ -71,8 +71,8 @@ fn passes_run_again_only_after_a_change() {
     assert!(runs(&mut executor, 30));
     assert!(!runs(&mut executor, 30));
     // All that a host may ask for besides is there.
-    let all = submit(&mut executor, &Frame::new().with_all(true));
-    assert_eq!(all.skipped, [""; 0]);
+    let report = submit(&mut executor, &Frame::new().with_all(true));
+    assert_eq!(report.skipped, [""; 0]);
     let timed = submit(&mut executor, &Frame::new().with_timing(true));
     assert_eq!(timed.skipped, [""; 0]);
     assert_eq!(timed.timing.expect("it was asked for").passes.len(), 2);

@@ -64,9 +64,9 @@ fn a_buffer_is_counted_up_over_frames() {
         let mut executor = executor(&files, &request);
         for count in 1..=5 {
             let report = frame(&mut executor, &outputs);
-            let found: Vec<u32> = (0..4).map(|at| words(&report, at)[0]).collect();
+            let values: Vec<u32> = (0..4).map(|at| words(&report, at)[0]).collect();
             let fresh = if count == 1 { 111 } else { 0 };
-            assert_eq!(found, [count - 1, count, fresh, count]);
+            assert_eq!(values, [count - 1, count, fresh, count]);
             if count == 3 {
                 // It does not follow the viewport.
                 resize(&mut executor, 16);

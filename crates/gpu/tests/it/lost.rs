@@ -590,9 +590,9 @@ fn commands_of_submit_that_are_refused_are_an_error() {
 #[test]
 fn faults_that_nobody_asks_for_take_no_memory_without_bound() {
     let mut executor = executor(&caches(), &request(&NoProvider));
-    let all = Frame::new().with_all(true);
+    let frame = Frame::new().with_all(true);
     let last = (0..1100)
-        .map(|_| lost(&mut executor, &all, LOSSES[0]))
+        .map(|_| lost(&mut executor, &frame, LOSSES[0]))
         .last();
     let faults = executor.take_faults().unwrap();
     assert_eq!(faults.len(), 1024);
@@ -606,12 +606,12 @@ fn faults_that_nobody_asks_for_take_no_memory_without_bound() {
 #[test]
 fn thousands_of_frames_are_told_apart() {
     let mut executor = executor(&caches(), &request(&NoProvider));
-    let all = Frame::new().with_all(true);
+    let frame = Frame::new().with_all(true);
     for _ in 0..2100 {
         let mut encoder = encoder();
-        executor.encode(&mut encoder, &all).unwrap();
+        executor.encode(&mut encoder, &frame).unwrap();
         run(encoder);
     }
     assert_eq!(told(&mut executor), []);
-    assert_eq!(submit(&mut executor, &all).skipped, [""; 0]);
+    assert_eq!(submit(&mut executor, &frame).skipped, [""; 0]);
 }

@@ -120,9 +120,9 @@ fn poisoned_memory_shows_what_is_read_unwritten() {
             let mut request = request(&NoProvider);
             request.poison = poison;
             let mut executor = executor(files, &request);
-            let all = Frame::new().with_all(true).with_read(&["e"]);
-            let first = submit(&mut executor, &all);
-            assert_eq!(submit(&mut executor, &all).readbacks, first.readbacks);
+            let frame = Frame::new().with_all(true).with_read(&["e"]);
+            let first = submit(&mut executor, &frame);
+            assert_eq!(submit(&mut executor, &frame).readbacks, first.readbacks);
             words(&first, 0)
         })
     };

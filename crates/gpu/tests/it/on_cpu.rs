@@ -185,9 +185,9 @@ fn work_that_fails_ends_its_frame_alone() {
     let mut provider = Given(0);
     let mut executor = executor(&mut provider);
     let failed = executor.submit(&Frame::default(), &|| false);
-    let told = failed.unwrap_err().to_string();
+    let message = failed.unwrap_err().to_string();
     assert_eq!(
-        told,
+        message,
         "the work `host.adder` on the CPU failed: adds nothing"
     );
     provider.0 = 2;

@@ -30,8 +30,8 @@ fn beside(gpu: &Gpu) -> Gpu {
 fn devices() -> (Gpu, [Gpu; 2]) {
     let (gpu, stranger) = (open(), open());
     assert!(gpu.device == stranger.device, "they have one number");
-    let others = [beside(&gpu), stranger];
-    (gpu, others)
+    let other_gpus = [beside(&gpu), stranger];
+    (gpu, other_gpus)
 }
 
 fn texture(device: &wgpu::Device) -> wgpu::Texture {
@@ -114,27 +114,27 @@ fn refused<T>(result: Result<T, ExecuteError>, thing: &str, way: &str) {
 
 #[test]
 fn a_device_is_itself_and_no_other() {
-    let (gpu, others) = devices();
-    let known = DeviceIdentity::new(&gpu.device);
-    assert!(known.is(&gpu.device.clone()));
-    assert!(known.has_buffer(&buffer(&gpu.device, 0, false)));
-    assert!(known.has_buffer(&buffer(&gpu.device, 0, true)));
-    for other in &others {
-        assert!(!known.is(&other.device));
+    let (gpu, other_gpus) = devices();
+    let identity = DeviceIdentity::new(&gpu.device);
+    assert!(identity.is(&gpu.device.clone()));
+    assert!(identity.has_buffer(&buffer(&gpu.device, 0, false)));
+    assert!(identity.has_buffer(&buffer(&gpu.device, 0, true)));
+    for other in &other_gpus {
+        assert!(!identity.is(&other.device));
         assert!(!DeviceIdentity::new(&other.device).is(&gpu.device));
-        assert!(!known.has_buffer(&buffer(&other.device, 0, false)));
+        assert!(!identity.has_buffer(&buffer(&other.device, 0, false)));
     }
-    others[1].device.destroy();
-    assert!(!known.is(&others[1].device));
-    assert!(known.is(&gpu.device));
+    other_gpus[1].device.destroy();
+    assert!(!identity.is(&other_gpus[1].device));
+    assert!(identity.is(&gpu.device));
     gpu.device.destroy();
-    assert!(!known.is(&gpu.device), "a lost device tells nothing");
+    assert!(!identity.is(&gpu.device), "a lost device tells nothing");
 }
 
 #[test]
 fn a_queue_of_another_device_is_named() {
-    let (gpu, others) = devices();
-    for other in &others {
+    let (gpu, other_gpus) = devices();
+    for other in &other_gpus {
         let plan = || plan(&sums(), &NoProvider, &gpu);
         let made = Executor::new(&gpu.device, &other.queue, plan(), &mut NoProvider);
         refused(made, "the queue", "came with the device");
@@ -152,8 +152,8 @@ fn a_queue_of_another_device_is_named() {
 #[test]
 fn imports_of_another_device_are_named() {
     for has_handler in [false, true] {
-        let (gpu, others) = devices();
-        for other in &others {
+        let (gpu, other_gpus) = devices();
+        for other in &other_gpus {
             if has_handler {
                 other.device.on_uncaptured_error(Arc::new(|_| {}));
             }
@@ -261,10 +261,10 @@ fn taker() -> Files {
 
 #[test]
 fn what_a_provider_builds_on_another_device_is_named() {
-    let (gpu, others) = devices();
+    let (gpu, other_gpus) = devices();
     let mut own = Number::new(&gpu.device, 1);
     let mut executor = Executor::on(&gpu, plan(&taker(), &own, &gpu), &mut own).unwrap();
-    for other in &others {
+    for other in &other_gpus {
         let mut theirs = Number::new(&other.device, 2);
         let (name, way) = ("the provided resource `host.number`", "given");
         let made = Executor::on(&gpu, plan(&taker(), &theirs, &gpu), &mut theirs);
@@ -277,11 +277,11 @@ fn what_a_provider_builds_on_another_device_is_named() {
 /// Each method that takes a provider asks for its device.
 #[test]
 fn a_provider_of_another_device_is_named_by_each_method() {
-    let (gpu, others) = devices();
+    let (gpu, other_gpus) = devices();
     let mut own = Number::new(&gpu.device, 1);
     own.device = Some(DeviceIdentity::new(&gpu.device));
     let heard = Arc::new(AtomicUsize::new(0));
-    for other in &others {
+    for other in &other_gpus {
         let counter = Arc::clone(&heard);
         other.device.on_uncaptured_error(Arc::new(move |_| {
             counter.fetch_add(1, Ordering::Relaxed);
@@ -321,7 +321,7 @@ fn a_provider_of_another_device_is_named_by_each_method() {
 #[ignore = "a measurement: cargo test -p skiagraph-gpu --test gpu looking -- --ignored --nocapture"]
 fn looking_at_a_device_takes_microseconds() {
     let gpu = open();
-    let known = DeviceIdentity::new(&gpu.device);
+    let identity = DeviceIdentity::new(&gpu.device);
     let (image, more) = (texture(&gpu.device), buffer(&gpu.device, 0, false));
     let mut executor = sums_on(&gpu);
     let time = |what: &str, act: &mut dyn FnMut()| {
@@ -332,8 +332,8 @@ fn looking_at_a_device_takes_microseconds() {
         });
         println!("{what}: {:?}", took.min());
     };
-    time("device", &mut || assert!(known.is(&gpu.device)));
-    time("buffer", &mut || assert!(known.has_buffer(&more)));
+    time("device", &mut || assert!(identity.is(&gpu.device)));
+    time("buffer", &mut || assert!(identity.has_buffer(&more)));
     time("import_buffer", &mut || {
         executor.import_buffer("more", &more).unwrap();
     });
@@ -346,9 +346,9 @@ fn looking_at_a_device_takes_microseconds() {
 /// is finished, and panics where one of another instance lacks a number.
 #[test]
 fn an_encoder_of_another_device_is_no_panic() {
-    let (gpu, others) = devices();
+    let (gpu, other_gpus) = devices();
     let mut number = Number::new(&gpu.device, 3);
-    for other in &others {
+    for other in &other_gpus {
         let heard = Arc::new(AtomicUsize::new(0));
         let counter = Arc::clone(&heard);
         other.device.on_uncaptured_error(Arc::new(move |_| {
@@ -377,11 +377,11 @@ fn an_encoder_of_another_device_is_no_panic() {
 /// The frame at rest is the first one of its kind while another waits to be asked for its report.
 #[test]
 fn an_encoder_of_another_device_at_rest_is_no_panic() {
-    let (gpu, others) = devices();
+    let (gpu, other_gpus) = devices();
     let make = compute("make", "run: OnChange,", r#""out": "made""#);
     let files = document("", &["made"], &[make], &["made"]).with("make.wgsl", writes("", "7u"));
     // The other instance first lacks numbers, and then has them for other things.
-    let [beside, stranger] = &others;
+    let [beside, stranger] = &other_gpus;
     for (other, held) in [(beside, 0), (stranger, 0), (stranger, 256)] {
         other.device.on_uncaptured_error(Arc::new(|_| {}));
         let buffers = |gpu: &Gpu| -> Vec<_> {

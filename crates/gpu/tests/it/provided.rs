@@ -26,10 +26,10 @@ const KIND: [&str; 2] = ["round", "square"];
 impl Describe for Given {
     fn names(&self) -> Vec<String> {
         let names = ["host.value", "host.extra"].map(str::to_owned);
-        let known = names
+        let described = names
             .into_iter()
             .filter(|name| self.describe(name).is_some());
-        known.collect()
+        described.collect()
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {

@@ -62,7 +62,7 @@ fn every_layer_and_mip_of_an_output_comes_back() {
     .with("place.wgsl", PLACE);
     let contents = run(&files, &["maps", "second", "fine", "coarse", "one"]);
     let (fine, coarse) = ([3, 2], [1, 1]);
-    let all = [
+    let parts = [
         (0, 0, fine),
         (0, 1, fine),
         (0, 2, fine),
@@ -70,10 +70,10 @@ fn every_layer_and_mip_of_an_output_comes_back() {
         (1, 1, coarse),
         (1, 2, coarse),
     ];
-    is(&contents[0], &all);
+    is(&contents[0], &parts);
     is(&contents[1], &[(0, 1, fine), (1, 1, coarse)]);
     is(&contents[2], &[(0, 1, fine), (0, 2, fine)]);
-    is(&contents[3], &all[3..]);
+    is(&contents[3], &parts[3..]);
     is(&contents[4], &[(0, 2, fine)]);
 }
 
@@ -109,7 +109,7 @@ fn every_slice_of_a_3d_output_comes_back() {
     .with("place.wgsl", PLACE);
     let contents = run(&files, &["volume", "middle", "coarse"]);
     let (fine, coarse) = ([5, 3], [2, 1]);
-    let all = [
+    let parts = [
         (0, 0, fine),
         (0, 1, fine),
         (0, 2, fine),
@@ -117,9 +117,9 @@ fn every_slice_of_a_3d_output_comes_back() {
         (1, 0, coarse),
         (1, 1, coarse),
     ];
-    is(&contents[0], &all);
-    is(&contents[1], &all[1..3]);
-    is(&contents[2], &all[4..]);
+    is(&contents[0], &parts);
+    is(&contents[1], &parts[1..3]);
+    is(&contents[2], &parts[4..]);
 }
 
 /// An output that is an item of a buffer is not the rest of it.

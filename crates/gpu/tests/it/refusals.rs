@@ -204,10 +204,10 @@ fn pick(v: ptr<function, array<array<i32, 4>, 4>>, i: u32) -> i32 {
     let error = right(load(&files))
         .plan(&request(&NoProvider))
         .expect_err("it cannot be written");
-    let said = error.to_string();
+    let message = error.to_string();
     assert!(
-        said.contains("library-panic") && said.contains("nested.wgsl:5:"),
-        "{said}"
+        message.contains("library-panic") && message.contains("nested.wgsl:5:"),
+        "{message}"
     );
     made_again();
 }

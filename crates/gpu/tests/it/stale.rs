@@ -220,8 +220,8 @@ fn a_capture_after_a_skipped_pass_is_of_this_frame() {
     for seed in 1..4 {
         set(&mut executor, "seed", ParamValue::U32(seed));
         let report = frame(&mut executor, &["m", "m@once", "m@when", "o"]);
-        let all = [0, 1, 2, 3].map(|index| words(&report, index)[0]);
-        assert_eq!(all, [seed, seed, seed, 1], "{:?}", report.skipped);
+        let values = [0, 1, 2, 3].map(|index| words(&report, index)[0]);
+        assert_eq!(values, [seed, seed, seed, 1], "{:?}", report.skipped);
     }
 }
 

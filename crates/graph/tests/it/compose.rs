@@ -537,17 +537,17 @@ fn includes_that_go_wild_are_stopped() {
     assert!(text.contains("more than 16384 passes"), "{text}");
     // A chain, read from the outermost inwards, and from the innermost outwards, so that none of
     // them is deep when it is read.
-    let mut all = String::new();
+    let mut includes = String::new();
     let mut backwards = Files::default();
     for level in (1..80).rev() {
-        all += &format!(r#"Include(graph: "d{level}.ron", name: "p{level}"), "#);
+        includes += &format!(r#"Include(graph: "d{level}.ron", name: "p{level}"), "#);
         let passes = match level {
             79 => String::new(),
             _ => format!(r#"passes: [Include(graph: "d{}.ron")]"#, level + 1),
         };
         backwards = backwards.document(&format!("d{level}.ron"), &passes);
     }
-    for start in [r#"Include(graph: "d1.ron")"#, &all] {
+    for start in [r#"Include(graph: "d1.ron")"#, &includes] {
         let mut chain = root(start);
         chain.texts.extend(backwards.texts.clone());
         let text = wrong(load(&chain)).to_string();

@@ -79,11 +79,11 @@ fn a_condition_decides_what_is_there() {
         (r#""radios > 1""#, Code::UnknownParam),
         (r#""LIMIT > 1""#, Code::Expression),
     ] {
-        let found = checked(&with(condition));
+        let diagnostics = checked(&with(condition));
         assert_eq!(
-            found.first().map(|found| found.code),
+            diagnostics.first().map(|diagnostic| diagnostic.code),
             Some(code),
-            "{condition}: {found:?}"
+            "{condition}: {diagnostics:?}"
         );
     }
 }
@@ -92,39 +92,40 @@ fn a_condition_decides_what_is_there() {
 /// range, each feature.
 #[test]
 fn check_looks_at_every_value_of_a_condition() {
-    let told = |condition: &str| -> Vec<String> {
+    let cases = |condition: &str| -> Vec<String> {
         let blur = format!(r#"Fullscreen(name: "blur", if: {condition}, color: ["blurred"]),"#);
         let passes = format!(
             r#"{FIRST} {blur} Fullscreen(name: "last", shader: "blur",
             bind: {{"image": "blurred"}}, color: ["image"]),"#
         );
-        let found = checked(&files(&passes, r#""image""#));
-        let condition = |found: &Diagnostic| {
-            assert_eq!(found.code, Code::Condition, "{found:?}");
-            found
+        let diagnostics = checked(&files(&passes, r#""image""#));
+        let condition = |diagnostic: &Diagnostic| {
+            assert_eq!(diagnostic.code, Code::Condition, "{diagnostic:?}");
+            diagnostic
                 .message
                 .split_once(": ")
                 .expect("it says when")
                 .0
                 .to_owned()
         };
-        let errors = found
+        let errors = diagnostics
             .iter()
-            .filter(|found| found.severity == Severity::Error);
+            .filter(|diagnostic| diagnostic.severity == Severity::Error);
         errors.map(condition).collect()
     };
-    assert_eq!(told(r#""soft""#), ["with `soft` = false"]);
-    assert_eq!(told(r#""engine == plain""#), ["with `engine` = fancy"]);
-    assert_eq!(told(r#""radius < 8""#), ["with `radius` = 8"]);
-    assert_eq!(told(r#""!has(SUBGROUP)""#), ["with the feature SUBGROUP"]);
+    assert_eq!(cases(r#""soft""#), ["with `soft` = false"]);
+    assert_eq!(cases(r#""engine == plain""#), ["with `engine` = fancy"]);
+    assert_eq!(cases(r#""radius < 8""#), ["with `radius` = 8"]);
+    assert_eq!(cases(r#""!has(SUBGROUP)""#), ["with the feature SUBGROUP"]);
     // In a range without an end no value is tried.
-    assert_eq!(told(r#""value < 2.0""#), [""; 0]);
-    assert_eq!(told(r#""soft || radius < 9""#), [""; 0]);
+    assert_eq!(cases(r#""value < 2.0""#), [""; 0]);
+    assert_eq!(cases(r#""soft || radius < 9""#), [""; 0]);
     // The condition of an output, whose material no pass writes.
     let output = r#""image", (name: "late", material: "blurred", if: "!soft")"#;
-    let found = checked(&files(FIRST, output));
-    let told = |found: &Diagnostic| found.message.starts_with("with `soft` = false: ");
-    assert!(found.iter().any(told), "{found:?}");
+    let diagnostics = checked(&files(FIRST, output));
+    let has_case =
+        |diagnostic: &Diagnostic| diagnostic.message.starts_with("with `soft` = false: ");
+    assert!(diagnostics.iter().any(has_case), "{diagnostics:?}");
 }
 
 /// A group's `if`, `repeat` and `run` are for all of its entries, its `bind` and `set` for each
@@ -145,13 +146,13 @@ fn what_a_group_says() {
     let plan_of = |group: &str| right(plan(&passes(group, "")));
     assert_eq!(names(&plan_of("")), ["reset", "fill", "all.one", "all.two"]);
     let twice = plan_of("repeat: 2,");
-    let all: Vec<&str> = twice
+    let pass_names: Vec<&str> = twice
         .all_passes()
         .iter()
         .map(|pass| pass.name.as_str())
         .collect();
     let each = ["all[0].one", "all[0].two", "all[1].one", "all[1].two"];
-    assert_eq!(all[2..], each);
+    assert_eq!(pass_names[2..], each);
     let none = passes("if: false,", "").edited(
         "graph.ron",
         r#", "blurred", "maps", "spare"]"#,
@@ -192,11 +193,11 @@ fn what_a_group_says() {
         (r#"shader: "blur","#, Code::UnknownField),
         ("repeat: -1,", Code::Expression),
     ] {
-        let found = checked(&passes(group, ""));
+        let diagnostics = checked(&passes(group, ""));
         assert_eq!(
-            found.first().map(|found| found.code),
+            diagnostics.first().map(|diagnostic| diagnostic.code),
             Some(code),
-            "{group}: {found:?}"
+            "{group}: {diagnostics:?}"
         );
     }
 }
@@ -218,8 +219,8 @@ fn repetitions_and_their_names() {
             passes: [Clear(name: "make", target: "made")], outputs: ["made"]"#,
         )
     };
-    let found = right(plan(&take("each[1].made", "2")));
-    assert_eq!(names(&found), ["each[1].inner.make", "take"]);
+    let take_plan = right(plan(&take("each[1].made", "2")));
+    assert_eq!(names(&take_plan), ["each[1].inner.make", "take"]);
     let by_param = take("each[radius - 1].made", r#""radius""#);
     assert_eq!(
         names(&right(plan(&by_param))),
@@ -231,9 +232,11 @@ fn repetitions_and_their_names() {
         ("made", "2", Code::UnknownResource),
         ("each.made", "2", Code::ResourceKind),
     ] {
-        let found = checked(&take(reference, repeat));
-        let first = found.iter().find(|found| found.code == code);
-        assert!(first.is_some(), "{reference}: {found:?}");
+        let diagnostics = checked(&take(reference, repeat));
+        let first = diagnostics
+            .iter()
+            .find(|diagnostic| diagnostic.code == code);
+        assert!(first.is_some(), "{reference}: {diagnostics:?}");
     }
     assert_eq!(
         codes(&checked(&take("image", "2"))).len(),

@@ -25,8 +25,9 @@ fn looking(materials: &str, passes: &str, declarations: &str, body: &str) -> Fil
 }
 
 fn resource<'p>(plan: &'p Plan, name: &str) -> &'p Resource {
-    let found = plan.resources().iter().find(|found| found.name == name);
-    found.unwrap_or_else(|| panic!("no material is called {name}"))
+    let mut resources = plan.resources().iter();
+    let resource = resources.find(|resource| resource.name == name);
+    resource.unwrap_or_else(|| panic!("no material is called {name}"))
 }
 
 fn buffer<'p>(plan: &'p Plan, name: &str) -> &'p Buffer {
@@ -53,19 +54,19 @@ fn a_3d_texture_is_bound_whole_and_drawn_to_by_slices() {
     let fill = |to: &str| {
         format!(r#"Fullscreen(name: "fill", shader: "fill", repeat: 3, color: ["{to}"]),"#)
     };
-    let found = right(plan(&files(
+    let plan = right(plan(&files(
         &fill("fog[index].mip[0]"),
         solid,
         r#"bind: {"fog": "fog.mip[0]"},"#,
     )));
-    let ResourceKind::Texture(fog) = &resource(&found, "fog").kind else {
+    let ResourceKind::Texture(fog) = &resource(&plan, "fog").kind else {
         panic!("it is a texture");
     };
     assert!(fog.is_3d);
     assert_eq!((fog.size, fog.layers, fog.mip_layers(1)), ([4, 2], 3, 1));
     assert_eq!((fog.mip_size(40), fog.mip_layers(40)), ([1, 1], 1));
     assert_eq!(fog.bytes(), 4 * (4 * 2 * 3 + 2));
-    let look = found.all_passes().last().expect("there is one");
+    let look = plan.all_passes().last().expect("there is one");
     let bindings = &look.steps[0].program().expect("it has one").bindings;
     let seen = bindings.iter().find_map(|binding| match &binding.target {
         BindTarget::Texture { dimension, .. } => Some(*dimension),
@@ -100,8 +101,11 @@ fn a_3d_texture_is_bound_whole_and_drawn_to_by_slices() {
             Code::ResourceKind,
         ),
     ] {
-        let found = checked(&files);
-        assert!(codes(&found).contains(&code), "{code:?}: {found:?}");
+        let diagnostics = checked(&files);
+        assert!(
+            codes(&diagnostics).contains(&code),
+            "{code:?}: {diagnostics:?}"
+        );
     }
     let layered = files(&whole, solid, mip).edited("graph.ron", "mips: 2", "mips: 2, layers: 2");
     assert_eq!(codes(&checked(&layered))[0], Code::Size);
@@ -117,8 +121,8 @@ fn a_texture_that_holds_a_picture() {
         files.picture("noise.png", 3, &[0, 51, 102, 153, 204, 255])
     };
     let noise = r#"Texture(name: "noise", format: R8Unorm, file: "noise.png")"#;
-    let found = right(plan(&files(noise, "")));
-    let noise_texture = resource(&found, "noise");
+    let noise_plan = right(plan(&files(noise, "")));
+    let noise_texture = resource(&noise_plan, "noise");
     assert_eq!(noise_texture.origin, Origin::Constant);
     let ResourceKind::Texture(texture) = &noise_texture.kind else {
         panic!("it is a texture");
@@ -159,11 +163,11 @@ fn a_texture_that_holds_a_picture() {
             Code::ResourceKind,
         ),
     ] {
-        let found = checked(&files(&texture, passes));
+        let diagnostics = checked(&files(&texture, passes));
         assert_eq!(
-            found.first().map(|found| found.code),
+            diagnostics.first().map(|diagnostic| diagnostic.code),
             Some(code),
-            "{texture}: {found:?}"
+            "{texture}: {diagnostics:?}"
         );
     }
 }
@@ -182,12 +186,9 @@ fn array(ty: &str) -> String {
 fn a_buffer_that_holds_numbers_is_laid_out_as_its_shader_sees_it() {
     let item = "struct Item { weight: f32, at: vec2<i32> }";
     let words = |files: &Files| -> Vec<u32> {
-        let found = right(plan(files));
-        assert_eq!(resource(&found, "kernel").origin, Origin::Constant);
-        let content = buffer(&found, "kernel")
-            .content
-            .clone()
-            .expect("it has one");
+        let plan = right(plan(files));
+        assert_eq!(resource(&plan, "kernel").origin, Origin::Constant);
+        let content = buffer(&plan, "kernel").content.clone().expect("it has one");
         let word = |word: &[u8]| u32::from_le_bytes(word.try_into().expect("they are four"));
         content.chunks(4).map(word).collect()
     };
@@ -272,11 +273,11 @@ fn numbers_that_do_not_fit_their_shader() {
             Code::ResourceKind,
         ),
     ] {
-        let found = checked(&constant(data, &declaration, body));
+        let diagnostics = checked(&constant(data, &declaration, body));
         assert_eq!(
-            found.first().map(|found| found.code),
+            diagnostics.first().map(|diagnostic| diagnostic.code),
             Some(code),
-            "{data} {declaration}: {found:?}"
+            "{data} {declaration}: {diagnostics:?}"
         );
     }
 }
@@ -296,17 +297,20 @@ fn a_count_that_no_shader_asks_for_is_refused() {
     };
     let fixed = |count: &str| checked(&files(count, "array<f32, 3>", "items[0]"));
     assert_eq!(codes(&fixed("")), []);
-    let found = fixed(", count: 3");
-    assert_eq!(codes(&found), [Code::Size]);
-    assert_eq!(found[0].message, "the `count` of `items` has no effect");
+    let diagnostics = fixed(", count: 3");
+    assert_eq!(codes(&diagnostics), [Code::Size]);
+    assert_eq!(
+        diagnostics[0].message,
+        "the `count` of `items` has no effect"
+    );
     let scalar = checked(&files(", count: 1", "f32", "items"));
     assert_eq!(codes(&scalar), [Code::Size]);
     let any = |count: &str| checked(&files(count, "array<f32>", "items[0]"));
     assert_eq!(codes(&any(", count: 3")), []);
-    let found = any("");
-    assert_eq!(codes(&found), [Code::Size]);
+    let diagnostics = any("");
+    assert_eq!(codes(&diagnostics), [Code::Size]);
     assert_eq!(
-        found[0].message,
+        diagnostics[0].message,
         "`items` does not say how many items it has"
     );
 }
@@ -336,9 +340,9 @@ fn items_of_buffers_are_bound_in_place() {
             .with("fill.wgsl", fill)
             .with("look.wgsl", look)
     };
-    let found = right(plan(&files(256, "slots[2]")));
-    assert_eq!(buffer(&found, "slots").bytes, 3 * 256);
-    let bindings = &found.all_passes()[1].steps[0]
+    let plan = right(plan(&files(256, "slots[2]")));
+    assert_eq!(buffer(&plan, "slots").bytes, 3 * 256);
+    let bindings = &plan.all_passes()[1].steps[0]
         .program()
         .expect("it has one")
         .bindings;
@@ -398,8 +402,8 @@ fn structs_of_scalars_are_vectors() {
         ("b: u32, c: u32", "vec4<u32>"),
         ("b: vec2<u32>, d: u32", "vec4<u32>"),
     ] {
-        let found = codes(&checked(&files(members, seen)));
-        assert_eq!(found, [Code::LayoutMismatch], "{members}, {seen}");
+        let codes = codes(&checked(&files(members, seen)));
+        assert_eq!(codes, [Code::LayoutMismatch], "{members}, {seen}");
     }
 }
 
@@ -430,13 +434,11 @@ fn bindings_are_visible_to_the_stages_that_use_them() {
         outputs: ["image", "counted"]"#,
     )
     .with("draw.wgsl", shader);
-    let found = right(plan(&files));
-    let program = found.all_passes()[1].steps[0]
-        .program()
-        .expect("it has one");
+    let plan = right(plan(&files));
+    let program = plan.all_passes()[1].steps[0].program().expect("it has one");
     let seen = |name: &str| {
         let is_it = |binding: &&LinkedBinding| match &binding.target {
-            BindTarget::Buffer(target) => found.resource(target.id).name == name,
+            BindTarget::Buffer(target) => plan.resource(target.id).name == name,
             BindTarget::Params(_) => name == "params",
             _ => false,
         };
@@ -492,12 +494,12 @@ fn sizes_go_through_copies_of_copies() {
     };
     let files = document(r#"Compute(name: "write", dispatch: Groups(1, 1, 1)),"#);
     // Each copy is of what is written below it, so that it has no content yet; but it has a size.
-    let found = checked(&files);
+    let diagnostics = checked(&files);
     assert!(
-        codes(&found)
+        codes(&diagnostics)
             .iter()
             .all(|code| *code == Code::ReadBeforeWrite),
-        "{found:?}"
+        "{diagnostics:?}"
     );
     let right_order = |files: &Files| {
         let text = files.texts["graph.ron"].clone();
@@ -514,8 +516,8 @@ fn sizes_go_through_copies_of_copies() {
         )
     };
     let mended = files.clone().with("graph.ron", right_order(&files));
-    let found = right(plan(&mended));
-    assert!((0..=LONG).all(|n| buffer(&found, &format!("b{n}")).bytes == 28));
+    let plan = right(plan(&mended));
+    assert!((0..=LONG).all(|n| buffer(&plan, &format!("b{n}")).bytes == 28));
     let ring = Files::graph(
         r#"materials: [Buffer(name: "a"), Buffer(name: "b")],
         passes: [
@@ -557,12 +559,12 @@ fn a_kinds_own_buffer_is_no_material() {
     )
     .with("use.wgsl", shader);
     let graph = right(Graph::load("graph.ron", &registry, &files));
-    let found = right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
-    assert_eq!(buffer(&found, "items").bytes, 16);
-    let passes = found.all_passes();
+    let plan = right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
+    assert_eq!(buffer(&plan, "items").bytes, 16);
+    let passes = plan.all_passes();
     let used: Vec<&str> = passes
         .iter()
-        .map(|pass| found.resource(pass.accesses[0].resource).name.as_str())
+        .map(|pass| plan.resource(pass.accesses[0].resource).name.as_str())
         .collect();
     assert_eq!(used, ["items", "items", "own/items", "items/items"]);
     let ids: Vec<usize> = passes
@@ -570,11 +572,7 @@ fn a_kinds_own_buffer_is_no_material() {
         .map(|pass| pass.accesses[0].resource.index())
         .collect();
     assert!(ids[0] == ids[1] && ids[2] != ids[0] && ids[3] != ids[0] && ids[2] != ids[3]);
-    assert_eq!(
-        found.culled().len(),
-        2,
-        "no output needs what only they see"
-    );
+    assert_eq!(plan.culled().len(), 2, "no output needs what only they see");
 }
 
 /// A kind that has a shader fill a buffer of its own, of so many bytes.
@@ -622,9 +620,9 @@ fn a_kinds_own_buffer_has_the_size_that_it_asks_for() {
         );
         let files = Files::graph(&document).with("fill.wgsl", shader);
         let graph = right(Graph::load("graph.ron", &registry, &files));
-        let found = right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
+        let plan = right(graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
         for name in ["fill/scratch", "result"] {
-            assert_eq!(buffer(&found, name).bytes, expected, "{name} of {item}");
+            assert_eq!(buffer(&plan, name).bytes, expected, "{name} of {item}");
         }
     }
 }

@@ -27,12 +27,12 @@ fn every_mistake_has_its_text() {
         settings
     };
     let mut right = Vec::new();
-    for (name, found) in all() {
-        if found.is_empty() {
+    for (name, mistakes) in all() {
+        if mistakes.is_empty() {
             right.push(name);
         } else {
             settings().bind(|| {
-                insta::assert_snapshot!(name.as_str(), diagnostics::render(&found, false));
+                insta::assert_snapshot!(name.as_str(), diagnostics::render(&mistakes, false));
             });
         }
     }
@@ -46,9 +46,12 @@ fn every_mistake_has_its_text() {
 #[test]
 fn one_mistake_is_one_message() {
     let mut wrong = Vec::new();
-    for (name, found) in all() {
-        if (found.len() > 1) != has_several(&name) {
-            let messages: Vec<&str> = found.iter().map(|found| found.message.as_str()).collect();
+    for (name, mistakes) in all() {
+        if (mistakes.len() > 1) != has_several(&name) {
+            let messages: Vec<&str> = mistakes
+                .iter()
+                .map(|mistake| mistake.message.as_str())
+                .collect();
             wrong.push(format!("{name}: {messages:#?}"));
         }
     }
@@ -62,8 +65,8 @@ fn one_mistake_is_one_message() {
 /// Each kind of mistake is shown by one snapshot at least.
 #[test]
 fn every_code_has_a_text() {
-    let found = all().into_iter().flat_map(|(_, found)| found);
-    let shown: BTreeSet<Code> = found.map(|found| found.code).collect();
+    let mistakes = all().into_iter().flat_map(|(_, mistakes)| mistakes);
+    let shown: BTreeSet<Code> = mistakes.map(|mistake| mistake.code).collect();
     let missing = Code::ALL.iter().filter(|code| !shown.contains(code));
     let missing: Vec<&Code> = missing.collect();
     assert!(
@@ -78,7 +81,7 @@ type Shown = BTreeMap<Code, Vec<(String, Vec<Diagnostic>)>>;
 fn shown() -> Shown {
     let mut shown = Shown::new();
     for (name, diagnostics) in all() {
-        let codes: BTreeSet<Code> = diagnostics.iter().map(|found| found.code).collect();
+        let codes: BTreeSet<Code> = diagnostics.iter().map(|mistake| mistake.code).collect();
         for code in codes {
             let of_code = shown.entry(code).or_default();
             of_code.push((name.clone(), diagnostics.clone()));
@@ -103,8 +106,8 @@ fn chapter(code: Code, of_code: &[(String, Vec<Diagnostic>)]) -> String {
     // The plainest: one mistake, and little around it.
     let plainest = of_code
         .iter()
-        .min_by_key(|(name, all)| (all.len(), text(name).len()));
-    let (example, all) = plainest.expect("another test says that there is one");
+        .min_by_key(|(name, mistakes)| (mistakes.len(), text(name).len()));
+    let (example, mistakes) = plainest.expect("another test says that there is one");
     let mut chapter = format!(
         "\n## {}\n\n{} **Way out:** {}\n\n```ron\n{}\n```\n\n```text\n{}\n```\n\n| document | says \
          |\n|---|---|\n",
@@ -112,11 +115,11 @@ fn chapter(code: Code, of_code: &[(String, Vec<Diagnostic>)]) -> String {
         code.description(),
         code.remedy(),
         text(example),
-        diagnostics::render(all, false).trim_end(),
+        diagnostics::render(mistakes, false).trim_end(),
     );
-    for (name, all) in of_code {
-        let of_code = all.iter().filter(|found| found.code == code);
-        let says = of_code.map(|found| found.message.replace('|', "\\|").replace('\n', " "));
+    for (name, mistakes) in of_code {
+        let of_code = mistakes.iter().filter(|mistake| mistake.code == code);
+        let says = of_code.map(|mistake| mistake.message.replace('|', "\\|").replace('\n', " "));
         let says: BTreeSet<String> = says.collect();
         let says: Vec<String> = says.into_iter().collect();
         chapter += &format!(
@@ -164,10 +167,11 @@ fn every_text_has_its_document() {
 /// Every error has a place, or its message names the file.
 #[test]
 fn every_error_has_its_place() {
-    for (name, found) in all() {
-        for found in found {
-            let label = found.labels.first();
-            let label = label.unwrap_or_else(|| panic!("{name}: `{}` has no place", found.message));
+    for (name, mistakes) in all() {
+        for mistake in mistakes {
+            let label = mistake.labels.first();
+            let label =
+                label.unwrap_or_else(|| panic!("{name}: `{}` has no place", mistake.message));
             assert!(
                 label.span.range.end <= label.span.file.text.len(),
                 "{name}: the place lies outside the file"

@@ -54,7 +54,8 @@ fn said(expr: &str) -> (Code, String, String) {
 }
 
 fn texture<'p>(plan: &'p Plan, name: &str) -> &'p Texture {
-    let resource = plan.resources().iter().find(|found| found.name == name);
+    let mut resources = plan.resources().iter();
+    let resource = resources.find(|resource| resource.name == name);
     match resource.map(|resource| &resource.kind) {
         Some(ResourceKind::Texture(texture)) => texture,
         _ => panic!("no texture is called {name}"),
@@ -267,9 +268,9 @@ fn mistakes_are_told_at_the_operator() {
     // The condition is true, so the other branch needs no value.
     assert_eq!(value("soft ? 1 : radius && soft"), 1);
     for &(expr, code, message, at) in MISTAKES {
-        let (found, said, place) = said(expr);
-        assert_eq!((found, &*place), (code, at), "{expr}: {said}");
-        assert!(said.contains(message), "{expr}: {said}");
+        let (actual_code, text, place) = said(expr);
+        assert_eq!((actual_code, &*place), (code, at), "{expr}: {text}");
+        assert!(text.contains(message), "{expr}: {text}");
     }
 }
 
@@ -324,9 +325,9 @@ fn what_a_texture_is_where_nothing_is_said() {
         ],
         outputs: ["plain", "chain", "solid", "some"]"#;
     let plan = right(planned(&Files::graph(materials)));
-    let found = ["plain", "chain", "solid", "some"].map(|name| {
-        let found = texture(&plan, name);
-        (found.size, found.mips, found.layers, found.samples)
+    let shapes = ["plain", "chain", "solid", "some"].map(|name| {
+        let texture = texture(&plan, name);
+        (texture.size, texture.mips, texture.layers, texture.samples)
     });
     let expected = [
         ([20, 11], 1, 1, 1),
@@ -334,7 +335,7 @@ fn what_a_texture_is_where_nothing_is_said() {
         ([2, 3], 4, 9, 1),
         ([20, 11], 2, 3, 1),
     ];
-    assert_eq!(found, expected);
+    assert_eq!(shapes, expected);
     assert_eq!(
         texture(&plan, "chain").format,
         texture(&plan, "plain").format
@@ -411,10 +412,10 @@ fn indices_of_repetitions_in_each_other() {
         ("outer[1].once.again", 4),
     ];
     assert_eq!(written, expected);
-    let found = checked(&files.edited("graph.ron", "outer.index", "outre.index"));
-    assert_eq!(codes(&found), [Code::Expression]);
+    let diagnostics = checked(&files.edited("graph.ron", "outer.index", "outre.index"));
+    assert_eq!(codes(&diagnostics), [Code::Expression]);
     assert!(
-        found[0].labels[0].text.contains("called `outre`"),
-        "{found:?}"
+        diagnostics[0].labels[0].text.contains("called `outre`"),
+        "{diagnostics:?}"
     );
 }

@@ -120,30 +120,30 @@ fn sections_replace_or_add() {
 #[test]
 fn set_gives_params_other_defaults() {
     let files = extending(r#"set: {"edge": 6}"#);
-    let found = right(plan(&files));
-    assert_eq!(found.outputs()[0].size, [6, 6]);
+    let set_plan = right(plan(&files));
+    assert_eq!(set_plan.outputs()[0].size, [6, 6]);
     let wide = files.edited("graph.ron", "6", r#""value""#);
     assert_eq!(codes(wrong(plan(&wide)).iter()), [Code::ParamValue]);
     let unknown = extending(r#"set: {"egde": 6}"#);
-    let found = checked(&unknown);
-    assert_eq!(codes(&found), [Code::UnknownParam]);
+    let diagnostics = checked(&unknown);
+    assert_eq!(codes(&diagnostics), [Code::UnknownParam]);
     assert!(
-        found[0]
+        diagnostics[0]
             .help
             .as_deref()
             .unwrap_or_default()
             .contains("`edge`"),
-        "{found:?}"
+        "{diagnostics:?}"
     );
 }
 
 /// `Change` replaces the fields that it gives, `bind` and `set` key by key.
 #[test]
 fn a_change_replaces_what_it_gives() {
-    let value = |files: &Files, pass: &str| {
+    let value = |files: &Files, name: &str| {
         let plan = right(plan(files));
-        let found = plan.all_passes().iter().find(|found| *found.name == *pass);
-        let bytes = found
+        let pass = plan.all_passes().iter().find(|pass| *pass.name == *name);
+        let bytes = pass
             .expect("it is there")
             .params()
             .next()
@@ -339,19 +339,22 @@ fn edits_that_cannot_be_made_are_told_at_their_paths() {
             "behind the interface of `over`",
         ),
     ] {
-        let found = checked(&extending(&format!("passes: [{edit}]")));
-        assert_eq!(found[0].code, Code::Edit, "{edit}: {found:?}");
+        let diagnostics = checked(&extending(&format!("passes: [{edit}]")));
+        assert_eq!(diagnostics[0].code, Code::Edit, "{edit}: {diagnostics:?}");
         assert!(
-            found[0].message.contains(message),
+            diagnostics[0].message.contains(message),
             "{edit}: {}",
-            found[0].message
+            diagnostics[0].message
         );
-        assert_eq!(&*found[0].labels[0].span.file.name, "graph.ron", "{edit}");
+        assert_eq!(
+            &*diagnostics[0].labels[0].span.file.name, "graph.ron",
+            "{edit}"
+        );
     }
-    let found = checked(&extending(
+    let diagnostics = checked(&extending(
         r#"passes: [Change(pass: "over", form: "first")]"#,
     ));
-    assert_eq!(codes(&found), [Code::UnknownField]);
+    assert_eq!(codes(&diagnostics), [Code::UnknownField]);
     // Edits are for documents that extend another one.
     for edit in [
         r#"Change(pass: "over", to: "first")"#.to_owned(),
@@ -359,12 +362,12 @@ fn edits_that_cannot_be_made_are_told_at_their_paths() {
     ] {
         let files = Files::graph(BASE).with("fill.wgsl", FILL);
         let files = files.edited("graph.ron", "Copy(", &format!("{edit}, Copy("));
-        let found = checked(&files);
-        assert_eq!(found[0].code, Code::Edit, "{edit}: {found:?}");
+        let diagnostics = checked(&files);
+        assert_eq!(diagnostics[0].code, Code::Edit, "{edit}: {diagnostics:?}");
         assert!(
-            found[0].message.contains("this one extends none"),
+            diagnostics[0].message.contains("this one extends none"),
             "{}",
-            found[0].message
+            diagnostics[0].message
         );
     }
 }
@@ -388,15 +391,15 @@ fn chains_of_documents_and_their_folders() {
     let cycle = files.document("there/below/base.ron", r#"extends: "../../graph.ron""#);
     assert_eq!(codes(&checked(&cycle)), [Code::MissingFile]);
     let cycle = Files::graph(r#"extends: "b.ron""#).document("b.ron", r#"extends: "graph.ron""#);
-    let found = checked(&cycle);
-    assert_eq!(codes(&found), [Code::IncludeCycle]);
+    let diagnostics = checked(&cycle);
+    assert_eq!(codes(&diagnostics), [Code::IncludeCycle]);
     assert!(
-        found[0]
+        diagnostics[0]
             .help
             .as_deref()
             .unwrap_or_default()
             .contains("graph.ron"),
-        "{found:?}"
+        "{diagnostics:?}"
     );
 }
 
@@ -460,10 +463,10 @@ fn behind_an_interface_the_whole_is_exchanged() {
             )
             .with("fill.wgsl", FILL)
     };
-    let found = checked(&files(r#"Change(pass: "base.over", to: "first")"#));
-    assert_eq!(codes(&found), [Code::Edit]);
+    let diagnostics = checked(&files(r#"Change(pass: "base.over", to: "first")"#));
+    assert_eq!(codes(&diagnostics), [Code::Edit]);
     assert!(
-        found[0]
+        diagnostics[0]
             .help
             .as_deref()
             .unwrap_or_default()

@@ -106,12 +106,12 @@ fn depth_and_stencil_are_versions_of_their_own() {
         r#"{BOTH}, Texture(name: "counted", format: Rgba8Uint),
         Texture(name: "deep", format: R32Float)"#
     );
-    let of = |output: &str| {
+    let plan_for = |output: &str| {
         let files = files(&materials, passes, output);
         planned(&files.with("count.wgsl", read).with("depth.wgsl", depth))
     };
-    assert_eq!(names(&of(r#""counted""#)), ["counts", "count"]);
-    let plan = of(r#""deep""#);
+    assert_eq!(names(&plan_for(r#""counted""#)), ["counts", "count"]);
+    let plan = plan_for(r#""deep""#);
     assert_eq!(names(&plan), ["depths", "depth"]);
     let aspects = |pass: usize| plan.all_passes()[pass].accesses[0].part.aspect;
     let expected = [TextureAspect::DepthOnly, TextureAspect::StencilOnly];
@@ -143,11 +143,11 @@ fn a_stencil_that_cannot_be() {
             r#"{BOTH}, Texture(name: "flat", format: Depth32Float),
             Texture(name: "other", format: Depth24PlusStencil8)"#
         );
-        let found = checked(&files(&materials, &pass, r#""both""#));
+        let diagnostics = checked(&files(&materials, &pass, r#""both""#));
         assert_eq!(
-            found.first().map(|found| found.code),
+            diagnostics.first().map(|diagnostic| diagnostic.code),
             Some(code),
-            "{stencil}: {found:?}"
+            "{stencil}: {diagnostics:?}"
         );
     }
 }
@@ -190,11 +190,11 @@ fn an_area_of_an_atlas_for_each_repetition() {
         (r#"(0, 0, "0 - 1", 2)"#, "", Code::Syntax),
         (r#"(0, 0, 4294967295, 2)"#, "", Code::Size),
     ] {
-        let found = checked(&tiles(area, load));
+        let diagnostics = checked(&tiles(area, load));
         assert_eq!(
-            found.first().map(|found| found.code),
+            diagnostics.first().map(|diagnostic| diagnostic.code),
             Some(code),
-            "{area}{load}: {found:?}"
+            "{area}{load}: {diagnostics:?}"
         );
     }
 }
@@ -260,11 +260,11 @@ fn loads_blends_and_channels_of_a_target() {
         (", blend: Multiply", Code::UnknownVariant),
         (", load: Clear(\"NOTHING\")", Code::Expression),
     ] {
-        let found = checked(&target(rest));
+        let diagnostics = checked(&target(rest));
         assert_eq!(
-            found.first().map(|found| found.code),
+            diagnostics.first().map(|diagnostic| diagnostic.code),
             Some(code),
-            "{rest}: {found:?}"
+            "{rest}: {diagnostics:?}"
         );
     }
 }
@@ -297,7 +297,7 @@ fn samples_are_resolved() {
             .iter()
             .all(|access| access.writes && access.fully_overwrites && !access.reads)
     );
-    for (of, to, rest, code) in [
+    for (format, to, rest, code) in [
         ("Rgba8Unorm", "Rgba8Unorm", "", Code::ResourceKind),
         (
             "Rgba8Unorm, samples: 4",
@@ -342,11 +342,11 @@ fn samples_are_resolved() {
             Code::ReadBeforeWrite,
         ),
     ] {
-        let found = checked(&fine(of, to, rest));
+        let diagnostics = checked(&fine(format, to, rest));
         assert_eq!(
-            found.first().map(|found| found.code),
+            diagnostics.first().map(|diagnostic| diagnostic.code),
             Some(code),
-            "{of}, {to}{rest}: {found:?}"
+            "{format}, {to}{rest}: {diagnostics:?}"
         );
     }
 }
@@ -451,6 +451,6 @@ fn a_pass_without_targets_has_memory_of_its_size() {
     let wider = right(plan.with_param("edge", ParamValue::U32(32)));
     assert_eq!(wider.memory_bytes(), 128 + 64 + 4);
     let tight = wider.with(|request| request.memory_limit = Some(195));
-    let told = tight.expect_err("it is too much").to_string();
-    assert!(told.contains("first/canvas"), "{told}");
+    let message = tight.expect_err("it is too much").to_string();
+    assert!(message.contains("first/canvas"), "{message}");
 }

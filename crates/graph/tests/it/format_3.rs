@@ -14,7 +14,8 @@ const FILL: &str = "struct Params { edge: u32, scale: f32 }
     }";
 
 fn width(plan: &Plan, name: &str) -> u32 {
-    let resource = plan.resources().iter().find(|found| found.name == name);
+    let mut resources = plan.resources().iter();
+    let resource = resources.find(|resource| resource.name == name);
     match resource.map(|resource| &resource.kind) {
         Some(ResourceKind::Texture(texture)) => texture.size[0],
         _ => panic!("no texture is called {name}"),
@@ -120,7 +121,8 @@ fn an_include_gives_values_and_fills_what_it_asks_for() {
     let mut request = PlanRequest::new([64, 64], &NoProvider);
     request.params.insert("edge".to_owned(), ParamValue::U32(5));
     let plan = right(graph.plan(&request));
-    let own = plan.resources().iter().find(|found| found.name == "own");
+    let mut resources = plan.resources().iter();
+    let own = resources.find(|resource| resource.name == "own");
     let Some(ResourceKind::Texture(own)) = own.map(|own| &own.kind) else {
         panic!("no texture");
     };
@@ -693,12 +695,12 @@ fn what_nothing_uses_is_told() {
         "one.wgsl",
         "@fragment fn fragment() -> @location(0) f32 { return 1.0; }",
     );
-    let told: BTreeMap<String, Code> = checked(&files)
+    let messages: BTreeMap<String, Code> = checked(&files)
         .into_iter()
-        .map(|found| (found.message, found.code))
+        .map(|diagnostic| (diagnostic.message, diagnostic.code))
         .collect();
     assert_eq!(
-        told,
+        messages,
         BTreeMap::from([("nothing uses the value `unused`".to_owned(), Code::Unused)])
     );
 }
@@ -923,7 +925,7 @@ fn load_over(name: &str, path: &str) -> Result<Graph, skiagraph_graph::Diagnosti
 fn another_document_stands_in_an_open_include() {
     let own = right(load(&over()));
     let chosen = right(load_over("method", "pipelines/soft.ron"));
-    let of = |graph: &Graph| {
+    let summary = |graph: &Graph| {
         let planned = right(graph.plan(&PlanRequest::new([64, 64], &NoProvider)));
         let lights: Vec<String> = graph.lights().map(|light| light.to_string()).collect();
         let params: Vec<String> = graph
@@ -934,8 +936,8 @@ fn another_document_stands_in_an_open_include() {
         let sizes = [width(&planned, "over"), width(&planned, "hard")];
         (sizes, lights.join(" "), params.join(" "))
     };
-    assert_eq!(of(&own), ([8, 3], "lamp".into(), "edge".into()));
-    assert_eq!(of(&chosen), ([14, 5], "sun".into(), "map".into()));
+    assert_eq!(summary(&own), ([8, 3], "lamp".into(), "edge".into()));
+    assert_eq!(summary(&chosen), ([14, 5], "sun".into(), "map".into()));
     let openings: Vec<_> = chosen.openings().collect();
     assert_eq!(openings, [("method", "pipelines/soft.ron")]);
     // A promise of one of its parts is no promise of the whole.
@@ -945,19 +947,19 @@ fn another_document_stands_in_an_open_include() {
 
 #[test]
 fn an_open_include_refuses_what_cannot_stand_there() {
-    let told = |name, path| {
-        let found = load_over(name, path).expect_err("a mistake");
-        found
+    let mistakes = |name, path| {
+        let errors = load_over(name, path).expect_err("a mistake");
+        errors
             .iter()
             .map(|it| (it.code, it.message.clone()))
             .collect::<Vec<_>>()
     };
-    let [(code, message)] = &told("methd", "pipelines/soft.ron")[..] else {
+    let [(code, message)] = &mistakes("methd", "pipelines/soft.ron")[..] else {
         panic!("one mistake")
     };
     assert_eq!(*code, Code::UnknownParam);
     assert!(message.contains("has no open include `methd`"), "{message}");
-    let [(code, message)] = &told("method", "pipelines/sky.ron")[..] else {
+    let [(code, message)] = &mistakes("method", "pipelines/sky.ron")[..] else {
         panic!("one mistake")
     };
     assert_eq!(*code, Code::Light);
@@ -965,8 +967,8 @@ fn an_open_include_refuses_what_cannot_stand_there() {
         message.contains("no light is taken both here and by"),
         "{message}"
     );
-    let found = told("method", "graph.ron");
-    assert_eq!(found[0].0, Code::IncludeCycle);
-    let found = told("method", "pipelines/none.ron");
-    assert_eq!(found[0].0, Code::MissingFile);
+    let cycle = mistakes("method", "graph.ron");
+    assert_eq!(cycle[0].0, Code::IncludeCycle);
+    let missing = mistakes("method", "pipelines/none.ron");
+    assert_eq!(missing[0].0, Code::MissingFile);
 }

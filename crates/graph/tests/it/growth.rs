@@ -45,8 +45,8 @@ fn counted() -> Files {
 /// Items of a buffer, layers of a texture.
 fn count(plan: &Plan, name: &str) -> u64 {
     let mut resources = plan.resources().iter();
-    let found = resources.find(|resource| resource.name == name);
-    match &found.expect("it is there").kind {
+    let resource = resources.find(|resource| resource.name == name);
+    match &resource.expect("it is there").kind {
         ResourceKind::Buffer(buffer) => buffer.count.expect("it has a count"),
         ResourceKind::Texture(texture) => texture.layers.into(),
         other => panic!("{name} is {other:?}"),
@@ -73,9 +73,9 @@ fn a_counter_is_never_culled() {
     // No other material may overwrite it before it is read.
     let aliases = &plan.schedule().aliases.list;
     let (_, growth) = &plan.growing()[0];
-    let mut of = aliases.iter();
-    let of = of.find(|allocation| allocation.aliases.contains(&growth.counter.id));
-    assert_eq!(of.expect("it has memory").aliases.len(), 1);
+    let mut allocations = aliases.iter();
+    let allocation = allocations.find(|allocation| allocation.aliases.contains(&growth.counter.id));
+    assert_eq!(allocation.expect("it has memory").aliases.len(), 1);
 }
 
 #[test]
@@ -210,10 +210,10 @@ fn included_and_repeated_buffers_grow_alone() {
          @compute @workgroup_size(1) fn main() { all[0] = a[0] + b[0]; }",
         );
     let first = right(plan(&files));
-    let known: Vec<String> = growing(&first).into_iter().map(|(name, _)| name).collect();
-    assert_eq!(known, ["level[0].part.items", "level[1].part.items"]);
+    let names: Vec<String> = growing(&first).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["level[0].part.items", "level[1].part.items"]);
     let larger = grown(&first, [("level[1].part.items", 12)]);
-    let counts = known.iter().map(|name| count(&larger, name));
+    let counts = names.iter().map(|name| count(&larger, name));
     assert_eq!(counts.collect::<Vec<_>>(), [4, 12]);
 }
 

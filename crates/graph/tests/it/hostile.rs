@@ -360,10 +360,10 @@ fn expressions_without_end() {
             &["the expression is too long"],
         );
     }
-    let circle = |length: usize, of: &dyn Fn(usize) -> String| {
+    let circle = |length: usize, formula: &dyn Fn(usize) -> String| {
         let buffer = |index: usize| {
             let next = (index + 1) % length;
-            format!("Buffer(name: \"m{index}\", count: \"{}\")", of(next))
+            format!("Buffer(name: \"m{index}\", count: \"{}\")", formula(next))
         };
         said(&document("", &many(length, buffer), ""))
     };
@@ -371,9 +371,9 @@ fn expressions_without_end() {
     let plain = |next: usize| format!("m{next}.count");
     let deep = |next: usize| format!("{nested}{next}.count{}", r(")", 60));
     let decided = |next: usize| format!("m{next}.count > 0 ? m{next}.count : 1");
-    for of in [&plain as &dyn Fn(usize) -> String, &deep, &decided] {
+    for formula in [&plain as &dyn Fn(usize) -> String, &deep, &decided] {
         assert_said(
-            &circle(3000, of),
+            &circle(3000, formula),
             "graph.ron:",
             &["its size is that of itself"],
         );

@@ -49,19 +49,19 @@ fn outer(passes: &str, outputs: &str) -> Files {
 
 /// Returns the materials that a pass uses, by name; true for a write.
 #[track_caller]
-fn uses<'p>(plan: &'p Plan, pass: &str) -> Vec<(&'p str, bool)> {
-    let found = plan.all_passes().iter().find(|found| *found.name == *pass);
-    let accesses = &found
-        .unwrap_or_else(|| panic!("there is no {pass}"))
+fn uses<'p>(plan: &'p Plan, name: &str) -> Vec<(&'p str, bool)> {
+    let pass = plan.all_passes().iter().find(|pass| *pass.name == *name);
+    let accesses = &pass
+        .unwrap_or_else(|| panic!("there is no {name}"))
         .accesses;
     let used = |access: &Access| (plan.resource(access.resource).name.as_str(), access.writes);
     accesses.iter().map(used).collect()
 }
 
 /// The first number of a pass's params.
-fn number(plan: &Plan, pass: &str) -> f32 {
-    let found = plan.all_passes().iter().find(|found| *found.name == *pass);
-    let bytes = found
+fn number(plan: &Plan, name: &str) -> f32 {
+    let pass = plan.all_passes().iter().find(|pass| *pass.name == *name);
+    let bytes = pass
         .expect("it is there")
         .params()
         .next()
@@ -70,8 +70,8 @@ fn number(plan: &Plan, pass: &str) -> f32 {
     f32::from_le_bytes(bytes[..4].try_into().expect("they are four"))
 }
 
-fn help(found: &Diagnostic) -> &str {
-    found.help.as_deref().unwrap_or_default()
+fn help(diagnostic: &Diagnostic) -> &str {
+    diagnostic.help.as_deref().unwrap_or_default()
 }
 
 /// In go inputs and params without a default, by name; out come the outputs.
@@ -97,18 +97,18 @@ fn bind_and_set_say_otherwise() {
     let include = r#"Include(
         graph: "inner.ron", bind: {"image": "other[1]"}, set: {"value": "value + 1", "edge": 8},
     )"#;
-    let found = right(plan(&outer(include, r#""result""#)));
+    let plan = right(plan(&outer(include, r#""result""#)));
     assert_eq!(
-        uses(&found, "inner.look"),
+        uses(&plan, "inner.look"),
         [("other", false), ("inner.own", true)]
     );
-    let look = found
+    let look = plan
         .all_passes()
         .iter()
         .find(|pass| *pass.name == "inner.look");
     assert_eq!(look.expect("it is there").accesses[0].part.layers, 1..2);
-    assert_eq!(number(&found, "inner.look"), 4.0);
-    assert_eq!(found.outputs()[0].size, [8, 8]);
+    assert_eq!(number(&plan, "inner.look"), 4.0);
+    assert_eq!(plan.outputs()[0].size, [8, 8]);
 }
 
 /// A name that is also a param with a default stays another param, until it is exposed or set.
@@ -123,17 +123,17 @@ fn a_param_with_a_default_is_the_included_documents_own() {
     };
     let own = with_edge(r#"Include(graph: "inner.ron")"#);
     let graph = right(load(&own));
-    let known = |graph: &skiagraph_graph::Graph| {
+    let params = |graph: &skiagraph_graph::Graph| {
         let names = graph.params().iter().map(|param| param.name.value.clone());
         names.collect::<Vec<_>>()
     };
-    assert_eq!(known(&graph), ["value", "width"]);
+    assert_eq!(params(&graph), ["value", "width"]);
     let same = own.edited("graph.ron", "width", "edge");
     assert_eq!(right(plan(&same)).outputs()[0].size, [4, 4]);
     // Exposed, it is a param here; of a named include with a dot.
     let exposed = with_edge(r#"Include(graph: "inner.ron", expose: ["edge"])"#);
     let graph = right(load(&exposed));
-    assert_eq!(known(&graph), ["value", "width", "edge"]);
+    assert_eq!(params(&graph), ["value", "width", "edge"]);
     let mut request = PlanRequest::new([8, 8], &Triangle);
     let value = graph.parse_param("edge", "5").expect("it is a number");
     request.params.insert("edge".to_owned(), value);
@@ -147,12 +147,15 @@ fn a_param_with_a_default_is_the_included_documents_own() {
         "outputs: [\"result\"]",
         "outputs: [(name: \"result\", material: \"left.result\")]",
     );
-    assert_eq!(known(&right(load(&named))), ["value", "width", "left.edge"]);
+    assert_eq!(
+        params(&right(load(&named))),
+        ["value", "width", "left.edge"]
+    );
     // A name that is there already is told at both places.
     let twice = exposed.clone().edited("graph.ron", "width", "edge");
-    let found = checked(&twice);
-    assert_eq!(codes(&found), [Code::ParamValue]);
-    assert_eq!(found[0].labels.len(), 2);
+    let diagnostics = checked(&twice);
+    assert_eq!(codes(&diagnostics), [Code::ParamValue]);
+    assert_eq!(diagnostics[0].labels.len(), 2);
     let unknown = exposed.edited("graph.ron", "\"edge\"]", "\"egde\"]");
     assert_eq!(codes(&checked(&unknown)), [Code::UnknownParam]);
 }
@@ -171,9 +174,9 @@ fn assert_wrong(rows: &[Wrong<'_>]) {
                 let [file, from, to] = *edit;
                 files.edited(file, from, to)
             });
-        let found = checked(&files);
-        assert_eq!(found[0].code, *code, "{message}: {found:?}");
-        assert_eq!(found[0].message, *message);
+        let diagnostics = checked(&files);
+        assert_eq!(diagnostics[0].code, *code, "{message}: {diagnostics:?}");
+        assert_eq!(diagnostics[0].message, *message);
     }
 }
 
@@ -344,11 +347,11 @@ fn outputs_of_an_included_document_are_real() {
                 "materials: [",
                 r#"materials: [Texture(name: "unwritten", format: R32Float),"#,
             );
-        let found = checked(&files);
-        assert!(!found.is_empty(), "{outputs}");
-        assert_eq!(found[0].code, code, "{outputs}: {found:?}");
+        let diagnostics = checked(&files);
+        assert!(!diagnostics.is_empty(), "{outputs}");
+        assert_eq!(diagnostics[0].code, code, "{outputs}: {diagnostics:?}");
         assert_eq!(
-            &*found[0].labels[0].span.file.name, "inner.ron",
+            &*diagnostics[0].labels[0].span.file.name, "inner.ron",
             "{outputs}"
         );
     }
@@ -359,13 +362,10 @@ fn outputs_of_an_included_document_are_real() {
 fn a_bound_output_is_written_into_what_it_is_bound_to() {
     let include = r#"Include(graph: "inner.ron", bind: {"result": "other[1]"}, set: {"edge": 16})"#;
     let files = outer(include, r#""other""#);
-    let found = right(plan(&files));
+    let plan = right(plan(&files));
+    assert_eq!(names(&plan), ["fill", "clear", "inner.look", "inner.again"]);
     assert_eq!(
-        names(&found),
-        ["fill", "clear", "inner.look", "inner.again"]
-    );
-    assert_eq!(
-        uses(&found, "inner.again"),
+        uses(&plan, "inner.again"),
         [("inner.own", false), ("other", true)]
     );
     let expected = SubresourceRange {
@@ -373,13 +373,13 @@ fn a_bound_output_is_written_into_what_it_is_bound_to() {
         layers: 1..2,
         aspect: Default::default(),
     };
-    let again = found
+    let again = plan
         .all_passes()
         .iter()
         .find(|pass| *pass.name == "inner.again");
     assert_eq!(again.expect("it is there").accesses[1].part, expected);
     assert!(
-        !found
+        !plan
             .resources()
             .iter()
             .any(|resource| resource.name == "result")
@@ -407,20 +407,20 @@ fn a_name_for_each() {
         ),"#;
     let outputs =
         r#"(name: "end", material: "right.result"), (name: "lamp", material: "lamp[1].result")"#;
-    let found = right(plan(&outer(left, outputs)));
+    let named_plan = right(plan(&outer(left, outputs)));
     assert_eq!(
-        uses(&found, "right.look"),
+        uses(&named_plan, "right.look"),
         [("left.result", false), ("right.own", true)]
     );
     assert_eq!(
-        uses(&found, "lamp[1].again"),
+        uses(&named_plan, "lamp[1].again"),
         [("lamp[1].own", false), ("lamp[1].result", true)]
     );
-    assert_eq!(number(&found, "left.look"), 1.0);
-    assert_eq!(number(&found, "lamp[1].look"), 1.0);
-    assert_eq!(found.outputs()[1].size, [2, 2]);
+    assert_eq!(number(&named_plan, "left.look"), 1.0);
+    assert_eq!(number(&named_plan, "lamp[1].look"), 1.0);
+    assert_eq!(named_plan.outputs()[1].size, [2, 2]);
     assert!(
-        !names(&found).contains(&"lamp[0].look".to_owned()),
+        !names(&named_plan).contains(&"lamp[0].look".to_owned()),
         "no output needs it"
     );
     // Twice without names gives one name twice.
@@ -428,17 +428,17 @@ fn a_name_for_each() {
         r#"Include(graph: "inner.ron"), Include(graph: "inner.ron")"#,
         r#""result""#,
     );
-    let found = wrong(plan(&twice));
+    let errors = wrong(plan(&twice));
     assert!(
-        codes(found.iter())
+        codes(errors.iter())
             .iter()
             .all(|code| *code == Code::DuplicateName),
-        "{found}"
+        "{errors}"
     );
     let out = outer(left, &outputs.replace("lamp[1]", "lamp[2]"));
     assert_eq!(codes(&checked(&out)), [Code::Range]);
-    let all = outer(left, &outputs.replace("lamp[1].result", "lamp"));
-    assert_eq!(codes(&checked(&all)), [Code::ResourceKind]);
+    let whole = outer(left, &outputs.replace("lamp[1].result", "lamp"));
+    assert_eq!(codes(&checked(&whole)), [Code::ResourceKind]);
 }
 
 /// Names of the scene are known in every document, and may be replaced there and below.
@@ -496,9 +496,9 @@ fn an_included_document_is_checked_alone() {
     let alone = |sections: &str| Files::graph(sections).with("look.wgsl", LOOK);
     assert_eq!(checked(&alone(INNER)).len(), 0);
     // To be run it needs the host's image.
-    let found = wrong(plan(&alone(INNER)));
-    assert_eq!(codes(found.iter()), [Code::Input]);
-    assert!(help(found.iter().next().expect("there is one")).contains("let the host import it"));
+    let errors = wrong(plan(&alone(INNER)));
+    assert_eq!(codes(errors.iter()), [Code::Input]);
+    assert!(help(errors.iter().next().expect("there is one")).contains("let the host import it"));
     let any = INNER.replace(r#""image", format: R32Float"#, r#""image""#);
     assert_eq!(checked(&alone(&any)).len(), 0);
 }
@@ -513,8 +513,12 @@ fn where_documents_are_looked_for() {
     let built_in = include("far.ron").document("pipelines/far.ron", INNER);
     assert_eq!(checked(&built_in.with("shaders/look.wgsl", LOOK)).len(), 1);
     for path in ["../inner.ron", "/inner.ron", "below/../inner.ron", "inner"] {
-        let found = checked(&include(path));
-        assert_eq!(found[0].code, Code::MissingFile, "{path}: {found:?}");
+        let diagnostics = checked(&include(path));
+        assert_eq!(
+            diagnostics[0].code,
+            Code::MissingFile,
+            "{path}: {diagnostics:?}"
+        );
     }
     let unnamed = include("My-Graph.ron").document("My-Graph.ron", INNER);
     assert_eq!(codes(&checked(&unnamed)), [Code::Name]);

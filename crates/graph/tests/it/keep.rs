@@ -44,9 +44,9 @@ const KEPT: &str = r#""out": "kept""#;
 
 /// The name of what shares memory with others, if something does.
 fn sharing(plan: &Plan) -> Vec<Vec<&str>> {
-    let of = |id: &skiagraph_graph::ResourceId| plan.resource(*id).name.as_str();
+    let name = |id: &skiagraph_graph::ResourceId| plan.resource(*id).name.as_str();
     let list = plan.schedule().aliases.list.iter();
-    let named = list.map(|allocation| allocation.aliases.iter().map(of).collect::<Vec<_>>());
+    let named = list.map(|allocation| allocation.aliases.iter().map(name).collect::<Vec<_>>());
     named.filter(|names| names.len() > 1).collect()
 }
 
@@ -61,9 +61,9 @@ fn what_a_later_frame_reads_is_live_and_runs_where_it_stands() {
         take("after", "kept", "c"),
     ];
     let order = ["before", "first", "between", "second", "third", "after"];
-    let found = right(plan(&files(&passes.concat(), r#""a", "b", "c""#)));
-    assert_eq!(names(&found), order);
-    assert!(found.remembers());
+    let full_plan = right(plan(&files(&passes.concat(), r#""a", "b", "c""#)));
+    assert_eq!(names(&full_plan), order);
+    assert!(full_plan.remembers());
     // One reader is enough, wherever it stands, and so is an output; without both nothing is
     // needed.
     for (output, live) in [
@@ -72,14 +72,14 @@ fn what_a_later_frame_reads_is_live_and_runs_where_it_stands() {
         ("c", &["first", "second", "third", "after"]),
         ("kept", &["first", "second", "third"]),
     ] {
-        let found = right(plan(&files(&passes.concat(), &format!("\"{output}\""))));
-        assert_eq!(names(&found), live, "{output}");
+        let plan = right(plan(&files(&passes.concat(), &format!("\"{output}\""))));
+        assert_eq!(names(&plan), live, "{output}");
     }
     let apart = [passes[1].clone(), pass("own", "write", r#""out": "a""#, "")].concat();
     let cleared = format!(r#"Clear(name: "reset", target: "a"), {apart}"#);
-    let found = right(plan(&files(&cleared, r#""a""#)));
-    assert_eq!(names(&found), ["reset", "own"]);
-    assert!(!found.remembers());
+    let plan = right(plan(&files(&cleared, r#""a""#)));
+    assert_eq!(names(&plan), ["reset", "own"]);
+    assert!(!plan.remembers());
 }
 
 /// `a` is done when `kept` is first used, and `kept` when `c` is: their memory would do.
@@ -129,7 +129,7 @@ fn its_writers_need_not_run_together() {
         take("take", "kept", "a"),
         pass("again", "count", KEPT, r#"run: When("on"),"#),
     ];
-    let found = right(plan(&files(&passes.concat(), r#""a""#)));
-    assert_eq!(names(&found), ["reset", "step", "take", "again"]);
-    assert_eq!(found.schedule().conditions.group, [0, 1, 2, 1]);
+    let plan = right(plan(&files(&passes.concat(), r#""a""#)));
+    assert_eq!(names(&plan), ["reset", "step", "take", "again"]);
+    assert_eq!(plan.schedule().conditions.group, [0, 1, 2, 1]);
 }

@@ -13,12 +13,12 @@ fn text<T>(result: Result<T, Diagnostics>) -> String {
 
 #[test]
 fn a_document_that_is_not_there() {
-    let found = text(Graph::load(
+    let message = text(Graph::load(
         "photographs.ron",
         &Registry::standard(),
         &folder(),
     ));
-    insta::assert_snapshot!("missing_document", found);
+    insta::assert_snapshot!("missing_document", message);
 }
 
 #[test]
@@ -40,9 +40,9 @@ fn a_file_that_is_no_text() {
     let sources = FolderSources {
         root: folder.path().to_owned(),
     };
-    let found = ["binary.ron", "shader.ron", "include.ron", "import.ron"]
+    let messages = ["binary.ron", "shader.ron", "include.ron", "import.ron"]
         .map(|path| text(Graph::load(path, &Registry::standard(), &sources)));
-    insta::assert_snapshot!("no_text", found.join("\n"));
+    insta::assert_snapshot!("no_text", messages.join("\n"));
 }
 
 /// Nested far deeper than any sensible value: an error, and no overflow of the stack.
@@ -52,8 +52,8 @@ fn values_nested_200_levels_deep() {
     let nested = Files::graph(&format!(
         "materials: [Buffer(name: \"items\", count: \"{count}\")]"
     ));
-    let found = text(load(&nested));
-    let lines: Vec<&str> = found.lines().take(3).collect();
+    let message = text(load(&nested));
+    let lines: Vec<&str> = message.lines().take(3).collect();
     insta::assert_snapshot!("nested_200", lines.join("\n"));
     for [open, close] in [
         ["(", ")"],
@@ -89,12 +89,12 @@ fn values_nested_40_levels_deep() {
 #[test]
 fn lists_too_long() {
     let entries = r#"Buffer(name: "items"), "#.repeat(4097);
-    let found = text(load(&Files::graph(&format!("materials: [{entries}]"))));
+    let message = text(load(&Files::graph(&format!("materials: [{entries}]"))));
     assert!(
-        found.contains("the list has 4097 entries, 4096 is the most"),
-        "{found}"
+        message.contains("the list has 4097 entries, 4096 is the most"),
+        "{message}"
     );
-    assert_eq!(found.matches("error[").count(), 1, "{found}");
+    assert_eq!(message.matches("error[").count(), 1, "{message}");
 }
 
 /// WGSL nested deeper than a stack; more of it stands in `hostile.rs`.
@@ -103,15 +103,15 @@ fn shaders_nested_deep() {
     let files = Files::graph(ITEMS);
     let (open, close) = ("(".repeat(5000), ")".repeat(5000));
     let brackets = format!("fn deep() -> u32 {{ return {open}1u{close}; }}");
-    let found = text(load(&files.clone().with("index.wgsl", brackets)));
-    assert!(found.contains("nested too deep"), "{found}");
+    let message = text(load(&files.clone().with("index.wgsl", brackets)));
+    assert!(message.contains("nested too deep"), "{message}");
     let mut chain = files.clone().with("index.wgsl", "#import \"m0.wgsl\"\n");
     for index in 0..100 {
         let import = format!("#import \"m{}.wgsl\"\n", index + 1);
         chain = chain.with(&format!("m{index}.wgsl"), import);
     }
-    let found = text(load(&chain));
-    assert!(found.contains("imports are nested too deep"), "{found}");
+    let message = text(load(&chain));
+    assert!(message.contains("imports are nested too deep"), "{message}");
     // Types that double with every level: their layout is spelt out only so far.
     let mut bomb = "struct S0 { a: u32, b: u32 }\n".to_owned();
     for level in 1..24 {
@@ -125,8 +125,8 @@ fn shaders_nested_deep() {
     );
     let files = files.edited("graph.ron", ", count: 1", "");
     let graph = right(load(&files.with("index.wgsl", bomb)));
-    let found = text(graph.plan(&PlanRequest::new([8, 8], &Triangle)));
-    assert!(found.contains("that no pass has written"), "{found}");
+    let message = text(graph.plan(&PlanRequest::new([8, 8], &Triangle)));
+    assert!(message.contains("that no pass has written"), "{message}");
 }
 
 /// A graph with a param for its size, and materials that can and cannot be read back.
@@ -240,8 +240,8 @@ fn a_compressed_texture_is_not_read_back() {
     for name in ["from", "to"] {
         request.imports.insert(name.to_owned(), texture);
     }
-    let found = text(right(load(&files)).plan(&request));
-    insta::assert_snapshot!("compressed", found);
+    let message = text(right(load(&files)).plan(&request));
+    insta::assert_snapshot!("compressed", message);
     request.outputs = Some(Vec::new());
     assert_eq!(names(&right(right(load(&files)).plan(&request))), ["copy"]);
 }
@@ -251,8 +251,8 @@ fn values_of_params_from_text() {
     let graph = right(load(&asked()));
     let read = |(name, value): (&str, &str)| {
         let parsed = graph.parse_param(name, value);
-        let told = parsed.map_or_else(|error| error.to_string(), |value| value.to_string());
-        format!("{name}={value}: {told}")
+        let outcome = parsed.map_or_else(|error| error.to_string(), |value| value.to_string());
+        format!("{name}={value}: {outcome}")
     };
     let texts = [
         ("egde", "1"),
@@ -326,8 +326,8 @@ fn byte_order_marks_are_passed_over_in_every_file() {
     .with("two.wgsl", "fn two() -> f32 { return 2.0; }")
     .with("three.wgsl", "fn two() -> f32 { return 3.0; }");
     let right_with = |files: &Files| {
-        let found = checked(files);
-        assert!(found.is_empty(), "{found:?}");
+        let diagnostics = checked(files);
+        assert!(diagnostics.is_empty(), "{diagnostics:?}");
     };
     right_with(&files);
     for path in files.texts.keys() {
@@ -336,6 +336,6 @@ fn byte_order_marks_are_passed_over_in_every_file() {
     }
     // A place is counted as an editor counts it, which does not show the mark.
     let wrong = "\u{feff}fn one() -> f32 { return one; }";
-    let found = checked(&files.with("one.wgsl", wrong));
-    assert_eq!(found[0].labels[0].span.to_string(), "one.wgsl:1:4");
+    let diagnostics = checked(&files.with("one.wgsl", wrong));
+    assert_eq!(diagnostics[0].labels[0].span.to_string(), "one.wgsl:1:4");
 }

@@ -28,8 +28,8 @@ fn names_follow_their_grammar() {
         "", "A", "1a", "_a", "a__b", "a-b", "aB", "é", "a.b", "a[0]", "a b", &longer,
     ] {
         for files in [called(name, "fill"), called("image", name)] {
-            let found = checked(&files);
-            assert_eq!(found[0].code, Code::Name, "{name}: {found:?}");
+            let diagnostics = checked(&files);
+            assert_eq!(diagnostics[0].code, Code::Name, "{name}: {diagnostics:?}");
         }
     }
 }
@@ -104,14 +104,14 @@ fn two_spellings_that_shaders_cannot_tell_apart() {
         r#"materials: [Texture(name: "image", format: R32Float)],
         passes: [Clear(name: "clear", target: "image")], outputs: ["image"]"#,
     );
-    let found = checked(&files);
-    assert_eq!(codes(&found), [Code::Name], "{found:?}");
+    let diagnostics = checked(&files);
+    assert_eq!(codes(&diagnostics), [Code::Name], "{diagnostics:?}");
 }
 
 /// The resource that a pass binds as each global.
-fn bound<'p>(plan: &'p Plan, pass: &str) -> Vec<(String, &'p str)> {
-    let found = plan.all_passes().iter().find(|found| *found.name == *pass);
-    let program = found.and_then(|found| found.steps[0].program());
+fn bound<'p>(plan: &'p Plan, name: &str) -> Vec<(String, &'p str)> {
+    let pass = plan.all_passes().iter().find(|pass| *pass.name == *name);
+    let program = pass.and_then(|pass| pass.steps[0].program());
     let program = program.expect("the pass has a shader");
     let bindings = program.bindings.iter().filter_map(|binding| {
         let (BindTarget::Buffer(target) | BindTarget::Texture { target, .. }) = &binding.target
@@ -168,9 +168,9 @@ fn a_suggestion_is_what_may_stand_there() {
         ("scene_position", "`scene_positions`"),
         ("sceneIndices", "`scene_indices`"),
     ] {
-        let found = checked(&files.clone().with("fill.wgsl", shader(global)));
-        assert_eq!(codes(&found), [Code::UnknownResource]);
-        let help = found[0].help.as_deref().unwrap_or_default();
+        let diagnostics = checked(&files.clone().with("fill.wgsl", shader(global)));
+        assert_eq!(codes(&diagnostics), [Code::UnknownResource]);
+        let help = diagnostics[0].help.as_deref().unwrap_or_default();
         assert!(help.contains(suggested), "{help}");
         assert!(!help.contains("scene."), "{help}");
     }
@@ -210,12 +210,12 @@ fn each_word_of_a_choice_is_a_constant_of_the_shaders() {
     // A shader's own constant must be the number of the word.
     let own = |number: u32| choosing("", &format!("const CULL_BACK = {number}u; {shader}"));
     assert_eq!(checked(&own(2)).len(), 0);
-    let found = checked(&own(1));
-    assert_eq!(codes(&found), [Code::ChoiceConstant]);
+    let diagnostics = checked(&own(1));
+    assert_eq!(codes(&diagnostics), [Code::ChoiceConstant]);
     let message = "`CULL_BACK` is 1 in the shader, and `back` of `cull` is 2";
-    assert_eq!(found[0].message, message);
-    let found = checked(&choosing(r#", set: {"cull": side}"#, shader));
-    assert_eq!(codes(&found), [Code::ParamValue]);
+    assert_eq!(diagnostics[0].message, message);
+    let diagnostics = checked(&choosing(r#", set: {"cull": side}"#, shader));
+    assert_eq!(codes(&diagnostics), [Code::ParamValue]);
 }
 
 #[test]
@@ -226,10 +226,10 @@ fn two_words_of_one_constant_are_refused() {
         ],"#;
     let files =
         called("image", "fill").edited("graph.ron", "materials:", &format!("{choices} materials:"));
-    let found = checked(&files);
-    assert_eq!(found[0].code, Code::ChoiceConstant, "{found:?}");
+    let diagnostics = checked(&files);
+    assert_eq!(diagnostics[0].code, Code::ChoiceConstant, "{diagnostics:?}");
     assert_eq!(
-        found[0].message,
+        diagnostics[0].message,
         "two words give the constant `CULL_FRONT_FACE`"
     );
 }
@@ -253,14 +253,14 @@ fn constants_of_the_shader_stand_in_its_pass() {
             "const NOTHING: u32 = 4294967295u; const PAIR = vec2(1u);",
         )
     };
-    let found = right(plan(&clear("NOTHING")));
-    let skiagraph_graph::step::Step::Draw(draw) = &found.all_passes()[0].steps[0] else {
+    let plan = right(plan(&clear("NOTHING")));
+    let skiagraph_graph::step::Step::Draw(draw) = &plan.all_passes()[0].steps[0] else {
         panic!("it draws");
     };
     assert_eq!(draw.colors[0].clear, Some([4_294_967_295.0; 4]));
     for constant in ["NOTHIGN", "PAIR"] {
-        let found = checked(&clear(constant));
-        assert_eq!(codes(&found), [Code::Expression], "{constant}");
+        let diagnostics = checked(&clear(constant));
+        assert_eq!(codes(&diagnostics), [Code::Expression], "{constant}");
     }
 }
 
@@ -284,28 +284,26 @@ fn constants_for_each_pass() {
             "U32(name: \"radius\", default: 7)",
         )
     };
-    let all = r#""direction": (1, -2), "weight": "0.5 * index", "steps": "radius + 1""#;
-    let found = right(plan(&set(all)));
-    let words = |pass: usize| params(&found.all_passes()[pass])[..5].to_vec();
+    let values = r#""direction": (1, -2), "weight": "0.5 * index", "steps": "radius + 1""#;
+    let plan = right(plan(&set(values)));
+    let words = |pass: usize| params(&plan.all_passes()[pass])[..5].to_vec();
     let weight = 0.5f32.to_bits();
     assert_eq!(words(0), [1, (-2i32).cast_unsigned(), 0, 7, 0]);
     assert_eq!(words(1), [1, (-2i32).cast_unsigned(), weight, 7, 1]);
-    let program = found.all_passes()[0].steps[0]
-        .program()
-        .expect("it has one");
+    let program = plan.all_passes()[0].steps[0].program().expect("it has one");
     assert_eq!(program.constants, [("steps".to_owned(), 8.0)]);
     for (change, code) in [
-        (format!("{all}, \"direktion\": 1"), Code::Unused),
-        (all.replace("direction", "direktion"), Code::UnknownParam),
-        (all.replace("(1, -2)", "(1, -2, 3)"), Code::ParamValue),
-        (all.replace("(1, -2)", "(1, 0.5)"), Code::ParamValue),
-        (all.replace("radius + 1", "0 - 1"), Code::ParamValue),
-        (all.replace("radius + 1", "0.5"), Code::ParamValue),
-        (all.replace("\"0.5 * index\"", "front"), Code::ParamValue),
-        (all.replace("0.5 * index", "raduis"), Code::UnknownParam),
+        (format!("{values}, \"direktion\": 1"), Code::Unused),
+        (values.replace("direction", "direktion"), Code::UnknownParam),
+        (values.replace("(1, -2)", "(1, -2, 3)"), Code::ParamValue),
+        (values.replace("(1, -2)", "(1, 0.5)"), Code::ParamValue),
+        (values.replace("radius + 1", "0 - 1"), Code::ParamValue),
+        (values.replace("radius + 1", "0.5"), Code::ParamValue),
+        (values.replace("\"0.5 * index\"", "front"), Code::ParamValue),
+        (values.replace("0.5 * index", "raduis"), Code::UnknownParam),
     ] {
-        let found = checked(&set(&change));
-        assert_eq!(found[0].code, code, "{change}: {found:?}");
-        assert_eq!(found[0].severity, Severity::Error);
+        let diagnostics = checked(&set(&change));
+        assert_eq!(diagnostics[0].code, code, "{change}: {diagnostics:?}");
+        assert_eq!(diagnostics[0].severity, Severity::Error);
     }
 }

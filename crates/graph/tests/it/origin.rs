@@ -116,10 +116,10 @@ fn a_capture_says_which_part_it_holds() {
 fn memory_is_listed_by_material_and_adds_up() {
     let plan = plan(&[]);
     let entry = |name: &str| {
-        let of = |entry: &MemoryEntry| entry.name == name;
+        let has_name = |entry: &MemoryEntry| entry.name == name;
         plan.memory()
             .into_iter()
-            .find(of)
+            .find(has_name)
             .unwrap_or_else(|| panic!("no `{name}`"))
     };
     let image = entry("image");

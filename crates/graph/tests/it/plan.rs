@@ -304,28 +304,28 @@ fn copies_and_clears_cover() {
     let materials = ["image", "other"].map(texture);
     let (first, other) = (fill("first", "image"), fill("fill_other", "other"));
     let copy = "Copy(name: \"copy\", from: \"other\", to: \"image\")";
-    let found = plan(&materials, &[&first, &other, copy], r#""image""#, &[]);
-    assert_eq!(names(&found), ["fill_other", "copy"]);
+    let copy_plan = plan(&materials, &[&first, &other, copy], r#""image""#, &[]);
+    assert_eq!(names(&copy_plan), ["fill_other", "copy"]);
     let clear = "Clear(name: \"clear\", target: \"image\")";
-    let found = plan(
+    let clear_plan = plan(
         &materials,
         &[&first, &other, copy, clear],
         r#""image""#,
         &[],
     );
-    assert_eq!(names(&found), ["clear"]);
+    assert_eq!(names(&clear_plan), ["clear"]);
     let materials = ["Texture(name: \"image\", format: R32Float, size: 4, layers: 2)".to_owned()];
-    let all = "Clear(name: \"all\", target: \"image\")";
+    let clear_all = "Clear(name: \"all\", target: \"image\")";
     let clear = "Clear(name: \"clear\", target: \"image[0]\")";
-    let found = plan(&materials, &[all, clear], r#""image""#, &[]);
-    assert_eq!(names(&found), ["all", "clear"]);
-    let found = plan(
+    let layer_plan = plan(&materials, &[clear_all, clear], r#""image""#, &[]);
+    assert_eq!(names(&layer_plan), ["all", "clear"]);
+    let front_plan = plan(
         &materials,
-        &[all, clear],
+        &[clear_all, clear],
         r#"(name: "front", material: "image[0]")"#,
         &[],
     );
-    assert_eq!(names(&found), ["clear"]);
+    assert_eq!(names(&front_plan), ["clear"]);
 }
 
 /// Layers and mips: only the writers of the part that is read are needed.

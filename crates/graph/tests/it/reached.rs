@@ -184,7 +184,7 @@ fn variants(text: &str) -> Vec<Variant> {
     let mut variants = Vec::new();
     for declared in text.split("\nmistakes! {").skip(1) {
         let declared = &declared[..declared.find("\n}\n").expect("it ends")];
-        let mut of = "";
+        let mut enum_name = "";
         for (at, _) in declared.match_indices("\n    ") {
             let own = word(&declared[at + 5..]);
             let rest = &declared[at + 5 + own.len()..];
@@ -192,13 +192,13 @@ fn variants(text: &str) -> Vec<Variant> {
                 continue;
             }
             if rest.starts_with(':') {
-                of = own;
+                enum_name = own;
                 continue;
             }
             let text = &rest[rest.find("=>\n").expect("an arm follows")..];
             let text = &text[text.find('"').expect("it has a text")..];
             variants.push(Variant {
-                name: format!("{of}::{own}"),
+                name: format!("{enum_name}::{own}"),
                 literals: pieces(&literal(text).0),
             });
         }
@@ -222,25 +222,29 @@ fn all_variants() -> Vec<Variant> {
 
 #[test]
 fn every_mistake_is_made_by_a_document() {
-    let found = broken::all();
-    let documents: BTreeSet<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+    let diagnosed = broken::all();
+    let documents: BTreeSet<&str> = diagnosed.iter().map(|(name, _)| name.as_str()).collect();
     // Why a texture does not fit stands at its place.
-    let texts = |found: &Diagnostic| {
-        let labels = found.labels.iter().map(|label| label.text.clone());
-        labels.chain([found.message.clone()]).collect::<Vec<_>>()
+    let texts = |mistake: &Diagnostic| {
+        let labels = mistake.labels.iter().map(|label| label.text.clone());
+        labels.chain([mistake.message.clone()]).collect::<Vec<_>>()
     };
-    let messages = found
+    let messages = diagnosed
         .iter()
-        .flat_map(|(_, found)| found.iter().flat_map(texts));
+        .flat_map(|(_, mistakes)| mistakes.iter().flat_map(texts));
     let messages: Vec<String> = messages.collect();
-    let all = all_variants();
-    assert!(all.len() > 200, "only {} variants are read", all.len());
+    let variants = all_variants();
+    assert!(
+        variants.len() > 200,
+        "only {} variants are read",
+        variants.len()
+    );
     let mut wrong = Vec::new();
-    for variant in &all {
+    for variant in &variants {
         let name = variant.name.as_str();
-        let by_hand = BY_HAND.iter().find(|(known, _)| *known == name);
-        let elsewhere = ELSEWHERE.iter().any(|(known, _)| *known == name);
-        let twins = all
+        let by_hand = BY_HAND.iter().find(|(listed, _)| *listed == name);
+        let elsewhere = ELSEWHERE.iter().any(|(listed, _)| *listed == name);
+        let twins = variants
             .iter()
             .filter(|other| other.literals == variant.literals);
         let is_told_apart = variant.is_plain() && twins.count() == 1;
@@ -261,8 +265,8 @@ fn every_mistake_is_made_by_a_document() {
 /// The lists above name what there is.
 #[test]
 fn exceptions_are_variants() {
-    let known: BTreeSet<String> = all_variants().into_iter().map(|v| v.name).collect();
+    let names: BTreeSet<String> = all_variants().into_iter().map(|v| v.name).collect();
     for (name, _) in BY_HAND.iter().chain(ELSEWHERE) {
-        assert!(known.contains(*name), "{name} is no variant");
+        assert!(names.contains(*name), "{name} is no variant");
     }
 }

@@ -107,7 +107,7 @@ fn pictures_come_from_the_first_layer_that_has_one() {
     let tile = layers.picture("tile.png").expect("it can be decoded");
     assert_eq!(tile.map(|picture| picture.size), Some([2, 1]));
     assert_eq!(
-        layers.picture("none.png").map(|found| found.is_some()),
+        layers.picture("none.png").map(|picture| picture.is_some()),
         Ok(false)
     );
     let torn = layers.picture("torn.png").err();

@@ -52,11 +52,11 @@ fn said_with(name: &str, files: &[(&str, &str)]) -> Vec<Diagnostic> {
 
 /// The only message about a document as it stands, with its help.
 fn message(name: &str) -> (String, String) {
-    let said = said_with(name, &[]);
-    assert_eq!(said.len(), 1, "{name}: {said:?}");
+    let diagnostics = said_with(name, &[]);
+    assert_eq!(diagnostics.len(), 1, "{name}: {diagnostics:?}");
     (
-        said[0].message.clone(),
-        said[0].help.clone().unwrap_or_default(),
+        diagnostics[0].message.clone(),
+        diagnostics[0].help.clone().unwrap_or_default(),
     )
 }
 
@@ -71,8 +71,8 @@ fn mended(name: &str, from: &str, to: &str) {
 fn mended_in(name: &str, path: &str, from: &str, to: &str) {
     let text = text(path);
     assert!(text.contains(from), "{path} has no {from}");
-    let said = said_with(name, &[(path, &text.replacen(from, to, 1))]);
-    assert!(said.is_empty(), "{name}, with {to}: {said:?}");
+    let diagnostics = said_with(name, &[(path, &text.replacen(from, to, 1))]);
+    assert!(diagnostics.is_empty(), "{name}, with {to}: {diagnostics:?}");
 }
 
 /// The code in the help of a message that begins with `begin`, between its backquotes.
@@ -206,8 +206,8 @@ fn a_number_as_a_condition_is_compared() {
 /// member of `params`.
 #[test]
 fn a_value_is_written_for_its_type() {
-    let (said, help) = message("set_fraction");
-    assert_eq!(said, "`count` takes a whole number from 0 (u32)");
+    let (wording, help) = message("set_fraction");
+    assert_eq!(wording, "`count` takes a whole number from 0 (u32)");
     mended("set_fraction", "1.0", code(&help, "1"));
     let (_, help) = message("set_fraction_of");
     let way_out = code(&help, "\"floor(");
@@ -239,20 +239,20 @@ fn a_value_is_written_for_its_type() {
             document[at..end].to_owned()
         });
         let document = set.map_or(document.clone(), |set| document.replace(&set, ""));
-        let said = said_with(
+        let diagnostics = said_with(
             name,
             &[(&format!("{name}.ron"), &document), (&shader, &of_shader)],
         );
-        assert!(said.is_empty(), "{name}: {said:?}");
+        assert!(diagnostics.is_empty(), "{name}: {diagnostics:?}");
     }
 }
 
 /// A param and the member of `params` of its name get one type, the one or the other.
 #[test]
 fn a_param_and_its_member_have_one_type() {
-    let (said, help) = message("params_member");
+    let (wording, help) = message("params_member");
     assert_eq!(
-        said,
+        wording,
         "`params.bias` is u32 in the shader, but the param `bias` needs f32 there"
     );
     let (member, param) = (code(&help, "bias: "), code(&help, "U32(name: \"bias\""));
@@ -261,8 +261,8 @@ fn a_param_and_its_member_have_one_type() {
         "params.bias + params.edge",
         "params.bias + f32(params.edge)",
     );
-    let said = said_with("params_member", &[("params_member.wgsl", &shader)]);
-    assert!(said.is_empty(), "{said:?}");
+    let diagnostics = said_with("params_member", &[("params_member.wgsl", &shader)]);
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
     let param = param.replace('…', "default: 1");
     mended("params_member", "F32(name: \"bias\", default: 0.5)", &param);
 }
@@ -270,7 +270,7 @@ fn a_param_and_its_member_have_one_type() {
 /// The type of a global is told before the functions that use it, of which only that is wrong.
 #[test]
 fn a_global_has_the_type_of_what_is_bound() {
-    for (name, said, from, to) in [
+    for (name, expected, from, to) in [
         (
             "binding_scalar",
             "the texture `seen` cannot be the shader's `seen`",
@@ -290,7 +290,7 @@ fn a_global_has_the_type_of_what_is_bound() {
             "share: f32",
         ),
     ] {
-        assert_eq!(message(name).0, said, "{name}");
+        assert_eq!(message(name).0, expected, "{name}");
         mended_in(name, &format!("{name}.wgsl"), from, to);
     }
 }
@@ -312,8 +312,8 @@ fn an_unknown_name_is_a_word_or_in_a_module() {
         assert_eq!(import, "#import \"shared/interval.wgsl\"", "{name}");
         let path = format!("{name}.wgsl");
         let shader = format!("{import}\n{}", text(&path));
-        let said = said_with(name, &[(&path, &shader)]);
-        assert!(said.is_empty(), "{name}: {said:?}");
+        let diagnostics = said_with(name, &[(&path, &shader)]);
+        assert!(diagnostics.is_empty(), "{name}: {diagnostics:?}");
     }
 }
 
@@ -357,8 +357,8 @@ fn a_bracket_is_closed() {
 /// An unused thing is used or taken out; members of one name stand at one place.
 #[test]
 fn warnings_have_ways_out() {
-    let (said, _) = message("pass_unneeded");
-    assert_eq!(said, "nothing needs the pass `look`");
+    let (wording, _) = message("pass_unneeded");
+    assert_eq!(wording, "nothing needs the pass `look`");
     mended("pass_unneeded", "outputs: [", "outputs: [\"debug\", ");
     message("output_without_target");
     let document =
@@ -367,8 +367,11 @@ fn warnings_have_ways_out() {
     let document = document.replace("materials: [", other);
     let files = [("output_without_target.ron", &*document)];
     assert!(said_with("output_without_target", &files).is_empty());
-    let (said, _) = message("layout_swapped");
-    assert_eq!(said, "`near` stands at two places in the items of `spans`");
+    let (wording, _) = message("layout_swapped");
+    assert_eq!(
+        wording,
+        "`near` stands at two places in the items of `spans`"
+    );
     mended_in(
         "layout_swapped",
         "span_read.wgsl",
@@ -387,7 +390,7 @@ fn warnings_have_ways_out() {
     assert!(
         said_with("layout_swapped", &files)
             .iter()
-            .any(|said| said.code == Code::LayoutMismatch)
+            .any(|diagnostic| diagnostic.code == Code::LayoutMismatch)
     );
     message("samples_only_bound");
     let edited = text("samples_only_bound.ron").replace(", samples: 4", "");
@@ -404,26 +407,26 @@ fn warnings_have_ways_out() {
 /// Types in naga's messages are WGSL's.
 #[test]
 fn types_are_those_of_wgsl() {
-    let (said, _) = message("types_of_naga");
+    let (wording, _) = message("types_of_naga");
     assert!(
-        said.contains("`f32`") && said.contains("`vec2<u32>`"),
-        "{said}"
+        wording.contains("`f32`") && wording.contains("`vec2<u32>`"),
+        "{wording}"
     );
-    assert!(!said.contains("Scalar"), "{said}");
+    assert!(!wording.contains("Scalar"), "{wording}");
 }
 
 /// A document says what it needs of viewport, scene and lights, as an included one does; what
 /// follows is not told.
 #[test]
 fn a_document_needs_what_it_says() {
-    let (said, _) = message("needs_unmet");
+    let (wording, _) = message("needs_unmet");
     assert_eq!(
-        said,
+        wording,
         "`needs_unmet.ron` needs `lights.count > 3 && viewport.width >= 64`"
     );
-    let (said, _) = message("needs_included");
+    let (wording, _) = message("needs_included");
     assert_eq!(
-        said,
+        wording,
         "`included/needs_many.ron` needs `lights.count >= least`"
     );
     mended(

@@ -15,12 +15,12 @@ fn one_pass(shader: &str) -> Files {
 
 #[track_caller]
 fn first_place(files: &Files) -> String {
-    let found = wrong(load(files));
-    let label = found
+    let errors = wrong(load(files));
+    let label = errors
         .iter()
         .next()
         .and_then(|error| error.labels.first().cloned());
-    label.map_or_else(|| found.to_string(), |label| label.span.to_string())
+    label.map_or_else(|| errors.to_string(), |label| label.span.to_string())
 }
 
 /// Errors point into the file and line where the author wrote them, wherever imports moved the
@@ -133,8 +133,8 @@ fn an_import_in_a_comment_is_none() {
         ("/* /* */ */\n#import \"a.wgsl\" // /*", true),
     ] {
         let shader = format!("{comment}\n{main}");
-        let here = one_pass(&shader).with("a.wgsl", one);
-        assert_eq!(load(&here).is_ok(), is_imported, "{comment}");
+        let importing = one_pass(&shader).with("a.wgsl", one);
+        assert_eq!(load(&importing).is_ok(), is_imported, "{comment}");
         // The file is not looked for, either.
         let beside = one_pass(&format!("{shader}\n{one}"));
         assert_eq!(load(&beside).is_ok(), !is_imported, "{comment}");
@@ -208,17 +208,17 @@ fn binding_numbers() {
         let files = Files::new([("m.wgsl", module)]).with("main.wgsl", shader);
         plan(&files.document("graph.ron", &sections))
     };
-    let all = "a[0] = b[0] + c[0] + d[0];";
+    let body = "a[0] = b[0] + c[0] + d[0];";
     let module = "var<storage, read> b: array<u32>;\nvar<storage, read> c: array<u32>;";
     let own = "var<storage, read_write> a: array<u32>;\nvar<storage, read> d: array<u32>;";
-    right(with(module, own, all));
+    right(with(module, own, body));
     let numbered = "@group(1) @binding(0) var<storage, read> d: array<u32>;\n@group(0) \
         @binding(1) var<storage, read_write> a: array<u32>;";
-    right(with(module, numbered, all));
+    right(with(module, numbered, body));
     let clash = "@group(1) @binding(3) var<storage, read> d: array<u32>;\n@group(1) @binding(3) \
         var<storage, read_write> a: array<u32>;";
-    let found = wrong(with(module, clash, all));
-    assert_eq!(codes(found.iter()), [Code::Binding]);
+    let errors = wrong(with(module, clash, body));
+    assert_eq!(codes(errors.iter()), [Code::Binding]);
     // Two that no entry point uses together are fine.
     right(with(module, clash, "a[0] = b[0] + c[0];"));
 }
@@ -322,12 +322,12 @@ fn access_is_derived_from_the_shader() {
         let without = needs_clear(declaration, body, false);
         match (without, reads) {
             (Ok(_), false) => {}
-            (Err(found), true) => {
-                let said = codes(found.iter());
-                assert_eq!(said, [Code::ReadBeforeWrite], "{what}: {found}");
+            (Err(errors), true) => {
+                let codes = codes(errors.iter());
+                assert_eq!(codes, [Code::ReadBeforeWrite], "{what}: {errors}");
             }
             (Ok(_), true) => panic!("{what} is taken for no read"),
-            (Err(found), false) => panic!("{what} is taken for a read: {found}"),
+            (Err(errors), false) => panic!("{what} is taken for a read: {errors}"),
         }
         needs_clear(declaration, body, true).expect(what);
     }
@@ -380,13 +380,15 @@ fn params_and_overrides_are_laid_out() {
     let f = f32::to_bits;
     let negative = |number: i32| number.cast_unsigned();
     let overrides = |bend, hard| {
-        let all = [
+        let constants = [
             ("7", bend),
             ("hard", hard),
             ("shift", -3.0),
             ("steps", 12.0),
         ];
-        all.map(|(name, value)| (name.to_owned(), value)).to_vec()
+        constants
+            .map(|(name, value)| (name.to_owned(), value))
+            .to_vec()
     };
     let (words, constants) = filled(&request);
     // A vector of three begins at a multiple of 16 bytes, and leaves its fourth word to the next.

@@ -55,8 +55,8 @@ impl Running {
     /// A frame at this time, in which every pass runs.
     pub fn frame_at(&mut self, seconds: f32, read: &[&str]) -> FrameReport {
         let mut encoder = GPU.device.create_command_encoder(&Default::default());
-        let all = Frame::new().with_all(true);
-        let frame = all.with_read(read).with_seconds(seconds);
+        let frame = Frame::new().with_all(true);
+        let frame = frame.with_read(read).with_seconds(seconds);
         let finished = self.0.encode(&mut encoder, &frame).and_then(|_| {
             GPU.queue.submit([encoder.finish()]);
             self.0.finish()

@@ -54,12 +54,12 @@ impl Pass {
         let mut globals = format!("{SEED} {OUT}\n");
         let mut sum = format!("{}u + params.seed", index + 1);
         for (number, read) in self.reads.iter().enumerate() {
-            let of = match read {
+            let source = match read {
                 Read::Now(material) => format!("m{material}"),
                 Read::Before(material) => format!("m{material}.previous"),
                 Read::Host => "host".to_owned(),
             };
-            let _ = write!(bind, ", \"r{number}\": \"{of}\"");
+            let _ = write!(bind, ", \"r{number}\": \"{source}\"");
             let _ = writeln!(globals, "var<storage, read> r{number}: array<u32>;");
             let _ = write!(sum, " + {}u * r{number}[i]", 2 * number + 3);
         }

@@ -36,12 +36,12 @@ pub fn of_shader(declarations: &str, body: &str) -> String {
 }
 
 /// Asserts that what is said stands at `place` and holds `parts`.
-pub fn assert_said(said: &str, place: &str, parts: &[&str]) {
+pub fn assert_said(text: &str, place: &str, parts: &[&str]) {
     for part in parts.iter().chain([&place]) {
         assert!(
-            said.contains(part),
+            text.contains(part),
             "no {part:?} in\n{}",
-            said.chars().take(2000).collect::<String>()
+            text.chars().take(2000).collect::<String>()
         );
     }
 }

@@ -21,7 +21,9 @@ impl Files {
     pub fn new<const N: usize>(files: [(&str, &str); N]) -> Self {
         files
             .into_iter()
-            .fold(Self::default(), |all, (path, text)| all.with(path, text))
+            .fold(Self::default(), |files, (path, text)| {
+                files.with(path, text)
+            })
     }
 
     /// `graph.ron`: these sections, after the format.
@@ -67,8 +69,8 @@ impl Sources for Files {
 
     fn list(&self, folder: &str) -> Vec<String> {
         let inside = |path: &String| {
-            let (of, name) = path.rsplit_once('/').unwrap_or(("", path));
-            (of == folder).then(|| name.to_owned())
+            let (parent, name) = path.rsplit_once('/').unwrap_or(("", path));
+            (parent == folder).then(|| name.to_owned())
         };
         self.texts.keys().filter_map(inside).collect()
     }
@@ -157,8 +159,8 @@ pub fn checked(files: &Files) -> Vec<Diagnostic> {
 }
 
 /// The codes of mistakes.
-pub fn codes<'d>(found: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Code> {
-    found.into_iter().map(|found| found.code).collect()
+pub fn codes<'d>(mistakes: impl IntoIterator<Item = &'d Diagnostic>) -> Vec<Code> {
+    mistakes.into_iter().map(|mistake| mistake.code).collect()
 }
 
 /// Names of the live passes in order.

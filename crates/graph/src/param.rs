@@ -47,8 +47,8 @@ pub(crate) fn find<'p>(
     name: &str,
     graph: &str,
 ) -> Result<&'p Param, ParamError> {
-    let known = params.iter().find(|param| param.name.value == name);
-    known.ok_or_else(|| {
+    let param = params.iter().find(|param| param.name.value == name);
+    param.ok_or_else(|| {
         let hint = suggestion(name, params.iter().map(|param| param.name.as_str()));
         ParamError::Unknown {
             graph: graph.to_owned(),
@@ -222,7 +222,7 @@ impl Param {
         if !matches!(self.ty, ParamType::Choice(_)) {
             return Err(None);
         }
-        let is_unknown = |word: &&Located<Name>| self.words().all(|known| *known != word.value);
+        let is_unknown = |word: &&Located<Name>| self.words().all(|other| *other != word.value);
         if let Some(word) = kept.iter().find(is_unknown) {
             return Err(Some(word.clone()));
         }
@@ -285,9 +285,9 @@ impl Param {
                     ParamType::Choice(words) => Some(Arc::clone(words)),
                     _ => None,
                 };
-                let known = words.iter().flat_map(|words| words.iter());
+                let choices = words.iter().flat_map(|words| words.iter());
                 // A checked value is one of the words. Any other equals none of them.
-                match known.clone().find(|known| ***known == **word).cloned() {
+                match choices.clone().find(|choice| ***choice == **word).cloned() {
                     Some(word) => Value::Word(Word { word, of: words }),
                     None => Value::Bool(false),
                 }
@@ -317,7 +317,7 @@ impl Param {
         match (&self.ty, &other.ty) {
             (ParamType::Choice(_), ParamType::Choice(_)) => other
                 .words()
-                .all(|word| self.words().any(|known| known == word)),
+                .all(|word| self.words().any(|own| own == word)),
             (a, b) => a == b && within,
         }
     }
@@ -383,17 +383,17 @@ impl Param {
             }
             (ParamType::Choice(_), ParamValue::Choice(word)) => {
                 let words: Vec<&str> = self.words().map(Name::as_str).collect();
-                let known = words.join(", ");
+                let choices = words.join(", ");
                 return match (words.contains(&word.as_str()), self.refused.get(word)) {
                     (true, _) => Ok(()),
                     (_, None) => {
                         let likeness = likeness(word, &words);
                         let likeness = likeness.map_or(String::new(), |it| format!("; {it}"));
-                        let why = format!("must be one of {known}{likeness}");
+                        let why = format!("must be one of {choices}{likeness}");
                         Err(ParamFault::Value(why))
                     }
                     (_, Some(why)) => Err(ParamFault::Value(format!(
-                        "`{word}` is refused: {why}; must be one of {known}"
+                        "`{word}` is refused: {why}; must be one of {choices}"
                     ))),
                 };
             }
@@ -441,7 +441,7 @@ impl Param {
             (ParamValue::Bool(value), _) => Some(u32::from(*value)),
             (ParamValue::Choice(word), ParamType::Choice(words)) => words
                 .iter()
-                .position(|known| **known == **word)
+                .position(|choice| **choice == **word)
                 .and_then(|index| u32::try_from(index).ok()),
             _ => None,
         }

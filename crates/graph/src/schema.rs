@@ -246,7 +246,7 @@ impl Kinds<'_> {
         };
         for kind in self.kinds {
             let any = || json_schema!({ "type": "object", "additionalProperties": true });
-            let schema = kind.schema.map_or_else(any, |of| of(self.generator));
+            let schema = kind.schema.map_or_else(any, |make| make(self.generator));
             let common = [&every_entry, &every_pass];
             entry(kind.name, schema.to_value(), &common, &mut self.entries);
         }

@@ -531,27 +531,27 @@ impl<'de> MapAccess<'de> for Access<'de> {
     }
 }
 
-/// Returns the error [`Code::UnknownField`] for a field whose name is not in `known`, at the place
-/// of the name. Its help is the [suggestion](crate::diagnostics::suggestion) of a name in `known`.
+/// Returns the error [`Code::UnknownField`] for a field whose name is not in `fields`, at the place
+/// of the name. Its help is the [suggestion](crate::diagnostics::suggestion) of a name in `fields`.
 pub fn unknown_field<S: AsRef<str>>(
     name: &Located<String>,
-    known: impl IntoIterator<Item = S>,
+    fields: impl IntoIterator<Item = S>,
 ) -> Diagnostic {
     Diagnostic::error(Code::UnknownField, format!("unknown field `{name}`"))
         .at(name, "not a field of this")
-        .suggest(name, known)
+        .suggest(name, fields)
 }
 
 /// Returns the error [`Code::UnknownVariant`] for a word, such as the name of an enum variant, that
-/// is not in `known`, at the place of the word. Its help is the
-/// [suggestion](crate::diagnostics::suggestion) of a word in `known`.
+/// is not in `words`, at the place of the word. Its help is the
+/// [suggestion](crate::diagnostics::suggestion) of a word in `words`.
 pub fn unknown_word<S: AsRef<str>>(
     word: &Located<String>,
-    known: impl IntoIterator<Item = S>,
+    words: impl IntoIterator<Item = S>,
 ) -> Diagnostic {
     Diagnostic::error(Code::UnknownVariant, format!("unknown word `{word}`"))
         .at(word, "not one of the words that may stand here")
-        .suggest(word, known)
+        .suggest(word, words)
 }
 
 /// Returns the error [`Code::MissingField`] for the required field `field` that is missing in the
@@ -623,11 +623,15 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
     let syntax = |what: String| Diagnostic::error(Code::Syntax, what);
     let what = match error {
         R::NoSuchStructField {
-            expected, found, ..
-        } => return unknown_field(&Located::new(found.clone(), span), *expected),
+            expected,
+            found: field,
+            ..
+        } => return unknown_field(&Located::new(field.clone(), span), *expected),
         R::NoSuchEnumVariant {
-            expected, found, ..
-        } => return unknown_word(&Located::new(found.clone(), span), *expected),
+            expected,
+            found: word,
+            ..
+        } => return unknown_word(&Located::new(word.clone(), span), *expected),
         R::MissingStructField { field, .. } => return missing_field(span, field),
         R::DuplicateStructField { field, .. } => {
             return field_twice(&Located::new(field.to_string(), span));
@@ -654,9 +658,12 @@ fn explain(error: &ron::Error, span: Span) -> Diagnostic {
         | R::ExpectedNamedStructLike(_)
         | R::ExpectedIdentifier
         | R::SuggestRawIdentifier(_) => "what has fields, `(name: …)`,",
-        R::ExpectedDifferentLength { expected, found } => {
+        R::ExpectedDifferentLength {
+            expected,
+            found: length,
+        } => {
             let count = expected.trim_start_matches(|c: char| !c.is_ascii_digit());
-            let what = format!("{count} values are needed here, not {found}");
+            let what = format!("{count} values are needed here, not {length}");
             return syntax(what).at(span, "here");
         }
         R::ExpectedBoolean => "`true` or `false`",

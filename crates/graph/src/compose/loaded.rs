@@ -185,7 +185,7 @@ impl Loaded {
     /// Returns the unused items of the shaders of the document's own passes, whatever modules they
     /// import, each with its shader.
     fn unused_in_shaders(&self) -> Vec<(unused::Unused, String)> {
-        let mut found: Vec<(unused::Unused, String)> = Vec::new();
+        let mut unused_items: Vec<(unused::Unused, String)> = Vec::new();
         let mut finder = unused::UnusedFinder::default();
         let mut constants = BTreeSet::new();
         self.document.visit(&mut |leaf| {
@@ -203,16 +203,16 @@ impl Loaded {
                 let other = finder.find(other, &constants);
                 unused.retain(|unused| other.contains(unused));
             }
-            unused.retain(|unused| found.iter().all(|(known, _)| known != unused));
-            found.extend(unused.into_iter().map(|it| (it, first.file().to_owned())));
+            unused.retain(|unused| unused_items.iter().all(|(item, _)| item != unused));
+            unused_items.extend(unused.into_iter().map(|it| (it, first.file().to_owned())));
         }
-        found
+        unused_items
     }
 }
 
 fn required(documents: &[&Document]) -> wgt::Features {
     let required = documents.iter().flat_map(|document| &document.requires);
-    required.fold(wgt::Features::empty(), |all, (_, flag)| all | *flag)
+    required.fold(wgt::Features::empty(), |flags, (_, flag)| flags | *flag)
 }
 
 fn asked_for(documents: &[&Document]) -> wgt::Features {

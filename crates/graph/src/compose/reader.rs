@@ -84,11 +84,11 @@ impl<'a> Reader<'a> {
         let file = self.file(path)?;
         let document = self.document(file, None)?;
         let openings = document.openings();
-        let known: Vec<String> = openings.map(|(name, _)| name.to_string()).collect();
-        for name in self.chosen.keys().filter(|name| !known.contains(name)) {
-            let (name, known) = (name.clone(), known.clone());
+        let names: Vec<String> = openings.map(|(name, _)| name.to_string()).collect();
+        for name in self.chosen.keys().filter(|name| !names.contains(name)) {
+            let (name, names) = (name.clone(), names.clone());
             self.reports
-                .report(ComposeError::NoOpening(name, path.to_owned(), known));
+                .report(ComposeError::NoOpening(name, path.to_owned(), names));
         }
         Ok(document)
     }
@@ -105,8 +105,8 @@ impl<'a> Reader<'a> {
             Ok(Some(text)) => return Ok(SourceFile::new(path, text)),
             Ok(None) => {
                 let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
-                let known = self.documents_in(folder);
-                ComposeError::NoDocument(path.to_owned(), likeness(name, known))
+                let documents = self.documents_in(folder);
+                ComposeError::NoDocument(path.to_owned(), likeness(name, documents))
             }
             Err(why) => ComposeError::Unreadable(path.to_owned(), why),
         };
@@ -235,7 +235,7 @@ impl<'a> Reader<'a> {
         let mut lights = std::mem::take(&mut document.lights);
         for (_, include, inner) in document.includes().filter(|(_, it, _)| it.open.is_some()) {
             let had_some = !lights.is_empty();
-            lights.retain(|light| inner.lights.iter().any(|known| known.value == light.value));
+            lights.retain(|light| inner.lights.iter().any(|other| other.value == light.value));
             if had_some && lights.is_empty() && !inner.lights.is_empty() {
                 let takes = inner.lights.iter().map(|light| light.to_string()).collect();
                 let error = ComposeError::NoCommonLight(include.graph.clone(), takes);
@@ -264,13 +264,13 @@ impl<'a> Reader<'a> {
         }
         let below = folder_of(graph);
         let folders = candidates.iter().map(|path| folder_of(path));
-        let known = folders
+        let paths = folders
             .flat_map(|folder| self.documents_in(folder))
             .map(|name| match below {
                 "" => name,
                 _ => format!("{below}/{name}"),
             });
-        let likeness = likeness(graph, known.collect::<Vec<_>>());
+        let likeness = likeness(graph, paths.collect::<Vec<_>>());
         let error = ComposeError::NoInclude(graph.clone(), candidates, likeness);
         Err(self.reports.report(error))
     }
@@ -288,8 +288,8 @@ impl<'a> Reader<'a> {
                 self.reports.report(match word {
                     None => ComposeError::NarrowOfOther(name, declared),
                     Some(word) => {
-                        let known = param.words().map(Name::to_string).collect();
-                        ComposeError::NarrowWord(word, declared, known)
+                        let words = param.words().map(Name::to_string).collect();
+                        ComposeError::NarrowWord(word, declared, words)
                     }
                 });
             }
@@ -321,19 +321,19 @@ impl<'a> Reader<'a> {
         }
         for (mut param, span) in exposed {
             let mut params = document.params.iter();
-            let known = params.position(|known| known.name.value == param.name.value);
+            let position = params.position(|other| other.name.value == param.name.value);
             // The same declaration twice is one param.
-            if known.is_some_and(|at| document.params[at].name.span == param.name.span) {
+            if position.is_some_and(|at| document.params[at].name.span == param.name.span) {
                 continue;
             }
-            if let Some(at) = known {
-                let known = &document.params[at];
-                let (declared, exposing) = (document.rank(&known.name.span), document.rank(&span));
+            if let Some(at) = position {
+                let first = &document.params[at];
+                let (declared, exposing) = (document.rank(&first.name.span), document.rank(&span));
                 // It takes the place of a param of a document that this one extends.
                 if at < document.declared && declared > exposing {
-                    let known = document.params.remove(at);
+                    let first = document.params.remove(at);
                     document.declared -= 1;
-                    let default = known.default;
+                    let default = first.default;
                     let is_edited = |default: &Expr| document.rank(&default.span) < declared;
                     if let Some(default) = default.filter(is_edited) {
                         param.default = Some(default);
@@ -343,7 +343,7 @@ impl<'a> Reader<'a> {
                     continue;
                 }
                 let name = Located::new(param.name.value, span);
-                let error = ComposeError::ExposedTwice(name, known.name.span.clone());
+                let error = ComposeError::ExposedTwice(name, first.name.span.clone());
                 document.invalid_params = Some(self.reports.report(error));
                 continue;
             }
@@ -376,8 +376,8 @@ impl<'a> Reader<'a> {
 }
 
 fn no_param(name: Located<String>, document: &Document) -> ComposeError {
-    let known = document.params.iter().map(|param| param.name.value.clone());
-    ComposeError::NoParam(name, document.file.name.to_string(), known.collect())
+    let names = document.params.iter().map(|param| param.name.value.clone());
+    ComposeError::NoParam(name, document.file.name.to_string(), names.collect())
 }
 
 /// Writes out which params `expose: All` exposes: those that neither the include nor a group around

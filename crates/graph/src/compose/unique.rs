@@ -103,8 +103,8 @@ fn check_entries(
                 for (number, output) in document.outputs.iter().enumerate() {
                     let output = &output.name;
                     // Two of a name are told in that document.
-                    let others = &document.outputs[..number];
-                    let is_second = others.iter().any(|other| other.name.value == output.value);
+                    let earlier = &document.outputs[..number];
+                    let is_second = earlier.iter().any(|other| other.name.value == output.value);
                     let full = entry.outer_name(include, output);
                     let mut bound = entry.bind.iter();
                     let mut inputs = document.inputs.iter();
@@ -143,14 +143,14 @@ impl Names {
             "material" => wgsl_identifier(&name),
             _ => name.value.clone(),
         };
-        let Some(known) = self.seen.get(&spelling) else {
+        let Some(first) = self.seen.get(&spelling) else {
             self.seen.insert(spelling, name);
             return true;
         };
-        reports.report(if name.value == known.value {
-            ComposeError::SameName(self.what, name, known.span.clone())
+        reports.report(if name.value == first.value {
+            ComposeError::SameName(self.what, name, first.span.clone())
         } else {
-            ComposeError::Clash(name, known.clone())
+            ComposeError::Clash(name, first.clone())
         });
         false
     }

@@ -26,7 +26,10 @@ impl Used {
         document.visit(&mut |leaf| match leaf {
             Leaf::Param(name) => drop(used.params.insert(name.to_owned())),
             Leaf::Word(name) => drop(used.params.insert(name.to_string())),
-            Leaf::Material(of) => drop(used.materials.insert(of.segments[0].name.to_string())),
+            Leaf::Material(reference) => drop(
+                used.materials
+                    .insert(reference.segments[0].name.to_string()),
+            ),
             Leaf::Constant(_) | Leaf::Has(_) => {}
         });
         for pass in document.passes() {
@@ -62,11 +65,11 @@ impl Used {
 
 /// Drops params, values, inputs and materials that a document inherits by `extends` and does not
 /// use, in the document and in all that it includes. Warns of a default for a dropped param.
-/// `known` holds the included documents that are done, by path.
+/// `documents` holds the included documents that are done, by path.
 pub(crate) fn drop_unused(
     document: &mut Document,
     shaders: &Shaders,
-    known: &mut HashMap<Arc<str>, Arc<Document>>,
+    documents: &mut HashMap<Arc<str>, Arc<Document>>,
     reports: &mut Reports,
 ) {
     let mut given: Vec<Span> = Vec::new();
@@ -75,12 +78,12 @@ pub(crate) fn drop_unused(
             return;
         };
         let path = Arc::clone(&inner.file.name);
-        if !known.contains_key(&path) {
+        if !documents.contains_key(&path) {
             let mut document = Document::clone(inner);
-            drop_unused(&mut document, shaders, known, reports);
-            known.insert(Arc::clone(&path), Arc::new(document));
+            drop_unused(&mut document, shaders, documents, reports);
+            documents.insert(Arc::clone(&path), Arc::new(document));
         }
-        *inner = Arc::clone(&known[&path]);
+        *inner = Arc::clone(&documents[&path]);
         let is_there = |name: &Located<String>| inner.params.iter().any(|it| *it.name == **name);
         include.expose.names.retain(is_there);
         given.extend(inner.params.iter().map(|param| param.name.span.clone()));

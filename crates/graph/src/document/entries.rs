@@ -107,8 +107,8 @@ fn entry(
     let is_composed = COMPOSITION.contains(&raw.tag.as_str());
     if !is_composed && registry.get(&raw.tag).is_none() {
         let kinds = registry.kinds().chain(COMPOSITION);
-        let known = kinds.map(str::to_owned).collect();
-        return Err(DocumentError::UnknownKind(raw.tag, known).into());
+        let names = kinds.map(str::to_owned).collect();
+        return Err(DocumentError::UnknownKind(raw.tag, names).into());
     }
     if let Some(passes) = raw.passes.take_if(|_| *raw.tag != "Group") {
         drop(passes);

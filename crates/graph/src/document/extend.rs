@@ -48,8 +48,8 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
     put(&mut document.params, own.params, is_named_as);
     put(&mut document.values, own.values, is_same_key);
     for (name, value) in own.set {
-        let known = |item: &&mut RawItem| item.name().is_some_and(|own| *own == *name);
-        match document.params.iter_mut().find(known) {
+        let is_named = |item: &&mut RawItem| item.name().is_some_and(|own| *own == *name);
+        match document.params.iter_mut().find(is_named) {
             // The document decides, so nothing is left to search for.
             Some(param) => {
                 param.fields.retain(|field| *field.name != *"tune");
@@ -57,7 +57,7 @@ pub(crate) fn extend(base: RawDocument, own: RawDocument, reports: &mut Reports)
                 put(&mut param.fields, [default], is_same_field);
             }
             None => {
-                document.set.retain(|(known, _)| **known != *name);
+                document.set.retain(|(param, _)| **param != *name);
                 document.set.push((name, value));
             }
         }
@@ -97,25 +97,25 @@ fn inherited(outputs: Vec<Node>) -> Vec<Node> {
 /// Puts each of `own` into the place of the one that is the same in the list, or behind the others.
 fn put<T>(list: &mut Vec<T>, own: impl IntoIterator<Item = T>, is_same: fn(&T, &T) -> bool) {
     for item in own {
-        match list.iter_mut().find(|known| is_same(known, &item)) {
-            Some(known) => *known = item,
+        match list.iter_mut().find(|base| is_same(base, &item)) {
+            Some(base) => *base = item,
             None => list.push(item),
         }
     }
 }
 
-fn is_same_key((known, _): &(Located<String>, Node), (key, _): &(Located<String>, Node)) -> bool {
-    **known == **key
+fn is_same_key((base, _): &(Located<String>, Node), (key, _): &(Located<String>, Node)) -> bool {
+    **base == **key
 }
 
-fn is_same_field(known: &Field, field: &Field) -> bool {
-    *known.name == *field.name
+fn is_same_field(base: &Field, field: &Field) -> bool {
+    *base.name == *field.name
 }
 
 /// Narrows params of the base further. A word that the base has taken away stays away.
 fn narrower(mut base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
     for (name, node) in &own {
-        let Some((first, before)) = base.iter().find(|(known, _)| **known == **name) else {
+        let Some((first, before)) = base.iter().find(|(key, _)| **key == **name) else {
             continue;
         };
         // One that cannot be read is reported where it is.
@@ -123,7 +123,7 @@ fn narrower(mut base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
             continue;
         };
         for word in now.words {
-            if before.words.iter().all(|known| known.value != word.value) {
+            if before.words.iter().all(|kept| kept.value != word.value) {
                 reports.report(EditError::Widens(name.clone(), word, first.span.clone()));
             }
         }
@@ -134,8 +134,8 @@ fn narrower(mut base: RawMap, own: RawMap, reports: &mut Reports) -> RawMap {
 
 /// The items but those of a name that is another item's now: a material may take the place of an
 /// input, and an input that of a material.
-fn without(items: Vec<RawItem>, others: &[RawItem]) -> Vec<RawItem> {
-    let is_free = |item: &RawItem| others.iter().all(|other| !is_named_as(item, other));
+fn without(items: Vec<RawItem>, own: &[RawItem]) -> Vec<RawItem> {
+    let is_free = |item: &RawItem| own.iter().all(|other| !is_named_as(item, other));
     items.into_iter().filter(is_free).collect()
 }
 
@@ -227,10 +227,10 @@ impl Edits<'_> {
 
 /// The path of an entry that a field of an edit names; the field is taken out.
 fn path_of(edit: &mut RawEntry, field: &'static str) -> Result<Located<String>, EditError> {
-    let found = edit.take(field);
-    let found = found.ok_or_else(|| EditError::NoPath(edit.tag.clone(), field))?;
-    let path: Result<String, _> = found.node.parse();
-    let span = found.node;
+    let path_field = edit.take(field);
+    let path_field = path_field.ok_or_else(|| EditError::NoPath(edit.tag.clone(), field))?;
+    let path: Result<String, _> = path_field.node.parse();
+    let span = path_field.node;
     path.map(|path| Located::new(path, span.clone()))
         .map_err(|_| EditError::NoString(span))
 }
@@ -249,8 +249,8 @@ fn find<'e>(
             entry.is_ok_and(|entry| entry.name().as_deref() == Some(name))
         };
         let Some(at) = list.iter().position(named) else {
-            let known = list.iter().flatten().filter_map(RawEntry::name).collect();
-            return Err(EditError::NoSuchEntry(path.clone(), name.to_owned(), known));
+            let peers = list.iter().flatten().filter_map(RawEntry::name).collect();
+            return Err(EditError::NoSuchEntry(path.clone(), name.to_owned(), peers));
         };
         if names.peek().is_none() {
             return Ok((list, at));

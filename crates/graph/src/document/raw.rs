@@ -218,8 +218,8 @@ pub(crate) fn split(
 fn sections(fields: Vec<Field>, reports: &mut Reports) -> HashMap<String, Node> {
     let mut sections = HashMap::new();
     for field in fields {
-        let mut known = SECTIONS.iter().map(|(name, _)| *name);
-        if !known.any(|known| *known == **field.name) {
+        let mut names = SECTIONS.iter().map(|(name, _)| *name);
+        if !names.any(|name| *name == **field.name) {
             reports.report(unknown_field(&field.name, SECTIONS.map(|(name, _)| name)));
             continue;
         }

@@ -119,11 +119,11 @@ fn value(name: Located<String>, node: &Node) -> Result<(Located<Name>, Expr), Di
 }
 
 /// A material whose name is free to be one.
-fn free<T>(name: Located<Name>, of: T) -> Result<T, Diagnostic> {
+fn free<T>(name: Located<Name>, declaration: T) -> Result<T, Diagnostic> {
     if RESERVED.contains(&name.as_str()) {
         Err(DocumentError::Reserved(name).into())
     } else {
-        Ok(of)
+        Ok(declaration)
     }
 }
 

@@ -301,8 +301,8 @@ impl Document {
     /// for this document, 1 for the document that it extends, and so on.
     pub fn rank(&self, span: &Span) -> usize {
         let mut extended = self.extended.iter();
-        let found = extended.position(|file| *file == span.file.name);
-        found.map_or(0, |below| below + 1)
+        let depth = extended.position(|file| *file == span.file.name);
+        depth.map_or(0, |below| below + 1)
     }
 
     /// Iterates over the outputs that give a texture, buffer or sampler, not a named value, in the
@@ -361,14 +361,15 @@ impl Document {
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let params = self.params[..self.declared].iter();
         let claims = self.claims.iter();
+        let (imports, outputs) = (self.imports.iter(), self.outputs.iter());
         let exprs = params
             .filter_map(|param| param.default.as_ref())
             .chain(claims.filter_map(|(_, claim)| claim.condition.as_ref()))
             .chain(self.defaults.iter().map(|(_, value)| value))
             .chain(self.values.iter().map(|(_, value)| value))
             .chain(&self.needs)
-            .chain(self.imports.iter().filter_map(|of| of.condition.as_ref()))
-            .chain(self.outputs.iter().filter_map(|of| of.condition.as_ref()));
+            .chain(imports.filter_map(|import| import.condition.as_ref()))
+            .chain(outputs.filter_map(|output| output.condition.as_ref()));
         exprs.for_each(|expr| expr.visit(each));
         for material in &self.materials {
             material.visit(each);
@@ -406,10 +407,11 @@ impl Entry {
         let exprs = [&self.condition, &self.repeat].into_iter().flatten();
         let exprs = exprs.chain(self.set.iter().map(|(_, value)| value));
         let exprs = exprs.chain(run);
-        let exprs = exprs.chain(mentions.iter().flat_map(|of| &of.exprs));
+        let exprs = exprs.chain(mentions.iter().flat_map(|mentions| &mentions.exprs));
         exprs.for_each(|expr| expr.visit(each));
         let references = self.bind.iter().map(|(_, reference)| reference);
-        let references = references.chain(mentions.iter().flat_map(|of| &of.references));
+        let references =
+            references.chain(mentions.iter().flat_map(|mentions| &mentions.references));
         references.for_each(|reference| reference.visit(each));
     }
 }

@@ -53,19 +53,19 @@ mistakes! {
         ));
 
     /// Two names that are spelt alike in a shader, such as `a.b` and `a_b`.
-    Clash(name: Located<String>, known: Located<String>) =>
-        Name("`{name}` and `{known}` are one name in a shader")
-        .at(&name, format!("gives `{name}`")).at(known, "declared here").help("rename one of them");
+    Clash(name: Located<String>, first: Located<String>) =>
+        Name("`{name}` and `{first}` are one name in a shader")
+        .at(&name, format!("gives `{name}`")).at(first, "declared here").help("rename one of them");
 
-    NoParam(name: Located<String>, document: String, known: Vec<String>) =>
-        UnknownParam("`{document}` has no param `{name}`").at(&name, "").suggest(&name, known);
+    NoParam(name: Located<String>, document: String, params: Vec<String>) =>
+        UnknownParam("`{document}` has no param `{name}`").at(&name, "").suggest(&name, params);
 
-    NoOpening(name: String, document: String, known: Vec<String>) =>
+    NoOpening(name: String, document: String, openings: Vec<String>) =>
         UnknownParam("`{document}` has no open include `{name}`")
-        .help_any(known.is_empty().then_some(
+        .help_any(openings.is_empty().then_some(
             "an include is left open by `open: \"…\"`; it has none",
         ))
-        .suggest(&name, known);
+        .suggest(&name, openings);
 
     NoCommonLight(graph: Located<String>, takes: Vec<String>) =>
         Light("no light is taken both here and by `{graph}`")
@@ -87,9 +87,9 @@ mistakes! {
         .at(name, "").at(declared, "declared here")
         .help("give a number another `min` or `max` where it is declared");
 
-    NarrowWord(word: Located<Name>, declared: Span, known: Vec<String>) =>
+    NarrowWord(word: Located<Name>, declared: Span, words: Vec<String>) =>
         ParamValue("`{word}` is not a word that is left to narrow")
-        .at(&word, "").at(declared, "declared here").suggest(&word, known);
+        .at(&word, "").at(declared, "declared here").suggest(&word, words);
 
     ValueIsWord(name: Located<Name>, param: Located<String>) =>
         Name("the value `{name}` has the name of a word of the param `{param}`")

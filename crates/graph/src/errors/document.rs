@@ -27,9 +27,9 @@ mistakes! {
             _ => "this version of Skiagraph reads `format: 3`",
         });
 
-    UnknownKind(tag: Located<String>, known: Vec<String>) =>
+    UnknownKind(tag: Located<String>, kinds: Vec<String>) =>
         UnknownVariant("unknown pass kind `{tag}`")
-        .at(&tag, "no pass kind of this name is registered").suggest(&tag, known);
+        .at(&tag, "no pass kind of this name is registered").suggest(&tag, kinds);
 
     UnknownParamType(tag: Located<String>) =>
         UnknownVariant("unknown type of param `{tag}`").at(&tag, "").suggest(&tag, PARAM_TYPES);

@@ -12,8 +12,8 @@ mistakes! {
     /// An edit that cannot be made.
     EditError:
 
-    NoSuchEntry(path: Located<String>, name: String, known: Vec<String>) =>
-        Edit("the extended document has no entry `{path}`").at(path, "").suggest(&name, known);
+    NoSuchEntry(path: Located<String>, name: String, entries: Vec<String>) =>
+        Edit("the extended document has no entry `{path}`").at(path, "").suggest(&name, entries);
 
     RemovesItem(place: Span) =>
         Edit("`Remove` takes out passes alone")
@@ -46,8 +46,8 @@ mistakes! {
     NoString(place: Span) =>
         Edit("an entry is named in quotes").at(place, "for example `\"group.pass\"`");
 
-    Field(name: Located<String>, of: &'static str) =>
-        Edit("`{of}` has no such field").at(name, "not a field of this");
+    Field(name: Located<String>, owner: &'static str) =>
+        Edit("`{owner}` has no such field").at(name, "not a field of this");
 
     Passes(place: Span) =>
         Edit("the entries of a group are changed one by one")

@@ -14,10 +14,10 @@ mistakes! {
     /// An expression without a value, or with one of the wrong type.
     EvaluationError:
 
-    Type(span: Span, expected: &'static str, found: Value) =>
-        Expression("{expected} is needed here, not {}", found.describe())
-        .at(&span, format!("this is {found}"))
-        .help_any(match found {
+    Type(span: Span, expected: &'static str, value: Value) =>
+        Expression("{expected} is needed here, not {}", value.describe())
+        .at(&span, format!("this is {value}"))
+        .help_any(match value {
             Value::Scalar(Scalar::Number(number))
                 if number.abs() < 1e9 && expected.contains("whole") =>
             {
@@ -57,12 +57,12 @@ mistakes! {
         Expression("`{word}` is not one of the words")
         .at(span, "").suggest(&word, words.iter().map(Name::as_str));
 
-    Words(span: Span, expected: Vec<String>, found: Value) =>
-        Expression("{}", match &found {
+    Words(span: Span, expected: Vec<String>, value: Value) =>
+        Expression("{}", match &value {
             Value::Word(_) => "not every word of this Choice may stand here".to_owned(),
-            found => format!("a word is needed here, not {}", found.describe()),
+            value => format!("a word is needed here, not {}", value.describe()),
         })
-        .at(span, format!("this is {found}"))
+        .at(span, format!("this is {value}"))
         .help(format!(
             "a Choice of these words may stand here, all of its words being among them: {}",
             expected.join(", ")
@@ -72,8 +72,8 @@ mistakes! {
         Expression("`{owner}` has no attribute `{name}`")
         .at(span, "").suggest(&name, Attribute::ALL.iter().map(|(name, _)| *name));
 
-    NoAttribute(span: Span, of: String) =>
-        Expression("{of} has no such attribute")
+    NoAttribute(span: Span, owner: String) =>
+        Expression("{owner} has no such attribute")
         .at(span, "").help(format!("attributes are {}", attributes()));
 
     NoCount(name: Located<String>) =>
@@ -99,15 +99,15 @@ mistakes! {
         Value("values are made of each other more than {most} deep at `{name}`")
         .at(name, "").help("use fewer steps");
 
-    /// `index` outside of a repetition. `of` names the group or include whose index is asked for;
-    /// `None` for the innermost one.
-    NoIndex(place: Span, of: Option<Name>) =>
+    /// `index` outside of a repetition. `entry` names the group or include whose index is asked
+    /// for; `None` for the innermost one.
+    NoIndex(place: Span, entry: Option<Name>) =>
         Expression("nothing is repeated here")
-        .at(place, match &of {
+        .at(place, match &entry {
             None => "`index` is that of a repetition".to_owned(),
             Some(name) => format!("no repeated entry around this is called `{name}`"),
         })
-        .help_any(of.is_none().then_some("write a number, or `repeat: …`"));
+        .help_any(entry.is_none().then_some("write a number, or `repeat: …`"));
 
     NoSizes(place: Span, name: String) =>
         Expression("`{name}` has no size here: only params and features have values")
@@ -118,13 +118,13 @@ mistakes! {
         .at(place, "names in capitals are constants of a pass's shader")
         .help("use a param, which is written in small letters");
 
-    NoConstant { span: Span, file: String, name: String, known: Vec<String> } =>
+    NoConstant { span: Span, file: String, name: String, constants: Vec<String> } =>
         Expression("`{file}` has no scalar constant `{name}`")
-        .at(span, "").suggest(&name, known)
+        .at(span, "").suggest(&name, constants)
         .help("a constant that a document asks for has a type: `const NAME: u32 = …;`");
 
-    Unknown { span: Span, what: String, word: String, known: Vec<String> } =>
-        UnknownParam("{what}").at(span, "").suggest(&word, known);
+    Unknown { span: Span, what: String, word: String, names: Vec<String> } =>
+        UnknownParam("{what}").at(span, "").suggest(&word, names);
 }
 
 /// The text of an expression as one side of a comparison.
@@ -148,7 +148,7 @@ impl EvaluationError {
         name: &str,
         span: &Span,
         is_material: impl Fn(&str) -> bool,
-        known: Vec<String>,
+        names: Vec<String>,
     ) -> Self {
         if let Some((owner, attribute)) = name.rsplit_once('.')
             && (owner == "viewport" || is_material(owner))
@@ -168,7 +168,7 @@ impl EvaluationError {
                 format!("unknown param `{name}`")
             },
             word: name.to_owned(),
-            known: if is_material { Vec::new() } else { known },
+            names: if is_material { Vec::new() } else { names },
         }
     }
 }

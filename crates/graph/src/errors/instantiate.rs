@@ -73,11 +73,11 @@ mistakes! {
 
     NoInput {
         document: String, name: String, kind: String, span: Span, declared: Span,
-        known: Vec<String>,
+        names: Vec<String>,
     } =>
         Input("`{document}` asks for `{name}`, {kind}")
         .at(span, "nothing here has this name").at(declared, "asked for here")
-        .suggest(&name, known)
+        .suggest(&name, names)
         .help(format!("bind what is meant: `bind: {{\"{name}\": \"…\"}}`"));
 
     NoImport(name: Located<String>) =>
@@ -86,14 +86,14 @@ mistakes! {
         .help("include the document in one that has it, or let the host import it");
 
     WrongInput {
-        document: String, name: String, expected: String, found: String, span: Span,
+        document: String, name: String, expected: String, given: String, span: Span,
         declared: Span,
     } =>
-        Input("`{document}` asks for `{name}`, {expected}; here it is {found}")
+        Input("`{document}` asks for `{name}`, {expected}; here it is {given}")
         .at(span, "given here").at(declared, "asked for here");
 
-    WrongImport { name: Located<String>, expected: String, found: String } =>
-        Input("the host imports {found} for `{name}`, {expected} is asked for")
+    WrongImport { name: Located<String>, expected: String, imported: String } =>
+        Input("the host imports {imported} for `{name}`, {expected} is asked for")
         .at(name, "asked for here");
 
     WrittenInput(name: Located<String>, by: Span) =>
@@ -104,9 +104,9 @@ mistakes! {
              which takes the place of an extended document's input"
         );
 
-    Unused(document: String, name: Located<String>, known: Vec<String>) =>
+    Unused(document: String, name: Located<String>, names: Vec<String>) =>
         Unused("`{document}` has no input, output or param `{name}`")
-        .at(&name, "").suggest(&name, known);
+        .at(&name, "").suggest(&name, names);
 
     UnusedInGroup(group: String, name: Located<String>) =>
         Unused("nothing in the group `{group}` asks for `{name}`")
@@ -122,14 +122,14 @@ mistakes! {
         .at(name, why).at(declared, "declared here");
 
     /// Name without a material; `document` is the path of the document in which the name stands.
-    Unknown { name: Located<String>, document: String, known: Vec<String> } =>
+    Unknown { name: Located<String>, document: String, materials: Vec<String> } =>
         UnknownResource("unknown material `{name}`")
         .at(&name, format!("`{document}` declares no material or input of this name"))
-        .suggest(&name, known);
+        .suggest(&name, materials);
 
-    Private(entry: String, name: Located<String>, known: Vec<String>) =>
+    Private(entry: String, name: Located<String>, outputs: Vec<String>) =>
         UnknownResource("`{entry}` gives no `{name}`")
-        .at(&name, "only its outputs are seen from here").suggest(&name, known);
+        .at(&name, "only its outputs are seen from here").suggest(&name, outputs);
 
     Namespace(name: Located<String>) =>
         ResourceKind("`{name}` has no content of its own")
@@ -141,10 +141,10 @@ mistakes! {
     NoPart(part: Located<String>, what: &'static str) =>
         ResourceKind("`{part}` has no such part").at(part, what);
 
-    NotOfMaterial(of: String, name: Located<String>) =>
-        ResourceKind("`{of}` is a material, and gives no `{name}`")
+    NotOfMaterial(material: String, name: Located<String>) =>
+        ResourceKind("`{material}` is a material, and gives no `{name}`")
         .at(name, "not a part of it")
-        .help(format!("its parts are `{of}[0]`, `{of}.mip[0]`, `{of}.previous`"));
+        .help(format!("its parts are `{material}[0]`, `{material}.mip[0]`, `{material}.previous`"));
 
     NoPrevious {
         name: Located<String>,
@@ -166,9 +166,9 @@ mistakes! {
         Size("the graph has more than {most} {what}")
         .at(at, "counted up to here").help("repeat or include less");
 
-    Need { document: String, need: Located<String>, here: String } =>
+    Need { document: String, need: Located<String>, evaluated: String } =>
         Need("`{document}` needs `{need}`")
-        .at(need, format!("here it is {here}"))
+        .at(need, format!("here it is {evaluated}"))
         .help("plan it for another viewport, scene or number of lights, which `needs` asks for");
 
     Feature(document: String, feature: Located<String>) =>

@@ -22,8 +22,8 @@ mistakes! {
         Expression("the expression is too long")
         .at(place, "").help(format!("an expression has at most {most} words and signs"));
 
-    Unexpected(span: Span, found: String, expected: String) =>
-        Expression("{expected} is expected, not {found}").at(span, "here");
+    Unexpected(span: Span, token: String, expected: String) =>
+        Expression("{expected} is expected, not {token}").at(span, "here");
 
     Name(place: Span, fault: NameFault) =>
         Name("`{}` is not a name", place.text()).at(place, fault.to_string());
@@ -38,8 +38,8 @@ mistakes! {
         .at(&name, "")
         .suggest(&name, wgt::Features::all().iter_names().map(|(name, _)| name));
 
-    Arguments { span: Span, function: &'static str, expected: usize, found: usize } =>
-        Expression("`{function}` takes {expected} arguments, not {found}").at(span, "here");
+    Arguments { span: Span, function: &'static str, expected: usize, given: usize } =>
+        Expression("`{function}` takes {expected} arguments, not {given}").at(span, "here");
 
     /// End of a reference, such as `.previous` or `.mip[0]`, in the wrong place.
     Part(place: Span, part: &'static str) =>
@@ -61,9 +61,9 @@ mistakes! {
 
 /// Returns the attributes of materials as a list in words, for messages.
 pub(crate) fn attributes() -> String {
-    let all = Attribute::ALL.iter().map(|(_, of)| *of);
-    let of_materials = all.filter(|of| *of != Attribute::Index);
-    let of_materials = of_materials.map(|of| format!("`.{}`", of.as_str()));
+    let attributes = Attribute::ALL.iter().map(|(_, attribute)| *attribute);
+    let of_materials = attributes.filter(|attribute| *attribute != Attribute::Index);
+    let of_materials = of_materials.map(|attribute| format!("`.{}`", attribute.as_str()));
     let names: Vec<String> = of_materials.collect();
     names.join(", ")
 }

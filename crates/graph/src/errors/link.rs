@@ -28,10 +28,10 @@ mistakes! {
         MissingFile("the shader `{name}` was not loaded with the document")
         .at(name, "a pass kind must not choose its shaders by values");
 
-    WritesPrevious(of: String, span: Span) =>
-        ResourceKind("last frame's version of `{of}` cannot be written")
+    WritesPrevious(base: String, span: Span) =>
+        ResourceKind("last frame's version of `{base}` cannot be written")
         .at(span, "written here")
-        .help(format!("write `{of}`: the next frame finds it as `{of}.previous`"));
+        .help(format!("write `{base}`: the next frame finds it as `{base}.previous`"));
 
     WritesConstant(name: String, span: Span) =>
         ResourceKind("`{name}` holds what stands in the document, and is never written")
@@ -72,12 +72,12 @@ mistakes! {
     Overwrites(pass: String, name: Located<String>) =>
         ResourceKind("pass `{pass}` does not write `{name}`").at(name, "said to be overwritten");
 
-    UnusedSet { shader: String, name: Located<String>, known: Vec<String> } =>
+    UnusedSet { shader: String, name: Located<String>, names: Vec<String> } =>
         Unused("`{shader}` has no param or constant `{name}` to set")
-        .at(&name, "").suggest(&name, known);
+        .at(&name, "").suggest(&name, names);
 
-    UnusedBind { shader: String, name: Located<String>, known: Vec<String> } =>
-        Unused("`{shader}` has no global `{name}` to bind").at(&name, "").suggest(&name, known);
+    UnusedBind { shader: String, name: Located<String>, globals: Vec<String> } =>
+        Unused("`{shader}` has no global `{name}` to bind").at(&name, "").suggest(&name, globals);
 
     BindGroup { global: String, group: u32, most: u32, span: Span } =>
         Limit("`{global}` is in @group({group}), which the adapter does not have")
@@ -104,19 +104,19 @@ mistakes! {
              `var<uniform> params: Params;`"
         });
 
-    UnknownGlobal { global: Located<String>, pass: Located<String>, known: Vec<String> } =>
+    UnknownGlobal { global: Located<String>, pass: Located<String>, materials: Vec<String> } =>
         UnknownResource("pass `{pass}` binds the unknown material `{global}`")
         .at(&global, "no material, input or provided resource has this name")
         .at(pass, "bound by this pass")
-        .suggest(&global, known)
+        .suggest(&global, materials)
         .help(format!("bind what is meant: `bind: {{\"{global}\": \"…\"}}`"));
 
     WrongKind {
-        global: Located<String>, needed: &'static str, name: String, found: &'static str,
+        global: Located<String>, needed: &'static str, name: String, kind: &'static str,
         declared: Option<Span>,
     } =>
-        ResourceKind("the shader's `{global}` needs {needed}, but `{name}` is {found}")
-        .at(global, format!("the shader declares {needed}")).at_any(declared, found);
+        ResourceKind("the shader's `{global}` needs {needed}, but `{name}` is {kind}")
+        .at(global, format!("the shader declares {needed}")).at_any(declared, kind);
 
     UniformSize { name: String, have: u64, size: u64, span: Span } =>
         LayoutMismatch("`{name}` has {have} bytes, the shader's type {size}")
@@ -155,24 +155,24 @@ mistakes! {
         ));
 
     /// A value for a member of `params` or an override, of the type `expected`; `None` for `bool`.
-    SetValue { name: String, expected: Option<ShaderType>, found: Value, span: Span } =>
+    SetValue { name: String, expected: Option<ShaderType>, value: Value, span: Span } =>
         ParamValue("`{name}` takes {}", expected.map_or("true or false".into(), ShaderType::words))
-        .at(&span, format!("this is {found}"))
+        .at(&span, format!("this is {value}"))
         .help(match expected {
-            Some(expected) => expected.way_out(found.scalars(), span.text()),
+            Some(expected) => expected.way_out(value.scalars(), span.text()),
             None => "write `true` or `false`, or a comparison in quotes".to_owned(),
         });
 
     UnknownMember {
         member: String,
         span: Span,
-        known: Vec<String>,
+        params: Vec<String>,
         /// Param type that fits the member, for the suggested declaration; `None` if no param can
         /// be it.
         ty: Option<String>,
     } =>
         UnknownParam("unknown param `{member}` in the shader's `params`")
-        .at(span, "").suggest(&member, known)
+        .at(span, "").suggest(&member, params)
         .help(match ty {
             Some(ty) => format!(
                 "declare it, `params: [{ty}(name: \"{member}\", default: …)]`, or `set` it"
@@ -195,12 +195,12 @@ mistakes! {
         /// Type of the param in a shader.
         needed: ShaderType,
         /// Type of the member; `None` if it is neither a number nor a vector.
-        found: Option<ShaderType>,
+        declared: Option<ShaderType>,
         span: Span,
     } =>
         LayoutMismatch(
             "`{member}` is {} in the shader, but the param `{}` needs {needed} there",
-            found.map_or("neither a number nor a vector".to_owned(), |found| found.to_string()),
+            declared.map_or("neither a number nor a vector".to_owned(), |ty| ty.to_string()),
             param.name
         )
         .at(span, "declared here").at(&param.name, format!("declared {} here", param.ty))
@@ -209,13 +209,13 @@ mistakes! {
             None if needed.width == 1 => Some(format!("write `override {member}: {needed}`")),
             None => None,
         })
-        .help_any(found.and_then(ShaderType::param).map(|ty| {
+        .help_any(declared.and_then(ShaderType::param).map(|ty| {
             format!("or declare the param so: `{ty}(name: \"{}\", …)`", param.name)
         }));
 
-    NoArguments(name: Located<String>, found: &'static str) =>
+    NoArguments(name: Located<String>, kind: &'static str) =>
         ResourceKind("`{name}` cannot hold indirect arguments")
-        .at(name, format!("this is {found}, a buffer of the document is needed"));
+        .at(name, format!("this is {kind}, a buffer of the document is needed"));
 
     WorkgroupOverride(at: Span, pass: Located<String>) =>
         Shader("a workgroup size that is an override is not supported")
@@ -253,11 +253,11 @@ mistakes! {
     CopyKinds { from: Located<String>, to: Located<String>, kinds: [&'static str; 2] } =>
         ResourceKind("`{from}` cannot be copied onto `{to}`").at(from, kinds[0]).at(to, kinds[1]);
 
-    NoCpuWork(name: Located<String>, found: &'static str) =>
-        ResourceKind("`{name}` does no work on the CPU").at(name, format!("this is {found}"));
+    NoCpuWork(name: Located<String>, kind: &'static str) =>
+        ResourceKind("`{name}` does no work on the CPU").at(name, format!("this is {kind}"));
 
-    CpuItems(name: Located<String>, found: &'static str) =>
-        ResourceKind("`{name}` has no items for the CPU").at(name, format!("this is {found}"));
+    CpuItems(name: Located<String>, kind: &'static str) =>
+        ResourceKind("`{name}` has no items for the CPU").at(name, format!("this is {kind}"));
 
     ClearFormat(name: Located<String>, format: TextureFormat) =>
         FormatMismatch("a texture of format {format:?} cannot be cleared")
@@ -268,8 +268,8 @@ mistakes! {
         ResourceKind("the buffer `{name}` can only be cleared to zero")
         .at(name, "").help("leave `value` out, or write the buffer by a Compute pass");
 
-    ClearKind(name: Located<String>, found: &'static str) =>
-        ResourceKind("`{name}` cannot be cleared").at(name, format!("this is {found}"));
+    ClearKind(name: Located<String>, kind: &'static str) =>
+        ResourceKind("`{name}` cannot be cleared").at(name, format!("this is {kind}"));
 
     ClearValue {
         name: Located<String>, wrong: f64, format: TextureFormat, expected: &'static str,
@@ -331,9 +331,9 @@ mistakes! {
         FormatMismatch("a texture of format {format:?} cannot be a stencil target")
         .at(name, "").help("use Depth24PlusStencil8, Depth32FloatStencil8 or Stencil8");
 
-    NoTexture(pass: String, name: Located<String>, found: &'static str) =>
+    NoTexture(pass: String, name: Located<String>, kind: &'static str) =>
         ResourceKind("pass `{pass}` cannot draw to `{name}`")
-        .at(name, format!("this is {found}, a texture is needed"));
+        .at(name, format!("this is {kind}, a texture is needed"));
 
     SeveralLayers(name: Located<String>) =>
         ResourceKind("`{name}` has several mips or layers")

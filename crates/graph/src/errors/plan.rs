@@ -6,14 +6,14 @@ mistakes! {
     /// A request that a plan cannot meet.
     OutputError:
 
-    NoOutput { graph: String, name: String, known: Vec<String> } =>
-        Output("`{graph}` has no output `{name}`").suggest(&name, known);
+    NoOutput { graph: String, name: String, outputs: Vec<String> } =>
+        Output("`{graph}` has no output `{name}`").suggest(&name, outputs);
 
-    NoMaterial { graph: String, name: String, known: Vec<String> } =>
-        Output("`{graph}` has no material `{name}` to read back").suggest(&name, known);
+    NoMaterial { graph: String, name: String, materials: Vec<String> } =>
+        Output("`{graph}` has no material `{name}` to read back").suggest(&name, materials);
 
-    NoPass(name: String, known: Vec<String>) =>
-        Output("unknown pass `{name}` to read a material after").suggest(&name, known);
+    NoPass(name: String, passes: Vec<String>) =>
+        Output("unknown pass `{name}` to read a material after").suggest(&name, passes);
 
     Unsized(name: String) =>
         Output("`{name}` cannot be read back")

@@ -29,9 +29,10 @@ mistakes! {
         Size("`{name}`: {mips} mips are too many")
         .at(name, "").help(format!("it can have {full}: `mips: All`"));
 
-    Samples(name: Located<String>, format: wgt::TextureFormat, samples: u32, known: Vec<u32>) =>
+    Samples(name: Located<String>, format: wgt::TextureFormat, samples: u32, counts: Vec<u32>) =>
         FormatMismatch("`{name}`: a texture of {format:?} cannot have {samples} samples")
-        .at(name, "").help(format!("it can have {}", list(known.iter().map(u32::to_string), ", ")));
+        .at(name, "")
+        .help(format!("it can have {}", list(counts.iter().map(u32::to_string), ", ")));
 
     FormatFeature(name: Located<String>, format: wgt::TextureFormat, feature: wgt::Features) =>
         Feature("`{name}`: not every device has {format:?}")
@@ -104,6 +105,6 @@ mistakes! {
         .help("name a buffer whose first u32 a pass makes the number of items needed");
 }
 
-fn list(of: impl Iterator<Item = String>, between: &str) -> String {
-    of.collect::<Vec<_>>().join(between)
+fn list(texts: impl Iterator<Item = String>, between: &str) -> String {
+    texts.collect::<Vec<_>>().join(between)
 }

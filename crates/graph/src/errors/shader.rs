@@ -95,19 +95,19 @@ mistakes! {
         Shader("a type has no layout: {what}").at(at, "");
 
     Collision {
-        file: String, global: String, number: String, at: Span, others: Vec<(Span, String)>,
+        file: String, global: String, number: String, at: Span, clashing: Vec<(Span, String)>,
     } =>
         Binding("`{global}` of `{file}` has a binding number that is taken: {number}")
         .at(at, "this one")
-        .at_all(others.into_iter().map(|(at, name)| (at, format!("`{name}` has it too"))))
+        .at_all(clashing.into_iter().map(|(at, name)| (at, format!("`{name}` has it too"))))
         .help("leave the numbers out: the graph gives them");
 
     Choice {
-        constant: String, found: String, word: String, param: Located<String>, number: u32,
+        constant: String, value: String, word: String, param: Located<String>, number: u32,
         at: Span,
     } =>
         ChoiceConstant(
-            "`{constant}` is {found} in the shader, and {word} of `{param}` is {number}"
+            "`{constant}` is {value} in the shader, and {word} of `{param}` is {number}"
         )
         .at(at, "declared here").at(param, "the words in their order")
         .help("leave the constant out: the words of a Choice bring it");
@@ -117,19 +117,19 @@ mistakes! {
         .at(second, "a word of this").at(first, "and one of this")
         .help("rename one of the words or params: NAME_WORD is the constant of a word");
 
-    NoSuchEntry { file: String, stage: String, name: Located<String>, known: Vec<String> } =>
+    NoSuchEntry { file: String, stage: String, name: Located<String>, entries: Vec<String> } =>
         EntryPoint("`{file}` has no {stage} entry point `{name}`")
-        .at(&name, "").suggest(&name, known);
+        .at(&name, "").suggest(&name, entries);
 
     NoEntry(file: String, stage: String, at: Span) =>
         EntryPoint("`{file}` has no {stage} entry point")
         .at(at, "this pass needs one")
         .help(format!("write a function with the attribute @{stage}"));
 
-    SeveralEntries { file: String, stage: String, at: Span, known: Vec<String> } =>
+    SeveralEntries { file: String, stage: String, at: Span, entries: Vec<String> } =>
         EntryPoint("`{file}` has several {stage} entry points")
         .at(at, "it is not clear which one this pass runs")
-        .help(format!("name one of `{}`", known.join("`, `")));
+        .help(format!("name one of `{}`", entries.join("`, `")));
 
     Unused(what: &'static str, name: Located<String>, shader: String) =>
         Unused("nothing in `{shader}` uses the {what} `{name}`")

@@ -37,11 +37,11 @@ pub(crate) trait Environment {
     /// word.
     fn word_or_param(&mut self, name: &Name) -> Option<Value>;
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
+    fn index(&mut self, entry: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
 
     fn attribute(
         &mut self,
-        of: &Reference,
+        material: &Reference,
         attribute: Attribute,
         span: &Span,
     ) -> Result<Value, ErrorGuaranteed>;
@@ -49,7 +49,7 @@ pub(crate) trait Environment {
     fn constant(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
 
     /// Returns the kind of a provided resource, by its name; `None` if it has none.
-    fn kind(&mut self, _of: &str) -> Option<ProvidedKind> {
+    fn kind(&mut self, _name: &str) -> Option<ProvidedKind> {
         None
     }
 
@@ -74,22 +74,22 @@ pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> 
         ExprKind::Param(name) => env.param(name, &expr.span),
         ExprKind::Attribute(subject, attribute) => match subject {
             Subject::Viewport => of_viewport(expr, *attribute, env),
-            Subject::Repetition(of) => env.index(of.as_ref(), &expr.span).map(Value::whole),
-            Subject::Material(of) => env.attribute(of, *attribute, &expr.span),
+            Subject::Repetition(entry) => env.index(entry.as_ref(), &expr.span).map(Value::whole),
+            Subject::Material(material) => env.attribute(material, *attribute, &expr.span),
         },
         ExprKind::Constant(name) => env.constant(name, &expr.span),
         ExprKind::Has(feature) => Ok(Value::Bool(env.has(*feature))),
-        ExprKind::Unary(Unary::Not, of) => Ok(Value::Bool(!boolean(of, env)?)),
-        ExprKind::Unary(Unary::Minus, of) => {
-            let values = [value(of, env)?, Value::whole(0)];
+        ExprKind::Unary(Unary::Not, operand) => Ok(Value::Bool(!boolean(operand, env)?)),
+        ExprKind::Unary(Unary::Minus, operand) => {
+            let values = [value(operand, env)?, Value::whole(0)];
             each(expr, values, env, |value, _| match value {
                 Scalar::Whole(whole) => whole.checked_neg().map(Scalar::Whole),
                 Scalar::Number(number) => Some(Scalar::Number(-number)),
             })
         }
         ExprKind::Binary(operator, sides) => binary(expr, *operator, sides, env),
-        ExprKind::Ternary(of) => {
-            let [condition, yes, no] = &**of;
+        ExprKind::Ternary(operands) => {
+            let [condition, yes, no] = &**operands;
             if boolean(condition, env)? {
                 value(yes, env)
             } else {
@@ -112,8 +112,8 @@ fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> 
         Attribute::Count => Value::count(u64::from(width) * u64::from(height)),
         Attribute::Layers | Attribute::Mips | Attribute::Samples => Value::whole(1),
         Attribute::Format | Attribute::Kind | Attribute::Index => {
-            let of = "the viewport".to_owned();
-            return Err(env.report(EvaluationError::NoAttribute(expr.span.clone(), of)));
+            let owner = "the viewport".to_owned();
+            return Err(env.report(EvaluationError::NoAttribute(expr.span.clone(), owner)));
         }
     })
 }
@@ -121,10 +121,10 @@ fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> 
 fn wrong(
     expr: &Expr,
     expected: &'static str,
-    found: &Value,
+    value: &Value,
     env: &mut dyn Environment,
 ) -> ErrorGuaranteed {
-    let error = EvaluationError::Type(expr.span.clone(), expected, found.clone());
+    let error = EvaluationError::Type(expr.span.clone(), expected, value.clone());
     env.report(error)
 }
 
@@ -239,11 +239,11 @@ fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool
         ) => match words.iter().find(|word| ***word == *name) {
             Some(word) => word_alone(word),
             None => {
-                let known = Name::new(name).ok();
-                let known = known.and_then(|name| env.word_or_param(&name));
+                let word_name = Name::new(name).ok();
+                let resolved = word_name.and_then(|name| env.word_or_param(&name));
                 let (span, word) = (right.span.clone(), name.to_owned());
                 let unknown = || EvaluationError::NoSuchWord(span, word, words.to_vec());
-                known.ok_or_else(|| env.report(unknown()))?
+                resolved.ok_or_else(|| env.report(unknown()))?
             }
         },
         _ => value(right, env)?,

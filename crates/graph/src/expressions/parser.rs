@@ -91,14 +91,14 @@ impl<'a> Parser<'a> {
     }
 
     fn unexpected(&self, expected: &str) -> SyntaxFault {
-        let found = match self.peek() {
+        let token = match self.peek() {
             Token::Word(word) => format!("`{word}`"),
             Token::Sign(sign) => format!("`{sign}`"),
             Token::Whole(number) => format!("`{number}`"),
             Token::Number(number) => format!("`{number}`"),
             Token::End => "the end".to_owned(),
         };
-        SyntaxFault::Unexpected(self.file.span(self.range()), found, expected.to_owned())
+        SyntaxFault::Unexpected(self.file.span(self.range()), token, expected.to_owned())
     }
 
     fn span(&self, from: usize) -> Span {
@@ -183,8 +183,8 @@ impl<'a> Parser<'a> {
             _ => return self.primary(),
         };
         self.next();
-        let of = self.unary()?;
-        let kind = ExprKind::Unary(operator, Box::new(of));
+        let operand = self.unary()?;
+        let kind = ExprKind::Unary(operator, Box::new(operand));
         Ok(Expr::new(kind, self.span(start)))
     }
 
@@ -249,7 +249,7 @@ impl<'a> Parser<'a> {
                 span: self.span(place.start),
                 function: function.as_str(),
                 expected: *count,
-                found: arguments.len(),
+                given: arguments.len(),
             });
         }
         Ok(ExprKind::Call(*function, arguments))
@@ -300,7 +300,8 @@ impl<'a> Parser<'a> {
             [first, .., last] | [first @ last] => (first.range.start, last),
             [] => return Err(self.unexpected("a name")),
         };
-        let selected = last.selection.as_ref().and_then(|of| of.exprs().last());
+        let selection = last.selection.as_ref();
+        let selected = selection.and_then(|selection| selection.exprs().last());
         let end = selected.map_or(last.range.end, |expr| expr.span.range.end + 1);
         let mut reference = Reference {
             segments: Vec::new(),

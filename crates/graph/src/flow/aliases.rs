@@ -51,7 +51,7 @@ pub(crate) fn aliases(
     lifetimes: &Lifetimes,
     kept: &BTreeSet<ResourceId>,
 ) -> Aliases {
-    let mut found = Aliases::default();
+    let mut aliases = Aliases::default();
     // In the order of first uses; resources that start together in the order of the file.
     let mut starts: Vec<(usize, ResourceId)> = lifetimes
         .iter()
@@ -72,7 +72,7 @@ pub(crate) fn aliases(
         let shares =
             !kept.contains(&id) && overwritten(view.pass(sequence[first]), view.resource(id), id);
         let free = shared.iter().copied().find(|&slot| {
-            let slot: &Allocation = &found.list[slot];
+            let slot: &Allocation = &aliases.list[slot];
             let other = slot.aliases[0];
             shares
                 && slot.until < first
@@ -84,20 +84,20 @@ pub(crate) fn aliases(
                 )
         });
         let slot = free.unwrap_or_else(|| {
-            found.list.push(Allocation {
+            aliases.list.push(Allocation {
                 aliases: Vec::new(),
                 until: 0,
             });
-            found.list.len() - 1
+            aliases.list.len() - 1
         });
         if shares {
             shared.insert(slot);
         }
-        found.list[slot].aliases.push(id);
-        found.list[slot].until = lifetime.last;
-        found.of.insert(id, slot);
+        aliases.list[slot].aliases.push(id);
+        aliases.list[slot].until = lifetime.last;
+        aliases.of.insert(id, slot);
     }
-    found
+    aliases
 }
 
 /// True if a pass overwrites all of a resource before it reads any of it.

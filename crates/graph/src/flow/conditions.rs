@@ -62,7 +62,7 @@ impl Conditions {
     /// resource `id`.
     pub fn is_written_by(&self, group: usize, id: ResourceId) -> bool {
         let mut written = self.written.iter();
-        written.any(|(at, of)| *of == id && self.group[*at] == group)
+        written.any(|(at, resource)| *resource == id && self.group[*at] == group)
     }
 
     /// Returns true if a pass that runs in this frame writes the resource `id` before the pass at
@@ -80,7 +80,7 @@ impl Conditions {
             return self.writers[id.index()].is_some_and(|group| runs[group]);
         }
         let mut above = self.written.iter().take_while(|(by, _)| *by < at);
-        above.any(|(by, of)| *of == id && runs[self.group[*by]])
+        above.any(|(by, resource)| *resource == id && runs[self.group[*by]])
     }
 }
 
@@ -126,7 +126,7 @@ pub(crate) fn conditions(
     }
     // The first pass of a group is its number.
     let joint = joint.into_labeling();
-    let first = |of: &usize| joint.iter().position(|other| other == of);
+    let first = |label: &usize| joint.iter().position(|other| other == label);
     let group: Vec<usize> = joint.iter().filter_map(first).collect();
     let mut writers = vec![None; view.resources.len()];
     for (id, uses) in &uses {

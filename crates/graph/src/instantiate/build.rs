@@ -135,17 +135,17 @@ impl<'a> Builder<'a> {
         if include::takes(&input.kind, &kind) {
             return Ok(kind);
         }
-        let (expected, found) = match (&input.kind, &kind) {
-            (InputKind::Texture(Some(asked)), ResourceKind::Texture(found)) => (
+        let (expected, imported) = match (&input.kind, &kind) {
+            (InputKind::Texture(Some(asked)), ResourceKind::Texture(texture)) => (
                 format!("a texture {asked:?}"),
-                format!("a texture {:?}", found.format),
+                format!("a texture {:?}", texture.format),
             ),
-            (asked, found) => (asked.describe().to_owned(), found.describe().to_owned()),
+            (asked, given) => (asked.describe().to_owned(), given.describe().to_owned()),
         };
         Err(InterfaceError::WrongImport {
             name,
             expected,
-            found,
+            imported,
         })
     }
 
@@ -209,13 +209,13 @@ impl<'a> Builder<'a> {
             let mut at = self.symbols.at(scope.begin(), None);
             // One without a value was reported.
             if self.plan_inputs.is_there(Some(need), &mut at) == Ok(false) {
-                let here = need.canonical(&mut |leaf| {
+                let evaluated = need.canonical(&mut |leaf| {
                     eval::value(leaf, &mut at).map_or_else(|_| "…".into(), |it| it.to_string())
                 });
                 self.symbols.reports.report(InterfaceError::Need {
                     document: document.file.name.to_string(),
                     need: Located::new(need.text().to_owned(), need.span.clone()),
-                    here,
+                    evaluated,
                 });
             }
         }
@@ -527,15 +527,15 @@ impl<'a> Builder<'a> {
         group: &'a Entry,
         outer: &[Inherited<'a, T>],
     ) -> Vec<Inherited<'a, T>> {
-        let mut said = Vec::new();
+        let mut inherited = Vec::new();
         for (name, value) in own {
             let mut settings = self.said.iter();
-            let known = settings.position(|(_, known, _)| std::ptr::eq(*known, name));
-            let number = known.unwrap_or_else(|| {
+            let index = settings.position(|(_, other, _)| std::ptr::eq(*other, name));
+            let number = index.unwrap_or_else(|| {
                 self.said.push((&group.name, name, false));
                 self.said.len() - 1
             });
-            said.push(Inherited {
+            inherited.push(Inherited {
                 name,
                 value,
                 position,
@@ -543,33 +543,34 @@ impl<'a> Builder<'a> {
             });
         }
         let hidden = |name: &str| own.iter().any(|(own, _)| **own == *name);
-        said.extend(outer.iter().copied().filter(|said| !hidden(said.name)));
-        said
+        let outer = outer.iter().copied();
+        inherited.extend(outer.filter(|setting| !hidden(setting.name)));
+        inherited
     }
 
-    /// Returns the bindings or values of groups in `said` for the names that `asks` accepts.
+    /// Returns the bindings or values of groups in `inherited` for the names that `asks` accepts.
     pub fn asked<T>(
         &self,
-        said: &[Inherited<'a, T>],
+        inherited: &[Inherited<'a, T>],
         asks: impl Fn(&str) -> bool,
     ) -> Vec<Inherited<'a, T>> {
-        let asked = said.iter().filter(|said| asks(said.name));
+        let asked = inherited.iter().filter(|setting| asks(setting.name));
         asked.copied().collect()
     }
 
     /// Notes that an entry uses these bindings and values of groups, so that they are not reported
     /// as unused.
     pub fn mark<T, U>(&mut self, bind: &[Inherited<'_, T>], set: &[Inherited<'_, U>]) {
-        let numbers = bind.iter().map(|said| said.number);
-        for number in numbers.chain(set.iter().map(|said| said.number)) {
+        let numbers = bind.iter().map(|setting| setting.number);
+        for number in numbers.chain(set.iter().map(|setting| setting.number)) {
             self.said[number].2 = true;
         }
     }
 
     /// True if a shader of a pass has this global and the pass itself does not bind it.
     fn asks_global(&self, scope: ScopeId, entry: &Entry, name: &str) -> bool {
-        let said = entry.bind.iter().any(|(own, _)| **own == *name);
-        !said
+        let is_bound = entry.bind.iter().any(|(own, _)| **own == *name);
+        !is_bound
             && self.any_shader(scope, entry, |shader| {
                 shader.global_names().any(|n| n == name)
             })
@@ -577,8 +578,8 @@ impl<'a> Builder<'a> {
 
     /// True if a shader of a pass has this param or override and the pass itself does not set it.
     fn asks_param(&self, scope: ScopeId, entry: &Entry, name: &str) -> bool {
-        let said = entry.set.iter().any(|(own, _)| **own == *name);
-        !said && self.any_shader(scope, entry, |shader| shader.params().any(|n| n == name))
+        let is_set = entry.set.iter().any(|(own, _)| **own == *name);
+        !is_set && self.any_shader(scope, entry, |shader| shader.params().any(|n| n == name))
     }
 
     fn any_shader(
@@ -592,9 +593,9 @@ impl<'a> Builder<'a> {
         };
         let instance = self.symbols.scopes.document(scope);
         let (document, replaced) = (&instance.document, &instance.replaced);
-        let known = &self.symbols.graph.shaders;
+        let store = &self.symbols.graph.shaders;
         let shaders = pass.shaders.iter();
-        let mut shaders = shaders.filter_map(|shader| known.get(document, shader, replaced));
+        let mut shaders = shaders.filter_map(|shader| store.get(document, shader, replaced));
         // One with a mistake may ask for anything.
         shaders.any(|shader| shader.as_ref().map_or(true, |shader| asks(shader)))
     }

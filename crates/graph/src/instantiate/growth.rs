@@ -13,7 +13,7 @@ use crate::{
 /// Environment in which the size of a material is found.
 pub(super) trait Sizing: Environment {
     /// Resolves a reference to another material that the size asks for.
-    fn resource(&mut self, of: &Reference) -> Reported<(Target, &Resource)>;
+    fn resource(&mut self, reference: &Reference) -> Reported<(Target, &Resource)>;
 }
 
 /// Sets the number of items of a buffer with `grow`: `grown` is the number that earlier frames

@@ -50,8 +50,8 @@ fn has_input(document: &Document, name: &str) -> bool {
 }
 
 /// True if an input takes a resource of this kind.
-pub(super) fn takes(input: &InputKind, found: &ResourceKind) -> bool {
-    match (input, found) {
+pub(super) fn takes(input: &InputKind, kind: &ResourceKind) -> bool {
+    match (input, kind) {
         (InputKind::Texture(format), ResourceKind::Texture(texture)) => {
             format.is_none_or(|format| format == texture.format)
         }
@@ -79,17 +79,17 @@ pub(super) fn said<'e>(
 ) -> Said<'e> {
     let own = |name: &str| entry.bind.iter().any(|(own, _)| **own == *name);
     let mut bind = context.bind.clone();
-    bind.retain(|said| {
+    bind.retain(|bound| {
         let inputs = document.inputs.iter().map(|input| &input.name);
         let mut border = inputs.chain(document.outputs.iter().map(|output| &output.name));
-        let is_border = border.any(|name| name.as_str() == said.name.as_str());
-        (is_border || at.is_of_scene(said.name)) && !own(said.name)
+        let is_border = border.any(|name| name.as_str() == bound.name.as_str());
+        (is_border || at.is_of_scene(bound.name)) && !own(bound.name)
     });
     let set_here = |name: &str| entry.set.iter().any(|(own, _)| **own == *name);
     let mut set = context.set.clone();
-    set.retain(|said| {
+    set.retain(|setting| {
         let mut params = document.params.iter();
-        params.any(|param| param.name.value == **said.name) && !set_here(said.name)
+        params.any(|param| param.name.value == **setting.name) && !set_here(setting.name)
     });
     (bind, set)
 }
@@ -100,9 +100,9 @@ pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Rep
     let overrides = &at.instance().overrides;
     let (name, target) = overrides.get(material.name().as_str())?.clone();
     Some(target.and_then(|target| {
-        let found = &at.symbols().get(target.id).kind;
+        let kind = &at.symbols().get(target.id).kind;
         let fits = matches!(
-            (material, found),
+            (material, kind),
             (Material::Texture(_), ResourceKind::Texture(_))
                 | (Material::Buffer(_), ResourceKind::Buffer(_))
                 | (Material::Sampler(_), ResourceKind::Sampler(_))
@@ -110,7 +110,7 @@ pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Rep
         if fits {
             return Ok(target);
         }
-        let why = format!("this is {}", found.describe());
+        let why = format!("this is {}", kind.describe());
         let declared = material.name().span.clone();
         Err(at.report(InterfaceError::BoundOutput(name, why, declared)))
     }))
@@ -132,8 +132,8 @@ impl<'e> Call<'e> {
         let own_set = own_set.map(|(name, value)| (name, value, position));
         let bind = of_groups.0.iter();
         let set = of_groups.1.iter();
-        let bind = bind.map(|said| (said.name, said.value, said.position));
-        let set = set.map(|said| (said.name, said.value, said.position));
+        let bind = bind.map(|bound| (bound.name, bound.value, bound.position));
+        let set = set.map(|setting| (setting.name, setting.value, setting.position));
         Self {
             entry,
             include,
@@ -208,8 +208,8 @@ impl<'e> Call<'e> {
         for (name, expr, place) in &self.set {
             let mut params = self.document.params.iter();
             if !params.any(|param| param.name.value == name.value) {
-                let known = self.document.params.iter();
-                self.unused(name, known.map(|param| param.name.value.clone()), at);
+                let params = self.document.params.iter();
+                self.unused(name, params.map(|param| param.name.value.clone()), at);
                 continue;
             }
             let params = &at.symbols().scopes.document(place.scope).params;
@@ -265,17 +265,17 @@ impl<'e> Call<'e> {
         }
     }
 
-    /// Reports a setting for a name that the document does not have; `known` lists the names that
+    /// Reports a setting for a name that the document does not have; `names` lists the names that
     /// it has.
     fn unused(
         &self,
         name: &Located<String>,
-        known: impl Iterator<Item = String>,
+        names: impl Iterator<Item = String>,
         at: &mut At<'_, '_>,
     ) {
-        let known = at.reports().known(known);
+        let names = at.reports().known(names);
         let document = self.document.file.name.to_string();
-        at.report(InterfaceError::Unused(document, name.clone(), known));
+        at.report(InterfaceError::Unused(document, name.clone(), names));
     }
 
     /// Returns the bindings of the include that are not for inputs: first those for names of
@@ -315,7 +315,7 @@ impl<'e> Call<'e> {
     /// Returns the outputs of an include that the document around it passes on. The include writes
     /// such an output into the material that the document's own output was bound to.
     fn passed_on(&self, context: &Instance) -> impl Iterator<Item = (String, Bound)> {
-        let known = |name: &Name| match (self.has_namespace, self.position.index) {
+        let outer_name = |name: &Name| match (self.has_namespace, self.position.index) {
             (false, _) => Some(name.to_string()),
             (true, None) => Some(format!("{}.{name}", self.entry.name.value)),
             (true, Some(_)) => None,
@@ -323,7 +323,7 @@ impl<'e> Call<'e> {
         self.document.outputs.iter().filter_map(move |output| {
             let name = &output.name.value;
             let own = self.entry.bind.iter().any(|(bound, _)| **bound == **name);
-            let bound = context.overrides.get(&known(name)?).filter(|_| !own)?;
+            let bound = context.overrides.get(&outer_name(name)?).filter(|_| !own)?;
             Some((output.material.path(), bound.clone()))
         })
     }
@@ -349,15 +349,15 @@ impl<'e> Call<'e> {
                     if let Some(reported) = at.instance().incomplete {
                         return Err(reported);
                     }
-                    let known = at.symbols().scopes.known(at.position.scope);
-                    let known = at.reports().known(known);
+                    let names = at.symbols().scopes.known(at.position.scope);
+                    let names = at.reports().known(names);
                     return Err(at.report(InterfaceError::NoInput {
                         document: self.document.file.name.to_string(),
                         name: input.name.value.to_string(),
                         kind: input.kind.describe_with_format(),
                         span: self.include.graph.span.clone(),
                         declared: input.name.span.clone(),
-                        known,
+                        names,
                     }));
                 }
                 let reference = Reference::new(Located::new(name.clone(), span.clone()));
@@ -365,11 +365,11 @@ impl<'e> Call<'e> {
                 (target, span)
             }
         };
-        let found = &at.symbols().get(target.id).kind;
-        if takes(&input.kind, found) {
+        let kind = &at.symbols().get(target.id).kind;
+        if takes(&input.kind, kind) {
             return Ok(target);
         }
-        let found = match found {
+        let given = match kind {
             ResourceKind::Texture(texture) => format!("a texture {:?}", texture.format),
             other => other.describe().to_owned(),
         };
@@ -377,7 +377,7 @@ impl<'e> Call<'e> {
             document: self.document.file.name.to_string(),
             name: name.to_string(),
             expected: input.kind.describe_with_format(),
-            found,
+            given,
             span,
             declared: input.name.span.clone(),
         }))

@@ -116,8 +116,8 @@ fn texture(
 fn named_format(expr: &Expr, at: &mut impl Sizing) -> Reported<wgt::TextureFormat> {
     match eval::value(expr, at)? {
         Value::Format(format) => Ok(format),
-        found => {
-            let error = EvaluationError::Type(expr.span.clone(), "a format", found);
+        value => {
+            let error = EvaluationError::Type(expr.span.clone(), "a format", value);
             Err(at.reports().report(error))
         }
     }
@@ -252,12 +252,12 @@ fn check_samples(
     let flags = format.guaranteed_format_features(features).flags;
     let counts = [1, 2, 4, 8, 16];
     let counts = counts.into_iter();
-    let known = counts.filter(|count| flags.sample_count_supported(*count));
-    let known: Vec<u32> = known.collect();
-    if known.contains(&texture.samples) {
+    let supported = counts.filter(|count| flags.sample_count_supported(*count));
+    let supported: Vec<u32> = supported.collect();
+    if supported.contains(&texture.samples) {
         Ok(())
     } else {
-        reports.unsupported(SizeError::Samples(name, format, texture.samples, known))
+        reports.unsupported(SizeError::Samples(name, format, texture.samples, supported))
     }
 }
 

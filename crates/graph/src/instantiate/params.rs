@@ -140,8 +140,8 @@ impl Environment for ParamsAlone<'_> {
         match self.params.value(name, self.reports) {
             Some(value) => value,
             None => {
-                let known = self.reports.known(self.params.names());
-                Err(self.report(EvaluationError::param(name, span, |_| false, known)))
+                let names = self.reports.known(self.params.names());
+                Err(self.report(EvaluationError::param(name, span, |_| false, names)))
             }
         }
     }
@@ -150,12 +150,12 @@ impl Environment for ParamsAlone<'_> {
         self.params.value(name, self.reports)?.ok()
     }
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Reported<u32> {
-        Err(self.report(EvaluationError::NoIndex(span.clone(), of.cloned())))
+    fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
+        Err(self.report(EvaluationError::NoIndex(span.clone(), entry.cloned())))
     }
 
-    fn attribute(&mut self, of: &Reference, _: Attribute, span: &Span) -> Reported<Value> {
-        let name = of.text().to_owned();
+    fn attribute(&mut self, material: &Reference, _: Attribute, span: &Span) -> Reported<Value> {
+        let name = material.text().to_owned();
         Err(self.report(EvaluationError::NoSizes(span.clone(), name)))
     }
 
@@ -181,7 +181,7 @@ fn default(
     };
     if let Some(word) = default.as_param()
         && params.bound(word).is_none()
-        && param.words().any(|known| **known == *word)
+        && param.words().any(|choice| **choice == *word)
     {
         let (word, span) = (word.to_owned(), default.span.clone());
         return Err(reports.report(ParamError::QuotedWord(word, span)));
@@ -286,7 +286,7 @@ impl Given<'_> {
         &self,
         document: &Document,
         param: &Param,
-        known: &Params,
+        params: &Params,
         reports: &mut Reports,
     ) -> BoundParam {
         let name = param.name.as_str();
@@ -327,8 +327,8 @@ impl Given<'_> {
                 }));
             }
             None => {
-                bound.value = default(known, param, self.context, reports);
-                let roots = param.default.as_ref().map(|default| known.roots(default));
+                bound.value = default(params, param, self.context, reports);
+                let roots = param.default.as_ref().map(|default| params.roots(default));
                 bound.roots = roots.unwrap_or_default();
             }
         }

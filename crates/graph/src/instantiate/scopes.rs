@@ -270,14 +270,14 @@ impl Scopes {
             .find_map(|scope| scope.wgsl_values.get(identifier).copied())
     }
 
-    /// Returns the index, from 0, of the innermost repetition around a position, or with `of` of
-    /// the repetition of the entry called `of`; `None` outside of such a repetition.
-    pub fn index(&self, position: Position, of: Option<&Name>) -> Option<u32> {
-        let own = position.index.filter(|_| of.is_none());
+    /// Returns the index, from 0, of the innermost repetition around a position, or with `entry` of
+    /// the repetition of the entry called `entry`; `None` outside of such a repetition.
+    pub fn index(&self, position: Position, entry: Option<&Name>) -> Option<u32> {
+        let own = position.index.filter(|_| entry.is_none());
         own.or_else(|| {
             self.outwards(position.scope).find_map(|scope| {
                 let (name, index) = scope.index.as_ref()?;
-                of.is_none_or(|of| of == name).then_some(*index)
+                entry.is_none_or(|entry| entry == name).then_some(*index)
             })
         })
     }
@@ -285,11 +285,11 @@ impl Scopes {
     /// Returns every name that is declared in a scope or the scopes around it in its document;
     /// names that a named include gives have its name in front.
     pub fn known(&self, scope: ScopeId) -> Vec<String> {
-        let mut known = Vec::new();
+        let mut names = Vec::new();
         for scope in self.outwards(scope) {
-            list(&scope.names, "", &mut known);
+            list(&scope.names, "", &mut names);
         }
-        known
+        names
     }
 
     /// Returns an instance and those that include it, from the inside out.

@@ -197,7 +197,7 @@ impl<'a> SymbolTable<'a> {
     /// Returns the named values that were evaluated without a mistake, in the order of their
     /// declaration: pairs of full name and result as text.
     pub fn found_values(&self) -> Vec<(String, String)> {
-        let found = self.values.iter().filter_map(|declared| {
+        let values = self.values.iter().filter_map(|declared| {
             let ValueState::Known(Ok(value)) = &declared.state else {
                 return None;
             };
@@ -205,7 +205,7 @@ impl<'a> SymbolTable<'a> {
             let name = self.scopes.full_name(instance, &declared.name().value);
             Some((name, value.to_string()))
         });
-        found.collect()
+        values.collect()
     }
 
     fn circular_value(&mut self, id: ValueId) -> ErrorGuaranteed {
@@ -340,12 +340,12 @@ impl<'a> SymbolTable<'a> {
     /// Returns the target for the shader global `global` in a scope: a material, a provided
     /// resource, or the previous version of one (`…_previous`). `None` for an unknown name.
     pub fn find_global(&mut self, global: &str, scope: ScopeId) -> Option<Reported<Target>> {
-        let found = self.scopes.find_wgsl_name(scope, global).or_else(|| {
+        let target = self.scopes.find_wgsl_name(scope, global).or_else(|| {
             let name = self.wgsl_name.get(global).cloned()?;
             self.find_scene(&name, scope)
         });
-        if let Some(found) = found {
-            return Some(found.and_then(|target| {
+        if let Some(target) = target {
+            return Some(target.and_then(|target| {
                 self.resolve_size(target.id)?;
                 Ok(if target.part == SubresourceRange::WHOLE {
                     self.whole(target.id)
@@ -371,8 +371,8 @@ impl<'a> SymbolTable<'a> {
     /// one that the root document knows. `None` if the name is unknown.
     pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
         let mut resources = self.resources.iter();
-        let known = resources.position(|resource| resource.name == name);
-        if let Some(number) = known {
+        let position = resources.position(|resource| resource.name == name);
+        if let Some(number) = position {
             let id = ResourceId(number);
             return Some(self.resolve_size(id).map(|()| self.whole(id)));
         }
@@ -380,9 +380,9 @@ impl<'a> SymbolTable<'a> {
         let file = SourceFile::new("command line", name);
         let reference = parser::reference(&file, 0..name.len()).ok()?;
         let heard = std::mem::take(&mut self.reports);
-        let found = self.resolve(&reference, self.root());
+        let target = self.resolve(&reference, self.root());
         self.reports = heard;
-        found.ok().map(Ok)
+        target.ok().map(Ok)
     }
 
     /// Returns the full names of all resources, sorted, then the names of provided resources that
@@ -398,9 +398,9 @@ impl<'a> SymbolTable<'a> {
     /// Returns every name that can be used in a scope: first those of its document, then those of
     /// the provider.
     pub fn known(&self, scope: ScopeId) -> Vec<String> {
-        let mut known = self.scopes.known(scope);
-        known.extend(self.request.provider.names());
-        known
+        let mut names = self.scopes.known(scope);
+        names.extend(self.request.provider.names());
+        names
     }
 
     /// Returns the name of a resource with `keep: true`; `None` for a resource without `keep`.
@@ -476,8 +476,8 @@ impl<'a> SymbolTable<'a> {
     fn circular(&mut self, id: ResourceId) -> ErrorGuaranteed {
         // The walk began with the one that is evaluated last, which is the one that the first asks
         // for.
-        let mut found = self.evaluating.iter().skip_while(|found| **found != id);
-        let resource = self.get(found.nth(1).copied().unwrap_or(id));
+        let mut ring = self.evaluating.iter().skip_while(|other| **other != id);
+        let resource = self.get(ring.nth(1).copied().unwrap_or(id));
         let span = resource.declared.clone();
         let span = span.unwrap_or_else(|| self.graph.place());
         let name = Located::new(resource.name.clone(), span);
@@ -508,17 +508,18 @@ impl<'a> SymbolTable<'a> {
         };
         let mut parts = Vec::new();
         declared.material().visit(&mut |leaf| {
-            let Leaf::Material(of) = leaf else {
+            let Leaf::Material(reference) = leaf else {
                 return;
             };
-            let mut names = of.segments.iter().map(|segment| &segment.name.value);
+            let mut names = reference.segments.iter().map(|segment| &segment.name.value);
             let first = names.next();
             let Some(first) = first.and_then(|name| self.scopes.find(declared.scope, name)) else {
                 return;
             };
             let mut meanings = vec![first];
             for name in names {
-                meanings = meanings.iter().flat_map(|of| of.named(name)).collect();
+                let inner = meanings.iter().flat_map(|symbol| symbol.named(name));
+                meanings = inner.collect();
             }
             parts.extend(meanings.iter().filter_map(|symbol| match symbol {
                 Symbol::Target(target) => Some(target.id),
@@ -689,13 +690,13 @@ impl<'a> At<'_, 'a> {
                 let name = Located::new(walked, segment.name.span.clone());
                 return Err(self.report(InterfaceError::Namespace(name)));
             };
-            let Some(found) = names.get(&next.name.value) else {
-                let known = names.keys().map(|name| name.to_string());
-                let known = self.symbols.reports.known(known);
-                return Err(self.report(InterfaceError::Private(walked, next.name.text(), known)));
+            let Some(member) = names.get(&next.name.value) else {
+                let names = names.keys().map(|name| name.to_string());
+                let names = self.symbols.reports.known(names);
+                return Err(self.report(InterfaceError::Private(walked, next.name.text(), names)));
             };
             walked = format!("{walked}.{}", next.name.value);
-            symbol = found.clone();
+            symbol = member.clone();
         }
         Err(self.unknown(reference))
     }
@@ -722,18 +723,18 @@ impl<'a> At<'_, 'a> {
         reference: &'r Reference,
     ) -> Reported<(Target, Option<&'r Selection>)> {
         let path = reference.path();
-        let (last, others) = match reference.segments.split_last() {
-            Some((last, others)) => (last.selection.as_ref(), others),
+        let (last, leading) = match reference.segments.split_last() {
+            Some((last, leading)) => (last.selection.as_ref(), leading),
             None => (None, &[][..]),
         };
-        let is_plain = others.iter().all(|segment| segment.selection.is_none());
+        let is_plain = leading.iter().all(|segment| segment.selection.is_none());
         if let (Some(Selection::One(number)), true) = (last, is_plain)
             && let Some(of_list) = self.of_list(&path, number, reference)
         {
             return of_list.map(|target| (target, None));
         }
-        let found = self.symbols.find_scene(&path, self.position.scope);
-        match found.filter(|_| is_plain) {
+        let target = self.symbols.find_scene(&path, self.position.scope);
+        match target.filter(|_| is_plain) {
             Some(target) => Ok((target?, last)),
             None => Err(self.unknown(reference)),
         }
@@ -759,8 +760,8 @@ impl<'a> At<'_, 'a> {
             Ok(number) => number,
             Err(reported) => return Some(Err(reported)),
         };
-        let found = self.find_scene(&format!("{list}.{number}"));
-        Some(found.unwrap_or_else(|| {
+        let target = self.find_scene(&format!("{list}.{number}"));
+        Some(target.unwrap_or_else(|| {
             let what = format!("there are {count} of them, counted from 0; this is [{number}]");
             Err(self.report(InterfaceError::Range(reference.located(), what, None)))
         }))
@@ -772,12 +773,12 @@ impl<'a> At<'_, 'a> {
         if let Some(reported) = instance.incomplete {
             return reported;
         }
-        let known = self.symbols.known(self.position.scope);
-        let known = self.symbols.reports.known(known);
+        let names = self.symbols.known(self.position.scope);
+        let materials = self.symbols.reports.known(names);
         self.report(InterfaceError::Unknown {
             name: reference.located_path(),
             document: instance.document.file.name.to_string(),
-            known,
+            materials,
         })
     }
 
@@ -808,8 +809,8 @@ impl<'a> At<'_, 'a> {
 }
 
 impl Sizing for At<'_, '_> {
-    fn resource(&mut self, of: &Reference) -> Reported<(Target, &Resource)> {
-        let target = self.resolve(of)?;
+    fn resource(&mut self, reference: &Reference) -> Reported<(Target, &Resource)> {
+        let target = self.resolve(reference)?;
         let resource = self.symbols.get(target.id);
         Ok((target, resource))
     }
@@ -852,8 +853,8 @@ impl Environment for At<'_, '_> {
         let values = instance.document.values.iter();
         let names = instance.params.names();
         let names = names.chain(values.map(|(name, _)| name.as_str()));
-        let known = self.symbols.reports.known(names);
-        let error = EvaluationError::param(name, span, is_material, known);
+        let names = self.symbols.reports.known(names);
+        let error = EvaluationError::param(name, span, is_material, names);
         Err(self.report(error))
     }
 
@@ -866,14 +867,19 @@ impl Environment for At<'_, '_> {
         self.symbols.value(id).ok()
     }
 
-    fn index(&mut self, of: Option<&Name>, span: &Span) -> Reported<u32> {
-        let index = self.symbols.scopes.index(self.position, of);
-        let missing = || EvaluationError::NoIndex(span.clone(), of.cloned());
+    fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
+        let index = self.symbols.scopes.index(self.position, entry);
+        let missing = || EvaluationError::NoIndex(span.clone(), entry.cloned());
         index.ok_or_else(|| self.report(missing()))
     }
 
-    fn attribute(&mut self, of: &Reference, attribute: Attribute, span: &Span) -> Reported<Value> {
-        let target = self.symbols.resolve(of, self.position)?;
+    fn attribute(
+        &mut self,
+        material: &Reference,
+        attribute: Attribute,
+        span: &Span,
+    ) -> Reported<Value> {
+        let target = self.symbols.resolve(material, self.position)?;
         let resource = self.symbols.get(target.id);
         if let ResourceKind::Provided(provided) = resource.kind {
             self.symbols.note_asked(resource, provided);
@@ -882,18 +888,20 @@ impl Environment for At<'_, '_> {
             return Ok(value);
         }
         if attribute == Attribute::Kind
-            && let Some(kind) = self.symbols.provided_kind(&of.path(), self.position.scope)
+            && let Some(kind) = self
+                .symbols
+                .provided_kind(&material.path(), self.position.scope)
         {
             return Ok(Value::kind(kind));
         }
         let resource = self.symbols.get(target.id);
         let error = match (attribute, &resource.kind) {
             (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
-                parts::uncounted(resource, of)
+                parts::uncounted(resource, material)
             }
             _ => {
-                let of = format!("`{}`, {},", resource.name, resource.kind.describe());
-                EvaluationError::NoAttribute(span.clone(), of)
+                let owner = format!("`{}`, {},", resource.name, resource.kind.describe());
+                EvaluationError::NoAttribute(span.clone(), owner)
             }
         };
         let counts = matches!(error, EvaluationError::NoCount(_));
@@ -913,17 +921,17 @@ impl Environment for At<'_, '_> {
         if let Some(value) = shader.constant(name) {
             return Ok(Value::Scalar(value));
         }
-        let known = self.symbols.reports.known(shader.constants());
+        let constants = self.symbols.reports.known(shader.constants());
         Err(self.report(EvaluationError::NoConstant {
             span: span.clone(),
             file: shader.source.file.name.to_string(),
             name: name.to_owned(),
-            known,
+            constants,
         }))
     }
 
-    fn kind(&mut self, of: &str) -> Option<ProvidedKind> {
-        self.symbols.provided_kind(of, self.position.scope)
+    fn kind(&mut self, name: &str) -> Option<ProvidedKind> {
+        self.symbols.provided_kind(name, self.position.scope)
     }
 
     fn reports(&mut self) -> &mut Reports {

@@ -146,7 +146,7 @@ impl<'a> Lowering<'a> {
         self.alternatives.push(ShaderUse {
             name: self.named(shader),
             imports: imports
-                .map(|(of, is)| ((*of).to_owned(), (*is).to_owned()))
+                .map(|(module, replacement)| ((*module).to_owned(), (*replacement).to_owned()))
                 .collect(),
         });
         self.features |= features;
@@ -171,15 +171,15 @@ impl<'a> Lowering<'a> {
         self.report(Diagnostic::error(code, what).at(expr.span.clone(), ""));
     }
 
-    /// Calls `of` with the plan's environment. Returns `fallback` while a document is loaded, and
-    /// after a mistake, which was reported.
+    /// Calls `evaluator` with the plan's environment. Returns `fallback` while a document is
+    /// loaded, and after a mistake, which was reported.
     fn evaluate<T>(
         &mut self,
         fallback: T,
-        of: impl FnOnce(&mut dyn Environment) -> Result<T, ErrorGuaranteed>,
+        evaluator: impl FnOnce(&mut dyn Environment) -> Result<T, ErrorGuaranteed>,
     ) -> T {
         match &mut self.environment {
-            Some(environment) => of(&mut **environment).unwrap_or(fallback),
+            Some(environment) => evaluator(&mut **environment).unwrap_or(fallback),
             None => fallback,
         }
     }
@@ -219,8 +219,8 @@ impl<'a> Lowering<'a> {
         self.evaluate(0.0, |environment| eval::number(expr, environment))
     }
 
-    /// Evaluates an expression to true or false. Returns false while a document is loaded, and
-    /// after a mistake, which is reported.
+    /// Evaluates an expression to true or false. Returns false while a document is
+    /// loaded, and after a mistake, which is reported.
     pub fn boolean(&mut self, expr: &Expr) -> bool {
         self.evaluate(false, |environment| eval::boolean(expr, environment))
     }
@@ -254,8 +254,8 @@ impl<'a> Lowering<'a> {
     /// of its first mip, and of all slices of a 3D texture, but of one layer of an array. Returns
     /// one thread while a document is loaded, and after a mistake, which is reported.
     pub fn texels(&mut self, texture: &Reference) -> Threads {
-        let of = Subject::Material(Box::new(texture.clone()));
-        let size = ExprKind::Attribute(of, Attribute::Size);
+        let subject = Subject::Material(Box::new(texture.clone()));
+        let size = ExprKind::Attribute(subject, Attribute::Size);
         let size = self.list(&Expr::new(size, texture.span.clone()));
         let edge = |edge: usize| size.get(edge).and_then(|edge| edge.whole()).unwrap_or(1);
         Threads::Texels([edge(0), edge(1), edge(2)])
@@ -265,8 +265,8 @@ impl<'a> Lowering<'a> {
     /// unevaluated; any other expression itself. The last branch while a document is loaded.
     pub(crate) fn branch<'e>(&mut self, expr: &'e Expr) -> &'e Expr {
         let mut expr = expr;
-        while let ExprKind::Ternary(of) = &expr.kind {
-            let [condition, yes, no] = &**of;
+        while let ExprKind::Ternary(operands) = &expr.kind {
+            let [condition, yes, no] = &**operands;
             expr = if self.boolean(condition) { yes } else { no };
         }
         expr
@@ -283,7 +283,7 @@ impl<'a> Lowering<'a> {
             Chosen::Expr(expr) => expr,
         };
         let expr = self.branch(whole);
-        let known = |name: &Name| words.iter().find(|(word, _)| **word == **name);
+        let named = |name: &Name| words.iter().find(|(word, _)| **word == **name);
         // Behind a condition a bare name is a word.
         if !std::ptr::eq(expr, whole)
             && let Some(name) = expr.as_param()
@@ -294,8 +294,8 @@ impl<'a> Lowering<'a> {
         self.evaluate(words[0].1, |environment| {
             let value = eval::value(expr, environment)?;
             if let Value::Word(word) = &value
-                && (word.of.iter().flat_map(|of| of.iter())).all(|word| known(word).is_some())
-                && let Some((_, value)) = known(&word.word)
+                && (word.of.iter().flat_map(|words| words.iter())).all(|word| named(word).is_some())
+                && let Some((_, value)) = named(&word.word)
             {
                 return Ok(*value);
             }

@@ -55,7 +55,7 @@ macro_rules! spelt {
             pub const ALL: &[(&str, Self $(, $number)?)] = &[$(($text, Self::$name $(, $of)?)),+];
 
             pub fn named(text: &str) -> Option<&'static (&'static str, Self $(, $number)?)> {
-                Self::ALL.iter().find(|(known, ..)| *known == text)
+                Self::ALL.iter().find(|(name, ..)| *name == text)
             }
 
             pub fn as_str(self) -> &'static str {
@@ -277,14 +277,14 @@ impl Expr {
             ExprKind::Word(word) => each(Leaf::Word(word)),
             ExprKind::Constant(name) => each(Leaf::Constant(name)),
             ExprKind::Has(feature) => each(Leaf::Has(*feature)),
-            ExprKind::Attribute(Subject::Material(of), _) => of.visit(each),
+            ExprKind::Attribute(Subject::Material(material), _) => material.visit(each),
             ExprKind::Literal(_) | ExprKind::Attribute(..) => {}
             ExprKind::Tuple(list) | ExprKind::Call(_, list) => {
                 list.iter().for_each(|expr| expr.visit(each));
             }
-            ExprKind::Unary(_, of) => of.visit(each),
-            ExprKind::Binary(_, of) => of.iter().for_each(|expr| expr.visit(each)),
-            ExprKind::Ternary(of) => of.iter().for_each(|expr| expr.visit(each)),
+            ExprKind::Unary(_, operand) => operand.visit(each),
+            ExprKind::Binary(_, operands) => operands.iter().for_each(|expr| expr.visit(each)),
+            ExprKind::Ternary(operands) => operands.iter().for_each(|expr| expr.visit(each)),
         }
     }
 
@@ -297,16 +297,16 @@ impl Expr {
         };
         match &self.kind {
             ExprKind::Param(_) | ExprKind::Attribute(..) => leaf(self),
-            ExprKind::Tuple(of) => format!("({})", list(of)),
-            ExprKind::Call(function, of) => format!("{}({})", function.as_str(), list(of)),
-            ExprKind::Unary(Unary::Minus, of) => format!("-{}", of.canonical(leaf)),
-            ExprKind::Unary(Unary::Not, of) => format!("!{}", of.canonical(leaf)),
-            ExprKind::Binary(operator, of) => {
-                let [a, b] = of.each_ref().map(|expr| expr.canonical(leaf));
+            ExprKind::Tuple(exprs) => format!("({})", list(exprs)),
+            ExprKind::Call(function, exprs) => format!("{}({})", function.as_str(), list(exprs)),
+            ExprKind::Unary(Unary::Minus, operand) => format!("-{}", operand.canonical(leaf)),
+            ExprKind::Unary(Unary::Not, operand) => format!("!{}", operand.canonical(leaf)),
+            ExprKind::Binary(operator, operands) => {
+                let [a, b] = operands.each_ref().map(|expr| expr.canonical(leaf));
                 format!("({a} {} {b})", operator.as_str())
             }
-            ExprKind::Ternary(of) => {
-                let [condition, yes, no] = of.each_ref().map(|expr| expr.canonical(leaf));
+            ExprKind::Ternary(operands) => {
+                let [condition, yes, no] = operands.each_ref().map(|expr| expr.canonical(leaf));
                 format!("({condition})?({yes}):({no})")
             }
             _ => self.text().to_owned(),

@@ -350,8 +350,8 @@ fn attachment(reference: &Reference, scope: &mut PassScope<'_>) -> Reported<Atta
     let name = reference.located();
     let resource = scope.get(target.id);
     let ResourceKind::Texture(texture) = &resource.kind else {
-        let found = resource.kind.describe();
-        return Err(scope.report(LinkError::NoTexture(scope.pass.value.clone(), name, found)));
+        let kind = resource.kind.describe();
+        return Err(scope.report(LinkError::NoTexture(scope.pass.value.clone(), name, kind)));
     };
     let Texture {
         format, samples, ..

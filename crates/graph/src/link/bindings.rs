@@ -144,7 +144,7 @@ fn binding(
         global: global.located(),
         needed,
         name: resource.name,
-        found: resource.kind.describe(),
+        kind: resource.kind.describe(),
         declared: resource.declared,
     }))
 }

@@ -27,11 +27,11 @@ pub(super) fn link(
 ) -> Reported<LinkedPass> {
     let Some(target) = scope.resolve_full(&capture.material) else {
         let symbols = scope.symbols();
-        let known = symbols.reports.known(symbols.full_names());
+        let materials = symbols.reports.known(symbols.full_names());
         return Err(scope.report(OutputError::NoMaterial {
             graph: symbols.graph.path().to_owned(),
             name: capture.material.clone(),
-            known,
+            materials,
         }));
     };
     let mut target = target?;

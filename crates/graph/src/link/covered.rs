@@ -4,12 +4,15 @@ use crate::resource::{Resource, ResourceKind, SubresourceRange};
 use std::ops::Range;
 
 /// Returns the overlap of two parts, in the aspect of the second; `None` if they do not overlap.
-pub(super) fn within(part: &SubresourceRange, of: &SubresourceRange) -> Option<SubresourceRange> {
+pub(super) fn within(
+    part: &SubresourceRange,
+    asked: &SubresourceRange,
+) -> Option<SubresourceRange> {
     let common = |a: &Range<u32>, b: &Range<u32>| a.start.max(b.start)..a.end.min(b.end);
-    part.overlaps(of).then(|| SubresourceRange {
-        mips: common(&part.mips, &of.mips),
-        layers: common(&part.layers, &of.layers),
-        aspect: of.aspect,
+    part.overlaps(asked).then(|| SubresourceRange {
+        mips: common(&part.mips, &asked.mips),
+        layers: common(&part.layers, &asked.layers),
+        aspect: asked.aspect,
     })
 }
 
@@ -109,9 +112,9 @@ mod tests {
             ..part(0..2, 1..2)
         };
         assert_eq!(within(&stencil, &depth), None);
-        let found = within(&part(0..1, 0..9), &depth).unwrap();
-        assert_eq!((found.mips, found.layers), (0..1, 1..2));
-        assert_eq!(found.aspect, wgt::TextureAspect::DepthOnly);
+        let shared = within(&part(0..1, 0..9), &depth).unwrap();
+        assert_eq!((shared.mips, shared.layers), (0..1, 1..2));
+        assert_eq!(shared.aspect, wgt::TextureAspect::DepthOnly);
         assert_eq!(within(&part(0..1, 2..4), &depth), None);
     }
 }

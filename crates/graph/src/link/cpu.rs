@@ -52,8 +52,8 @@ fn work(name: &Located<String>, scope: &mut PassScope<'_>) -> Reported<ResourceI
             Ok(target.id)
         }
         ref other => {
-            let found = other.describe();
-            Err(scope.report(LinkError::NoCpuWork(name.clone(), found)))
+            let kind = other.describe();
+            Err(scope.report(LinkError::NoCpuWork(name.clone(), kind)))
         }
     }
 }
@@ -63,8 +63,8 @@ fn buffer(operand: &Operand, scope: &mut PassScope<'_>) -> Reported<(Target, Spa
     match &scope.get(target.id).kind {
         ResourceKind::Buffer(_) | ResourceKind::Provided(_) => Ok((target, name.span)),
         other => {
-            let found = other.describe();
-            Err(scope.report(LinkError::CpuItems(name, found)))
+            let kind = other.describe();
+            Err(scope.report(LinkError::CpuItems(name, kind)))
         }
     }
 }

@@ -43,8 +43,8 @@ pub(super) fn indirect(
     let (target, name) = scope.operand(operand)?;
     let resource = scope.get(target.id);
     if !matches!(resource.kind, ResourceKind::Buffer(_)) {
-        let found = resource.kind.describe();
-        return Err(scope.report(LinkError::NoArguments(name, found)));
+        let kind = resource.kind.describe();
+        return Err(scope.report(LinkError::NoArguments(name, kind)));
     }
     let id = scope.symbols().base(target.id);
     scope.layouts.at_least(id, &target.part, bytes, &name.span);

@@ -45,17 +45,21 @@ pub(super) fn footprints(program: &LinkedProgram, scope: &mut PassScope<'_>) -> 
     wrong.map_or(Ok(()), Err)
 }
 
-fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_>) -> Reported<()> {
+fn check_footprint(
+    entry: &Entry,
+    footprint: &Footprint,
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
     let most = scope.request().limits.max_compute_workgroup_storage_size;
-    if let Some(excess) = beyond(&of.workgroup, u64::from(most), entry) {
+    if let Some(excess) = beyond(&footprint.workgroup, u64::from(most), entry) {
         let entry = entry.clone();
         scope.unsupported(LimitError::Workgroup(entry, excess))?;
     }
-    if let Some(excess) = beyond(&of.private, MOST_OF_ONE, entry) {
+    if let Some(excess) = beyond(&footprint.private, MOST_OF_ONE, entry) {
         let entry = entry.clone();
         return Err(scope.report(LimitError::Private(entry, excess)));
     }
-    for (function, memory) in &of.functions {
+    for (function, memory) in &footprint.functions {
         if let Some(excess) = beyond(memory, MOST_OF_ONE, entry) {
             return Err(scope.report(LimitError::Function {
                 file: entry.file.clone(),
@@ -64,15 +68,15 @@ fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_>) -> 
             }));
         }
     }
-    let all = of.functions.iter().map(|(_, memory)| memory.bytes);
-    let all = all.fold(0, u64::saturating_add);
-    let largest = of.functions.iter().map(|(_, memory)| memory);
+    let bytes = footprint.functions.iter().map(|(_, memory)| memory.bytes);
+    let bytes = bytes.fold(0, u64::saturating_add);
+    let largest = footprint.functions.iter().map(|(_, memory)| memory);
     if let Some(largest) = largest.max_by_key(|memory| memory.bytes)
-        && all > MOST_OF_ALL
+        && bytes > MOST_OF_ALL
     {
         let (of_largest, largest) = largest.largest(&entry.span);
         let excess = Excess {
-            bytes: all,
+            bytes,
             most: MOST_OF_ALL,
             of_largest,
             largest,
@@ -80,7 +84,7 @@ fn check_footprint(entry: &Entry, of: &Footprint, scope: &mut PassScope<'_>) -> 
         let entry = entry.clone();
         return Err(scope.report(LimitError::Functions(entry, excess)));
     }
-    if let Some(Excess { bytes, largest, .. }) = beyond(&of.value, MOST_OF_A_VALUE, entry) {
+    if let Some(Excess { bytes, largest, .. }) = beyond(&footprint.value, MOST_OF_A_VALUE, entry) {
         return Err(scope.report(LimitError::Value {
             file: entry.file.clone(),
             function: largest,
@@ -177,11 +181,11 @@ pub(super) fn stages(
 fn check_locations(
     at: &Entry,
     verb: &'static str,
-    of: &Varyings,
+    varyings: &Varyings,
     most: u32,
     scope: &mut PassScope<'_>,
 ) -> Reported<()> {
-    let locations = of.locations.iter().map(|varying| varying.location);
+    let locations = varyings.locations.iter().map(|varying| varying.location);
     match locations.max() {
         Some(location) if location >= most => scope.unsupported(LimitError::Location {
             entry: at.clone(),
@@ -196,12 +200,12 @@ fn check_locations(
 fn check_varyings(
     at: &Entry,
     verb: &'static str,
-    of: &Varyings,
+    varyings: &Varyings,
     builtins: u32,
     most: u32,
     scope: &mut PassScope<'_>,
 ) -> Reported<()> {
-    let number = of.locations.len() as u64 + u64::from(builtins);
+    let number = varyings.locations.len() as u64 + u64::from(builtins);
     if number <= u64::from(most) {
         return Ok(());
     }

@@ -121,13 +121,13 @@ fn number(
             param: param.clone(),
             member: name.to_owned(),
             needed: words(param, value).0,
-            found: expected,
+            declared: expected,
             span: span.clone(),
         },
         _ => LinkError::SetValue {
             name: name.to_owned(),
             expected,
-            found: value,
+            value,
             span: position.clone(),
         },
     })
@@ -143,7 +143,7 @@ fn word(
     scope: &PassScope<'_>,
 ) -> Result<u32, LinkError> {
     let words = scope.words(name);
-    let among = words.and_then(|words| words.iter().position(|known| *known == word.word));
+    let among = words.and_then(|words| words.iter().position(|other| *other == word.word));
     if let Some(number) = among.and_then(|number| u32::try_from(number).ok()) {
         return Ok(number);
     }
@@ -206,11 +206,11 @@ fn member_words(
     scope: &mut PassScope<'_>,
 ) -> Reported<(Vec<u32>, Option<String>)> {
     let Some(asked) = scope.asked(&member.name).transpose()? else {
-        let known = scope.symbols().reports.known(scope.params());
+        let params = scope.symbols().reports.known(scope.params());
         return Err(scope.report(LinkError::UnknownMember {
             member: member.name.clone(),
             span: global.span.clone(),
-            known,
+            params,
             ty: member.vector.and_then(ShaderType::param),
         }));
     };
@@ -238,7 +238,7 @@ fn member_words(
         param,
         member: format!("params.{}", member.name),
         needed,
-        found: member.vector,
+        declared: member.vector,
         span: global.span.clone(),
     }))
 }
@@ -277,7 +277,7 @@ fn set_member(
         None => Err(scope.report(LinkError::SetValue {
             name: member.name.clone(),
             expected: Some(expected),
-            found: value.clone(),
+            value: value.clone(),
             span: span.clone(),
         })),
     }

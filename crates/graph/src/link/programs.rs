@@ -102,11 +102,11 @@ fn bound_globals(
     for (bound, _) in &program.bind {
         let exists = shader.global_names().any(|global| global == bound.as_str());
         if !exists && is_own {
-            let known = globals.iter().map(|global| global.name.clone());
+            let names = globals.iter().map(|global| global.name.clone());
             wrong = Some(scope.report(LinkError::UnusedBind {
                 shader: shader.source.file.name.to_string(),
                 name: bound.clone(),
-                known: scope.symbols().reports.known(known),
+                globals: scope.symbols().reports.known(names),
             }));
         }
     }

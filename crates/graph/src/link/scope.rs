@@ -189,10 +189,10 @@ impl<'a> PassScope<'a> {
     /// Returns the target for the name of a provided resource.
     pub fn provided(&mut self, name: &Located<String>) -> Reported<Target> {
         match self.symbols.find_scene(name, self.position.scope) {
-            Some(found) => found,
+            Some(target) => target,
             None => {
-                let found = "nothing that the host provides";
-                Err(self.report(LinkError::NoCpuWork(name.clone(), found)))
+                let kind = "nothing that the host provides";
+                Err(self.report(LinkError::NoCpuWork(name.clone(), kind)))
             }
         }
     }
@@ -204,8 +204,8 @@ impl<'a> PassScope<'a> {
         let span = span.clone();
         let error = match origin {
             Origin::Previous(base) => {
-                let of = self.get(*base).name.clone();
-                LinkError::WritesPrevious(of, span)
+                let base = self.get(*base).name.clone();
+                LinkError::WritesPrevious(base, span)
             }
             Origin::Constant => {
                 let name = name.clone();
@@ -251,13 +251,13 @@ impl<'a> PassScope<'a> {
     /// Returns the target of a shader's global that the pass itself does not bind: bound by a group
     /// around the pass, or else of the same name.
     pub fn target(&mut self, global: &Global) -> Reported<Target> {
-        let mut said = self.inherited_bind.iter();
-        if let Some(&said) = said.find(|said| said.name.value == global.name) {
-            return self.symbols.resolve(said.value, said.position);
+        let mut inherited = self.inherited_bind.iter();
+        if let Some(&bound) = inherited.find(|bound| bound.name.value == global.name) {
+            return self.symbols.resolve(bound.value, bound.position);
         }
         let scope = self.position.scope;
-        if let Some(found) = self.symbols.find_global(&global.name, scope) {
-            return found;
+        if let Some(target) = self.symbols.find_global(&global.name, scope) {
+            return target;
         }
         if let Some(reported) = self.symbols.scopes.document(scope).incomplete {
             return Err(reported);
@@ -274,11 +274,11 @@ impl<'a> PassScope<'a> {
         }
         let names = self.symbols.known(scope);
         let names = names.iter().map(|name| wgsl_identifier(name));
-        let known = self.symbols.reports.known(names);
+        let materials = self.symbols.reports.known(names);
         Err(self.report(LinkError::UnknownGlobal {
             global: global.located(),
             pass: self.pass.clone(),
-            known,
+            materials,
         }))
     }
 
@@ -305,12 +305,12 @@ impl<'a> PassScope<'a> {
         self.asked.insert(name.to_owned());
         let own = self.set.iter().find(|(set, _)| **set == *name);
         let own = own.map(|(_, expr)| (expr, self.position));
-        let said = || {
-            let mut said = self.inherited_set.iter();
-            let said = said.find(|said| said.name.value == name)?;
-            Some((said.value, said.position))
+        let inherited = || {
+            let mut settings = self.inherited_set.iter();
+            let setting = settings.find(|setting| setting.name.value == name)?;
+            Some((setting.value, setting.position))
         };
-        if let Some((expr, position)) = own.or_else(said) {
+        if let Some((expr, position)) = own.or_else(inherited) {
             let value = eval::value(expr, &mut self.symbols.at(position, None));
             return Some(value.map(|value| Asked::Value(value, expr.span.clone())));
         }
@@ -369,7 +369,7 @@ impl<'a> PassScope<'a> {
                 wrong = Some(self.symbols.reports.report(LinkError::UnusedSet {
                     shader: shader.map_or(String::new(), |shader| shader.value.clone()),
                     name: name.clone(),
-                    known: self.asked.iter().cloned().collect(),
+                    names: self.asked.iter().cloned().collect(),
                 }));
             }
         }

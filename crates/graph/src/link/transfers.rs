@@ -87,8 +87,8 @@ pub(super) fn clear(
         }
         ResourceKind::Buffer(_) => Usage::Buffer(wgt::BufferUsages::COPY_DST),
         other => {
-            let found = other.describe();
-            return Err(scope.report(LinkError::ClearKind(name, found)));
+            let kind = other.describe();
+            return Err(scope.report(LinkError::ClearKind(name, kind)));
         }
     };
     scope.access(&target, (false, true, true), usage, &name.span);

@@ -83,7 +83,7 @@ pub(crate) fn check(
 
 /// True if a shader is not valid since a global in the same file has a type that does not fit what
 /// is bound to it: a fault of types in a function, which mostly tells nothing of the cause.
-fn follows(error: &Diagnostic, found: &[Diagnostic]) -> bool {
+fn follows(error: &Diagnostic, diagnostics: &[Diagnostic]) -> bool {
     let is_of_types = error.code == Code::Shader
         && !["expected ", "no definition", "invalid field"]
             .iter()
@@ -100,7 +100,7 @@ fn follows(error: &Diagnostic, found: &[Diagnostic]) -> bool {
         ];
         codes.contains(&other.code) && file(other) == file(error)
     };
-    is_of_types && found.iter().any(is_cause)
+    is_of_types && diagnostics.iter().any(is_cause)
 }
 
 /// Plans with stand-ins for the imports that the request lacks: resources as the document asks for
@@ -167,7 +167,7 @@ fn sweep(
     request: &PlanRequest<'_>,
     plan_inputs: &PlanInputs,
 ) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
+    let mut diagnostics = Vec::new();
     for name in &plan_inputs.params {
         let Ok(param) = graph.param(name) else {
             continue;
@@ -175,7 +175,7 @@ fn sweep(
         for value in ends(param) {
             let mut changed = request.clone();
             changed.params.insert(name.clone(), value.clone());
-            found.extend(wrong_with(
+            diagnostics.extend(wrong_with(
                 graph,
                 &changed,
                 &format!("with `{name}` = {value}"),
@@ -192,9 +192,9 @@ fn sweep(
         };
         let names: Vec<&str> = feature.iter_names().map(|(name, _)| name).collect();
         let condition = format!("{has} the feature {}", names.join(", "));
-        found.extend(wrong_with(graph, &changed, &condition));
+        diagnostics.extend(wrong_with(graph, &changed, &condition));
     }
-    found
+    diagnostics
 }
 
 /// Returns warnings about passes of the document itself that write nothing that another entry or an
@@ -209,9 +209,9 @@ fn unneeded(graph: &Loaded, plan: &Planned) -> Vec<Diagnostic> {
         if live.contains(&index) || place.file != document.file || warned.contains(&place) {
             continue;
         }
-        let mut others = Document::clone(document);
-        remove(&mut others.entries, place);
-        let used = Used::new(&others, &graph.shaders).materials;
+        let mut reduced = Document::clone(document);
+        remove(&mut reduced.entries, place);
+        let used = Used::new(&reduced, &graph.shaders).materials;
         let written = pass.accesses.iter().filter(|access| access.writes);
         let written = written.map(|access| &*plan.resources[access.resource.index()].name);
         let written: BTreeSet<&str> = written.collect();
@@ -246,20 +246,20 @@ fn remove(entries: &mut Vec<Result<Entry, Invalid>>, place: &Span) {
 fn wrong_with(graph: &Arc<Loaded>, request: &PlanRequest<'_>, condition: &str) -> Vec<Diagnostic> {
     let outcome = plan_for_any(graph, request);
     let errors = outcome.found.into_iter();
-    let errors = errors.filter(|found| found.severity == Severity::Error);
+    let errors = errors.filter(|diagnostic| diagnostic.severity == Severity::Error);
     // A value at the end of a range may well be too large for a device, or for memory; a word
     // may be for other lights.
-    let errors = errors.filter(|found| {
+    let errors = errors.filter(|diagnostic| {
         !matches!(
-            found.code,
+            diagnostic.code,
             Code::Limit | Code::Size | Code::Memory | Code::Feature | Code::Light | Code::Need
         )
     });
     errors
-        .map(|found| Diagnostic {
+        .map(|diagnostic| Diagnostic {
             code: Code::Condition,
-            message: format!("{condition}: {}", found.message),
-            ..found
+            message: format!("{condition}: {}", diagnostic.message),
+            ..diagnostic
         })
         .collect()
 }

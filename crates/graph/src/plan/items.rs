@@ -90,7 +90,7 @@ pub(super) fn part<'p>(
             _ => None,
         });
     let target = copied.unwrap_or(target);
-    let of = match &resources[target.id.0].kind {
+    let whole = match &resources[target.id.0].kind {
         ResourceKind::Texture(texture) => [texture.mips, texture.layers],
         ResourceKind::Buffer(buffer) => {
             let count = buffer.count.map(u32::try_from);
@@ -101,8 +101,8 @@ pub(super) fn part<'p>(
     let layers = &target.part.layers;
     PartSummary {
         mips: target.part.mips.clone(),
-        layers: layers.start..layers.end.min(of[1]),
-        of,
+        layers: layers.start..layers.end.min(whole[1]),
+        of: whole,
     }
 }
 

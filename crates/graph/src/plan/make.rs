@@ -114,8 +114,8 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
             return Outcome::lacking(flat.symbols.reports, flat.plan_inputs);
         }
         let mut lowered = lower(flat);
-        let found = &mut lowered.symbols.reports;
-        check_captures(request, &lowered.passes, found);
+        let symbols = &mut lowered.symbols;
+        check_captures(request, &lowered.passes, &mut symbols.reports);
         let linked = link(lowered);
         let Some(copies) = linked.two_copies() else {
             break linked;
@@ -185,8 +185,8 @@ fn schedule(
     let mut lifetimes = lifetimes(view, &sequence);
     unmade(&lifetimes, view, reports);
     // Conditions must agree for any choice of outputs.
-    let all: Vec<PassId> = view.ids().map(|(id, _)| id).collect();
-    conditions(view, &all, reports);
+    let pass_ids: Vec<PassId> = view.ids().map(|(id, _)| id).collect();
+    conditions(view, &pass_ids, reports);
     let conditions = conditions(view, &sequence, &mut Reports::default());
     let previous = previous(&lifetimes, view);
     for (id, base) in &previous {
@@ -302,9 +302,9 @@ impl Outcome {
     }
 }
 
-fn is_lacking(found: &Diagnostic) -> bool {
+fn is_lacking(diagnostic: &Diagnostic) -> bool {
     use crate::diagnostics::{code::Code, diagnostic::Severity};
-    matches!(found.code, Code::Feature | Code::Need) && found.severity == Severity::Error
+    matches!(diagnostic.code, Code::Feature | Code::Need) && diagnostic.severity == Severity::Error
 }
 
 fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {
@@ -334,7 +334,7 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
         .chain(imports.map(|(id, _)| id))
         .collect();
     cull::live(order, roots, |pass| {
-        let of = |access: &Access| {
+        let sources = |access: &Access| {
             let resource = view.resource(access.resource);
             let part = |id| Target {
                 id,
@@ -351,7 +351,7 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
             needed
         };
         let accesses = view.pass(pass).accesses.iter();
-        accesses.flat_map(of).collect::<Vec<_>>()
+        accesses.flat_map(sources).collect::<Vec<_>>()
     })
 }
 
@@ -368,11 +368,11 @@ fn writers(view: GraphView<'_>, target: &Target) -> BTreeSet<PassId> {
 /// Returns the used resources that are last frame's version of another one, with that other
 /// resource.
 fn previous(lifetimes: &Lifetimes, view: GraphView<'_>) -> BTreeMap<ResourceId, ResourceId> {
-    let of = |id: &ResourceId| match view.resource(*id).origin {
+    let with_base = |id: &ResourceId| match view.resource(*id).origin {
         Origin::Previous(base) => Some((*id, base)),
         _ => None,
     };
-    lifetimes.keys().filter_map(of).collect()
+    lifetimes.keys().filter_map(with_base).collect()
 }
 
 /// Returns the buffers that count the items or layers that growing resources would have needed.

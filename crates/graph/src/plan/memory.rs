@@ -62,7 +62,7 @@ impl Memory<'_> {
                     (None, [edge, 1], 1, 1)
                 }
             };
-            let others = self.schedule.aliases.list[*slot].aliases.iter();
+            let aliases = self.schedule.aliases.list[*slot].aliases.iter();
             Some(MemoryEntry {
                 name: resource.name.clone(),
                 format,
@@ -70,7 +70,7 @@ impl Memory<'_> {
                 mips,
                 layers,
                 bytes: self.bytes_of(*id),
-                shared_with: others
+                shared_with: aliases
                     .filter(|other| *other != id)
                     .map(|other| self.resources[other.0].name.clone())
                     .collect(),
@@ -108,8 +108,8 @@ impl Memory<'_> {
 
     pub fn saved_bytes(&self) -> u64 {
         let saved = |allocation: &Allocation| {
-            let others = allocation.aliases.len() as u64 - 1;
-            others.saturating_mul(self.allocation_bytes(allocation))
+            let spared = allocation.aliases.len() as u64 - 1;
+            spared.saturating_mul(self.allocation_bytes(allocation))
         };
         let allocations = self.schedule.aliases.list.iter();
         allocations.map(saved).fold(0, u64::saturating_add)
@@ -128,8 +128,8 @@ impl Memory<'_> {
             let name = format!("{} more", rest.len());
             rows.push((sum, [name, String::new(), String::new()]));
         }
-        let all = ["all together".to_owned(), String::new(), String::new()];
-        rows.push((self.bytes(), all));
+        let total = ["all together".to_owned(), String::new(), String::new()];
+        rows.push((self.bytes(), total));
         let width = |column: usize| {
             let cells = rows.iter().map(|(_, cells)| cells[column].chars().count());
             cells.max().unwrap_or_default()

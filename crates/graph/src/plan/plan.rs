@@ -208,12 +208,11 @@ impl Plan {
     /// the request.
     pub fn idle_params(&self) -> Vec<&str> {
         let by_default = |name: &&String| {
-            let others = self.with(|request| {
+            let defaulted = self.with(|request| {
                 request.params.remove(*name);
             });
-            others.is_ok_and(|others| {
-                self.0.values.get(*name) != others.0.values.get(*name)
-                    && self.does_the_same_as(&others)
+            defaulted.is_ok_and(|plan| {
+                self.0.values.get(*name) != plan.0.values.get(*name) && self.does_the_same_as(&plan)
             })
         };
         let asked = self.0.request.params.keys();

@@ -31,7 +31,7 @@ pub(super) fn readable(
             at.report(OutputError::NoOutput {
                 graph: graph.path().to_owned(),
                 name: wanted.clone(),
-                known: declared.iter().map(|&name| name.to_owned()).collect(),
+                outputs: declared.iter().map(|&name| name.to_owned()).collect(),
             });
         }
     }
@@ -70,7 +70,7 @@ pub(super) fn readable(
     }
     for capture in &request.captures {
         let name = capture.name();
-        if readable.iter().any(|(known, _)| *known == name) {
+        if readable.iter().any(|(other, _)| *other == name) {
             continue;
         }
         let Some(target) = captured(graph, capture, &declared, at) else {
@@ -104,17 +104,17 @@ fn captured(
 ) -> Option<Target> {
     let name = capture.name();
     // Those after a pass were entered as resources of their own.
-    if let Some(found) = at.find_full(&name) {
-        return found.ok();
+    if let Some(target) = at.find_full(&name) {
+        return target.ok();
     }
     if capture.after.is_none() {
         let outputs = declared.iter().map(|&name| name.to_owned());
-        let known = at.symbols().full_names().into_iter().chain(outputs);
-        let known = at.reports().known(known);
+        let materials = at.symbols().full_names().into_iter().chain(outputs);
+        let materials = at.reports().known(materials);
         at.report(OutputError::NoMaterial {
             graph: graph.path().to_owned(),
             name,
-            known,
+            materials,
         });
     }
     None
@@ -130,8 +130,8 @@ pub(super) fn check_captures(
     let after = captures.filter_map(|capture| capture.after.as_deref());
     for name in after {
         if !lowered.iter().any(|pass| pass.flat.name.value == name) {
-            let known = lowered.iter().map(|pass| pass.flat.name.value.clone());
-            reports.report(OutputError::NoPass(name.to_owned(), known.collect()));
+            let passes = lowered.iter().map(|pass| pass.flat.name.value.clone());
+            reports.report(OutputError::NoPass(name.to_owned(), passes.collect()));
         }
     }
 }

@@ -11,14 +11,14 @@
 /// middle, because the end of a name often tells more than its middle. A text that is not longer is
 /// returned unchanged.
 pub fn cut(text: &str, characters: usize) -> String {
-    let all: Vec<char> = text.chars().collect();
-    if all.len() <= characters {
+    let chars: Vec<char> = text.chars().collect();
+    if chars.len() <= characters {
         return text.to_owned();
     }
     let tail = characters / 3;
     let head = characters.saturating_sub(tail + 1);
-    let beginning = all[..head].iter().chain(['…'].iter());
-    beginning.chain(&all[all.len() - tail..]).collect()
+    let beginning = chars[..head].iter().chain(['…'].iter());
+    beginning.chain(&chars[chars.len() - tail..]).collect()
 }
 
 /// Formats a number of bytes in the largest unit in which it is at least 1: `B`, `KiB`, `MiB` or

@@ -18,8 +18,8 @@ pub(super) fn check(
     request: &PlanRequest<'_>,
     reports: &mut Reports,
 ) {
-    fn names<T>(of: &str, flags: impl Iterator<Item = (&'static str, T)>) -> String {
-        let names: Vec<String> = flags.map(|(name, _)| format!("{of}::{name}")).collect();
+    fn names<T>(ty: &str, flags: impl Iterator<Item = (&'static str, T)>) -> String {
+        let names: Vec<String> = flags.map(|(name, _)| format!("{ty}::{name}")).collect();
         names.join(" | ")
     }
     for pass in sequence.iter().map(|&pass| view.pass(pass)) {

@@ -80,19 +80,19 @@ pub(super) fn without_functions(text: &str) -> String {
 
 /// The declarations, each behind those that it names; directives first.
 fn in_order_of_need(declarations: &[Declaration<'_>]) -> Vec<usize> {
-    let all = || declarations.iter().enumerate();
-    let by_name = all().filter_map(|(index, declaration)| Some((declaration.name?, index)));
+    let indexed = || declarations.iter().enumerate();
+    let by_name = indexed().filter_map(|(index, declaration)| Some((declaration.name?, index)));
     let by_name: BTreeMap<&str, usize> = by_name.collect();
-    let directives = all().filter(|(_, declaration)| declaration.name.is_none());
+    let directives = indexed().filter(|(_, declaration)| declaration.name.is_none());
     let mut order: Vec<usize> = directives.map(|(index, _)| index).collect();
     let mut seen: BTreeSet<usize> = order.iter().copied().collect();
-    for (index, _) in all() {
+    for (index, _) in indexed() {
         if !seen.insert(index) {
             continue;
         }
         let mut open = vec![(index, declarations[index].words.iter())];
         while let Some((index, words)) = open.last_mut() {
-            let needed = words.find_map(|word| by_name.get(word).filter(|of| seen.insert(**of)));
+            let needed = words.find_map(|word| by_name.get(word).filter(|at| seen.insert(**at)));
             match needed {
                 Some(&needed) => open.push((needed, declarations[needed].words.iter())),
                 None => {
@@ -107,7 +107,7 @@ fn in_order_of_need(declarations: &[Declaration<'_>]) -> Vec<usize> {
 
 /// Declarations of a module, in order.
 fn declarations(text: &str) -> Vec<Declaration<'_>> {
-    let mut found = Vec::new();
+    let mut declarations = Vec::new();
     let (mut start, mut depth) = (None, 0usize);
     let (mut read, mut body): (Vec<&str>, _) = (Vec::new(), None);
     for (place, token) in tokens(text) {
@@ -127,7 +127,7 @@ fn declarations(text: &str) -> Vec<Declaration<'_>> {
         if !ends {
             continue;
         }
-        found.push(Declaration {
+        declarations.push(Declaration {
             range: first..at,
             name: name_of(&read),
             words: read.drain(..).collect(),
@@ -135,7 +135,7 @@ fn declarations(text: &str) -> Vec<Declaration<'_>> {
         });
         start = None;
     }
-    found
+    declarations
 }
 
 /// The name that a declaration gives; none of a directive.

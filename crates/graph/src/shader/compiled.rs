@@ -132,8 +132,10 @@ fn panics(text: &str) -> bool {
             return write(&module, &info, None);
         }
         for entry in &module.entry_points {
-            let of = Some((entry.stage, entry.name.as_str()));
-            if let Ok((module, info)) = process_overrides(&module, &info, of, &Default::default()) {
+            let entry = Some((entry.stage, entry.name.as_str()));
+            if let Ok((module, info)) =
+                process_overrides(&module, &info, entry, &Default::default())
+            {
                 write(&module, &info, None);
             }
         }

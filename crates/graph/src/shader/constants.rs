@@ -72,11 +72,11 @@ impl ChoiceConstants {
     pub fn disagreement(&self, shader: &Shader, declared: &[&str]) -> Option<ShaderError> {
         declared.iter().find_map(|name| {
             let constant = self.0.get(*name)?;
-            let found = shader.constant(name)?;
-            let agrees = found.number() == f64::from(constant.number);
+            let value = shader.constant(name)?;
+            let agrees = value.number() == f64::from(constant.number);
             (!agrees).then(|| ShaderError::Choice {
                 constant: (*name).to_owned(),
-                found: found.to_string(),
+                value: value.to_string(),
                 word: format!("`{}`", constant.word),
                 param: constant.param.clone(),
                 number: constant.number,

@@ -193,9 +193,9 @@ impl<'a> ShaderFiles<'a> {
         missing: fn(Located<String>, Vec<String>, Option<String>) -> ImportError,
         unreadable: fn(Located<String>, String) -> ImportError,
     ) -> Result<SourceFile, ImportError> {
-        let found = self.find(&candidates);
-        let found = found.map_err(|why| unreadable(name.clone(), why))?;
-        found.ok_or_else(|| {
+        let file = self.find(&candidates);
+        let file = file.map_err(|why| unreadable(name.clone(), why))?;
+        file.ok_or_else(|| {
             let likeness = self.likeness(&candidates, name);
             missing(name.clone(), candidates, likeness)
         })

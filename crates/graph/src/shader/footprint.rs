@@ -51,63 +51,64 @@ pub(crate) struct Footprint {
 
 impl Footprint {
     pub(super) fn new(
-        of: &Specialised<'_>,
+        specialised: &Specialised<'_>,
         (stage, name): (ShaderStage, &str),
         source: &Expanded,
     ) -> Self {
         let mut footprint = Self::default();
-        let module = &*of.module;
+        let module = &*specialised.module;
         let mut points = module.entry_points.iter();
         let point = points.position(|point| point.stage == stage && point.name == name);
         let Some((index, point)) = point.map(|index| (index, &module.entry_points[index])) else {
             return footprint;
         };
-        let info = of.info.get_entry_point(index);
-        footprint.globals(of, info, source);
-        footprint.function(of, (&point.function, info), name, source);
+        let info = specialised.info.get_entry_point(index);
+        footprint.globals(specialised, info, source);
+        footprint.function(specialised, (&point.function, info), name, source);
         for handle in called(module, &point.function) {
             let function = &module.functions[handle];
             let name = function.name.as_deref().unwrap_or_default();
-            footprint.function(of, (function, &of.info[handle]), name, source);
+            let info = &specialised.info[handle];
+            footprint.function(specialised, (function, info), name, source);
         }
         footprint
     }
 
-    fn globals(&mut self, of: &Specialised<'_>, info: &FunctionInfo, source: &Expanded) {
-        for (handle, variable) in of.module.global_variables.iter() {
-            let bytes = bytes_of(of, &of.module.types[variable.ty].inner);
+    fn globals(&mut self, specialised: &Specialised<'_>, info: &FunctionInfo, source: &Expanded) {
+        for (handle, variable) in specialised.module.global_variables.iter() {
+            let bytes = bytes_of(specialised, &specialised.module.types[variable.ty].inner);
             let (memory, bytes) = match variable.space {
                 _ if info[handle].is_empty() => continue,
                 AddressSpace::WorkGroup => (&mut self.workgroup, bytes.next_multiple_of(16)),
                 AddressSpace::Private => (&mut self.private, bytes),
                 _ => continue,
             };
-            let span = of.module.global_variables.get_span(handle);
+            let span = specialised.module.global_variables.get_span(handle);
             memory.add(bytes, || located(variable.name.as_deref(), span, source));
         }
     }
 
     fn function(
         &mut self,
-        of: &Specialised<'_>,
+        specialised: &Specialised<'_>,
         (function, info): (&Function, &FunctionInfo),
         name: &str,
         source: &Expanded,
     ) {
         let mut variables = Memory::default();
         for (handle, local) in function.local_variables.iter() {
-            let bytes = bytes_of(of, &of.module.types[local.ty].inner);
+            let bytes = bytes_of(specialised, &specialised.module.types[local.ty].inner);
             let span = function.local_variables.get_span(handle);
             variables.add(bytes, || located(local.name.as_deref(), span, source));
         }
         self.functions.push((name.to_owned(), variables));
         for (handle, _) in function.expressions.iter() {
-            let ty = info[handle].ty.inner_with(&of.module.types);
+            let ty = info[handle].ty.inner_with(&specialised.module.types);
             let is_large = matches!(ty, TypeInner::Array { .. } | TypeInner::Struct { .. });
             if !is_large || info[handle].ref_count == 0 {
                 continue;
             }
-            let bytes = bytes_of(of, ty);
+            let bytes = bytes_of(specialised, ty);
             if bytes > self.value.bytes {
                 let span = function.expressions.get_span(handle);
                 self.value = Memory::default();
@@ -118,8 +119,8 @@ impl Footprint {
 }
 
 /// Bytes of a type that validation has found to have a size.
-fn bytes_of(of: &Specialised<'_>, ty: &TypeInner) -> u64 {
-    u64::from(ty.size(of.module.to_ctx()))
+fn bytes_of(specialised: &Specialised<'_>, ty: &TypeInner) -> u64 {
+    u64::from(ty.size(specialised.module.to_ctx()))
 }
 
 fn located(name: Option<&str>, span: naga::Span, source: &Expanded) -> Located<String> {
@@ -128,7 +129,7 @@ fn located(name: Option<&str>, span: naga::Span, source: &Expanded) -> Located<S
 
 /// Returns the functions that `first` calls, directly or not, each once.
 pub(super) fn called(module: &Module, first: &Function) -> BTreeSet<Handle<Function>> {
-    let mut found = BTreeSet::new();
+    let mut functions = BTreeSet::new();
     let mut open: Vec<&Block> = vec![&first.body];
     while let Some(block) = open.pop() {
         for statement in block.iter() {
@@ -141,12 +142,12 @@ pub(super) fn called(module: &Module, first: &Function) -> BTreeSet<Handle<Funct
                 Statement::Loop {
                     body, continuing, ..
                 } => open.extend([body, continuing]),
-                Statement::Call { function, .. } if found.insert(*function) => {
+                Statement::Call { function, .. } if functions.insert(*function) => {
                     open.push(&module.functions[*function].body);
                 }
                 _ => {}
             }
         }
     }
-    found
+    functions
 }

@@ -53,7 +53,7 @@ pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
     }
     let mut levels = vec![Level::default()];
     let mut declarations = 0;
-    for (here, token) in tokens(text) {
+    for (range, token) in tokens(text) {
         let outside = levels.len() == 1;
         // There is always the outermost level: it is never closed.
         let Some(level) = levels.last_mut() else {
@@ -72,7 +72,7 @@ pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
                 if token == "}" {
                     // A block ends a statement, unless an `else` continues it.
                     around.end();
-                    if next(&text[here.end..]).is_some_and(|(_, token)| token == "else") {
+                    if next(&text[range.end..]).is_some_and(|(_, token)| token == "else") {
                         around.current = before + ELSE;
                     }
                 }
@@ -91,10 +91,10 @@ pub(super) fn check(source: &Expanded) -> Result<(), ShaderError> {
         let last = levels.last();
         let deepest = last.map_or(0, |level| level.current.max(level.longest));
         if deepest > DEEPEST {
-            return Err(ShaderError::TooDeep(file, DEEPEST, source.locate(here)));
+            return Err(ShaderError::TooDeep(file, DEEPEST, source.locate(range)));
         }
         if declarations > MOST_DECLARATIONS {
-            let (most, at) = (MOST_DECLARATIONS, source.locate(here));
+            let (most, at) = (MOST_DECLARATIONS, source.locate(range));
             return Err(ShaderError::TooManyDeclarations(file, most, at));
         }
     }

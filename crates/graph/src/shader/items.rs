@@ -68,12 +68,12 @@ const MOST_FIELDS: usize = 64;
 
 pub(crate) fn item(module: &naga::Module, ty: Handle<naga::Type>) -> Option<Item> {
     let inner = &module.types[ty].inner;
-    let (of, stride) = match inner {
+    let (item_ty, stride) = match inner {
         TypeInner::Array { base, stride, .. } => (*base, *stride),
         _ => (ty, inner.size(module.to_ctx())),
     };
     let mut fields = Vec::new();
-    flatten(module, of, String::new(), 0, &mut fields)?;
+    flatten(module, item_ty, String::new(), 0, &mut fields)?;
     Some(Item {
         stride: stride as usize,
         fields,
@@ -122,9 +122,9 @@ fn flatten(
             flatten(module, *base, format!("{name}[{index}]"), place, fields)
         }),
         TypeInner::Struct { members, .. } => members.iter().try_for_each(|member| {
-            let of = member.name.as_deref().unwrap_or("_");
+            let name = format!("{name}{dot}{}", member.name.as_deref().unwrap_or("_"));
             let place = offset + member.offset as usize;
-            flatten(module, member.ty, format!("{name}{dot}{of}"), place, fields)
+            flatten(module, member.ty, name, place, fields)
         }),
         _ => None,
     }

@@ -34,15 +34,15 @@ fn reads(
     global: Handle<GlobalVariable>,
     member: impl Fn(u32) -> bool,
 ) -> bool {
-    let of = |handle: Handle<Expression>| match function.expressions[handle] {
-        Expression::GlobalVariable(found) => found == global,
+    let is_global = |handle: Handle<Expression>| match function.expressions[handle] {
+        Expression::GlobalVariable(variable) => variable == global,
         _ => false,
     };
     let mut expressions = function.expressions.iter();
     expressions.any(|(_, expression)| match *expression {
-        Expression::AccessIndex { base, index } => of(base) && member(index),
-        Expression::Load { pointer } => of(pointer),
-        Expression::Access { base, .. } => of(base),
+        Expression::AccessIndex { base, index } => is_global(base) && member(index),
+        Expression::Load { pointer } => is_global(pointer),
+        Expression::Access { base, .. } => is_global(base),
         _ => false,
     })
 }

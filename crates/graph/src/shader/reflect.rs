@@ -128,19 +128,19 @@ impl Shader {
         let key = (entry, bits.collect());
         let footprints = &self.footprints;
         let lock = || footprints.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = lock().get(&key) {
-            return known.clone();
+        if let Some(footprint) = lock().get(&key) {
+            return footprint.clone();
         }
         let point = &self.module.entry_points[entry];
-        let of = (point.stage, point.name.as_str());
-        let found = specialised((&self.module, &self.info), of, constants, &self.source)
-            .map(|specialised| Arc::new(Footprint::new(&specialised, of, &self.source)));
+        let point = (point.stage, point.name.as_str());
+        let footprint = specialised((&self.module, &self.info), point, constants, &self.source)
+            .map(|specialised| Arc::new(Footprint::new(&specialised, point, &self.source)));
         let mut footprints = lock();
         if footprints.len() >= MOST_FOOTPRINTS {
             footprints.clear();
         }
-        footprints.insert(key, found.clone());
-        found
+        footprints.insert(key, footprint.clone());
+        footprint
     }
 
     /// Iterates over the indices of the fragment entry points without colour outputs.
@@ -181,15 +181,15 @@ impl Shader {
             .collect();
         let stage = format!("{stage:?}").to_lowercase();
         let file = self.source.file.name.to_string();
-        let known = of_stage.iter().map(|(_, known)| (*known).to_owned());
+        let names = of_stage.iter().map(|(_, name)| (*name).to_owned());
         match (name, of_stage.as_slice()) {
             (Some(name), _) => {
-                let mut named = of_stage.iter().filter(|(_, known)| *known == name.as_str());
+                let mut named = of_stage.iter().filter(|(_, entry)| *entry == name.as_str());
                 let error = || ShaderError::NoSuchEntry {
                     file,
                     stage,
                     name: name.clone(),
-                    known: known.collect(),
+                    entries: names.collect(),
                 };
                 named.next().map(|(index, _)| *index).ok_or_else(error)
             }
@@ -199,7 +199,7 @@ impl Shader {
                 file,
                 stage,
                 at: wanted.clone(),
-                known: known.collect(),
+                entries: names.collect(),
             }),
         }
     }
@@ -246,9 +246,9 @@ impl Shader {
             };
             let (mut usage, mut stages) = (GlobalUse::empty(), wgt::ShaderStages::NONE);
             for &entry in entries {
-                let here = self.info.get_entry_point(entry)[handle];
-                usage |= here;
-                if !here.is_empty() {
+                let entry_use = self.info.get_entry_point(entry)[handle];
+                usage |= entry_use;
+                if !entry_use.is_empty() {
                     stages |= stages_of(self.module.entry_points[entry].stage);
                 }
             }
@@ -349,8 +349,9 @@ impl Shader {
     /// override.
     pub(crate) fn override_class(&self, name: &str) -> Option<ScalarClass> {
         let mut overrides = self.module.overrides.iter();
-        let (_, found) = overrides.find(|(_, found)| found.name.as_deref() == Some(name))?;
-        let scalar = self.module.types[found.ty].inner.scalar()?;
+        let (_, declared) =
+            overrides.find(|(_, declared)| declared.name.as_deref() == Some(name))?;
+        let scalar = self.module.types[declared.ty].inner.scalar()?;
         ScalarClass::from_kind(scalar.kind)
     }
 
@@ -358,7 +359,8 @@ impl Shader {
     /// or it is a `bool` or not a literal.
     pub(crate) fn constant(&self, name: &str) -> Option<Scalar> {
         let mut constants = self.module.constants.iter();
-        let (_, constant) = constants.find(|(_, known)| known.name.as_deref() == Some(name))?;
+        let (_, constant) =
+            constants.find(|(_, constant)| constant.name.as_deref() == Some(name))?;
         match &self.module.global_expressions[constant.init] {
             naga::Expression::Literal(literal) => Some(match *literal {
                 naga::Literal::F64(value) | naga::Literal::AbstractFloat(value) => {
@@ -406,7 +408,7 @@ impl Shader {
         &self,
     ) -> Option<(Handle<naga::GlobalVariable>, &[naga::StructMember])> {
         let mut globals = self.module.global_variables.iter();
-        let (handle, global) = globals.find(|(_, of)| of.name.as_deref() == Some("params"))?;
+        let (handle, global) = globals.find(|(_, var)| var.name.as_deref() == Some("params"))?;
         match &self.module.types[global.ty].inner {
             TypeInner::Struct { members, .. } => Some((handle, members)),
             _ => None,

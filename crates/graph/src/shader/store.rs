@@ -88,8 +88,8 @@ impl Shaders {
     ) -> Option<&Result<Arc<Shader>, Invalid>> {
         let replaced = self.with_own(around, shader);
         let mut variants = self.shaders.get(&Self::key(document, &shader.name))?.iter();
-        let found = variants.find(|(known, _)| *known == replaced);
-        found.map(|(_, shader)| shader)
+        let variant = variants.find(|(other, _)| *other == replaced);
+        variant.map(|(_, shader)| shader)
     }
 
     /// Iterates over the valid variants of the shader that a pass of a document names: one for each
@@ -99,8 +99,8 @@ impl Shaders {
         document: &Document,
         shader: &ShaderUse,
     ) -> impl Iterator<Item = &Arc<Shader>> {
-        let found = self.shaders.get(&Self::key(document, &shader.name));
-        let variants = found.into_iter().flatten();
+        let variants = self.shaders.get(&Self::key(document, &shader.name));
+        let variants = variants.into_iter().flatten();
         variants.filter_map(|(_, shader)| shader.as_ref().ok())
     }
 
@@ -124,23 +124,23 @@ impl Shaders {
         (folder, name.value.clone())
     }
 
-    /// Sets in `around` that the module `is` replaces the module `of`, instead of an older
-    /// replacement of `of`. Replacements of an included document count more than those of the
+    /// Sets in `around` that the module `is` replaces `module`, instead of an older
+    /// replacement of `module`. Replacements of an included document count more than those of the
     /// document around it, so they are set later. Does nothing if one of the two was not found when
     /// the shaders were loaded (which was reported), or is named nowhere in their documents.
-    pub fn replace(&self, around: &mut Replaced, of: &Located<String>, is: &Located<String>) {
+    pub fn replace(&self, around: &mut Replaced, module: &Located<String>, is: &Located<String>) {
         // One that is not there was reported.
-        if let (Some(of), Some(is)) = (self.module(of), self.module(is)) {
-            around.insert(of.clone(), is.clone());
+        if let (Some(module), Some(is)) = (self.module(module), self.module(is)) {
+            around.insert(module.clone(), is.clone());
         }
     }
 
     /// With the modules that a pass kind has a shader of its own import.
     fn with_own(&self, around: &Replaced, shader: &ShaderUse) -> Replaced {
         let mut replaced = around.clone();
-        for (of, is) in &shader.imports {
+        for (module, is) in &shader.imports {
             let place = |name: &str| Located::new(name.to_owned(), shader.name.span.clone());
-            self.replace(&mut replaced, &place(of), &place(is));
+            self.replace(&mut replaced, &place(module), &place(is));
         }
         replaced
     }
@@ -185,14 +185,18 @@ impl Loader<'_> {
     fn document(&mut self, document: &Document, around: &[Rule]) {
         let mut rules = around.to_vec();
         for entry in &document.imports {
-            let (Some(of), Some(is)) = (self.module(&entry.of), self.module(&entry.is)) else {
+            let (Some(module), Some(is)) = (self.module(&entry.of), self.module(&entry.is)) else {
                 continue;
             };
-            self.check(&entry.is, &of, &is);
+            self.check(&entry.is, &module, &is);
             let file = &document.file.name;
             let condition = entry.condition.as_ref();
             let condition = condition.map(|expr| (Arc::clone(file), expr.text().to_owned()));
-            rules.push(Rule { of, is, condition });
+            rules.push(Rule {
+                of: module,
+                is,
+                condition,
+            });
         }
         let key = (Arc::clone(&document.file.name), rules.clone());
         if !self.seen.insert(key) {
@@ -215,7 +219,7 @@ impl Loader<'_> {
         }
         for values in 0..1u32 << conditions.len() {
             let holds = |condition: &(Arc<str>, String)| {
-                let at = conditions.iter().position(|known| known == condition);
+                let at = conditions.iter().position(|other| other == condition);
                 at.is_some_and(|at| values >> at & 1 == 1)
             };
             let holds = |rule: &&Rule| rule.condition.as_ref().is_none_or(holds);
@@ -238,15 +242,15 @@ impl Loader<'_> {
         constants: &ChoiceConstants,
         around: &Replaced,
     ) {
-        for (of, is) in &shader.imports {
-            for name in [of, is] {
+        for (module, is) in &shader.imports {
+            for name in [module, is] {
                 self.module(&Located::new(name.clone(), shader.name.span.clone()));
             }
         }
         let replaced = self.shaders.with_own(around, shader);
         let key = Shaders::key(document, &shader.name);
-        let known = self.shaders.shaders.get(&key);
-        if known.is_some_and(|known| known.iter().any(|(of, _)| *of == replaced)) {
+        let variants = self.shaders.shaders.get(&key);
+        if variants.is_some_and(|variants| variants.iter().any(|(other, _)| *other == replaced)) {
             return;
         }
         let source = self.files.expand(&shader.name, &replaced);
@@ -303,14 +307,14 @@ impl Loader<'_> {
     }
 
     /// Functions that both modules have must be called alike.
-    fn check(&mut self, name: &Located<String>, of: &str, is: &str) {
+    fn check(&mut self, name: &Located<String>, module: &str, is: &str) {
         let signatures = |files: &mut ShaderFiles<'_>, path: &str| {
             let file = files.find(&[path.to_owned()]).ok().flatten();
             file.map(|file| signatures(&file)).unwrap_or_default()
         };
-        let wanted = signatures(&mut self.files, of);
-        let found = signatures(&mut self.files, is);
-        for (function, (text, place)) in found {
+        let wanted = signatures(&mut self.files, module);
+        let given = signatures(&mut self.files, is);
+        for (function, (text, place)) in given {
             let Some((other, declared)) = wanted.get(&function) else {
                 continue;
             };
@@ -342,7 +346,7 @@ fn with_import(error: ShaderError, source: &Expanded, files: &mut ShaderFiles<'_
 
 /// The functions of a module, by name: parameters and result without spaces, and the place.
 fn signatures(file: &crate::source::span::SourceFile) -> HashMap<String, (String, Span)> {
-    let mut found = HashMap::new();
+    let mut signatures = HashMap::new();
     let text = &file.text;
     for (at, _) in text.match_indices("fn ") {
         let line = text[..at].rsplit('\n').next().unwrap_or("");
@@ -356,7 +360,7 @@ fn signatures(file: &crate::source::span::SourceFile) -> HashMap<String, (String
         let rest: String = rest.split_whitespace().collect();
         let rest = rest.replace(",)", ")");
         let span = file.span(at..at + end);
-        found.insert(name.trim().to_owned(), (rest, span));
+        signatures.insert(name.trim().to_owned(), (rest, span));
     }
-    found
+    signatures
 }

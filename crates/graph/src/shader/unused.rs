@@ -110,7 +110,7 @@ fn unused_params(shader: &Shader) -> Vec<Unused> {
     let mut read = vec![false; members.len()];
     for function in functions(module) {
         for (handle, expression) in function.expressions.iter() {
-            if !matches!(expression, Expression::GlobalVariable(known) if *known == params) {
+            if !matches!(expression, Expression::GlobalVariable(global) if *global == params) {
                 continue;
             }
             let mut indices = 0;
@@ -162,13 +162,13 @@ fn own(shader: &Shader, name: &str, what: &'static str) -> Option<Unused> {
 
 /// The file and those that it imports, directly or not.
 fn reached<'s>(source: &'s Expanded, file: &'s str) -> BTreeSet<&'s str> {
-    let (mut found, mut open) = (BTreeSet::new(), vec![file]);
+    let (mut files, mut open) = (BTreeSet::new(), vec![file]);
     while let Some(file) = open.pop() {
-        if found.insert(file) {
+        if files.insert(file) {
             let imports = source.imports.iter();
             let lines = imports.filter(|line| *line.asked.span.file.name == *file);
             open.extend(lines.map(|line| &*line.file.name));
         }
     }
-    found
+    files
 }

@@ -40,7 +40,7 @@ fn collision(
     let binding = globals[handle].binding;
     let place = |handle| source.place(globals.get_span(handle));
     let name = |handle: Handle<naga::GlobalVariable>| globals[handle].name.clone();
-    let others = globals
+    let clashing = globals
         .iter()
         .filter(|(other, variable)| *other != handle && variable.binding == binding)
         .map(|(other, _)| (place(other), name(other).unwrap_or_default()));
@@ -51,7 +51,7 @@ fn collision(
             format!("@group({}) @binding({})", binding.group, binding.binding)
         }),
         at: place(handle),
-        others: others.collect(),
+        clashing: clashing.collect(),
     }
 }
 
@@ -106,7 +106,7 @@ pub(super) fn unknown_name(message: &str) -> Option<&str> {
 /// naga's words without its numbers of types and expressions: `type [2]` becomes the type's name,
 /// and of an expression the place tells which one it is.
 fn without_handles(what: &str, module: &naga::Module) -> String {
-    let mut said = String::new();
+    let mut message = String::new();
     let mut rest = what;
     while let Some(at) = rest.find(" [") {
         let (before, after) = (&rest[..at], &rest[at + 2..]);
@@ -114,23 +114,23 @@ fn without_handles(what: &str, module: &naga::Module) -> String {
             let number: usize = number.parse().ok()?;
             Some((number, after))
         });
-        said.push_str(before);
+        message.push_str(before);
         rest = match number {
             Some((number, after)) => {
                 let ty = module.types.iter().nth(number);
                 let is_type = before.ends_with("type") || before.ends_with("types like");
                 if let Some((ty, _)) = ty.filter(|_| is_type) {
-                    said.push_str(&format!(" `{}`", module.to_ctx().type_to_string(ty)));
+                    message.push_str(&format!(" `{}`", module.to_ctx().type_to_string(ty)));
                 }
                 after
             }
             None => {
-                said.push_str(" [");
+                message.push_str(" [");
                 after
             }
         };
     }
-    said + rest
+    message + rest
 }
 
 /// An error of naga's with its causes: they say what is wrong; the outermost one only which
@@ -265,8 +265,8 @@ pub(super) fn validation_error(
     {
         return collision(*handle, module, source);
     }
-    let said = plainly(error.as_inner(), module);
-    let said = said.unwrap_or_else(|| in_full(error.as_inner(), module));
+    let message = plainly(error.as_inner(), module);
+    let message = message.unwrap_or_else(|| in_full(error.as_inner(), module));
     let place = |(span, text): &(naga::Span, String)| {
         // Some spans are labelled with a handle of naga's, which tells an author nothing.
         let text = if text.starts_with("naga::") { "" } else { text };
@@ -294,7 +294,7 @@ pub(super) fn validation_error(
         };
         places.push((place, String::new()));
     }
-    let what = format!("is not valid: {said}");
+    let what = format!("is not valid: {message}");
     ShaderError::Naga(blamed(&places, source), what, places, Vec::new())
 }
 
@@ -305,8 +305,8 @@ pub(super) fn specialisation_error(
     source: &Expanded,
 ) -> ShaderError {
     // Its numbers are those of a module that is gone.
-    let said = in_full(error, &naga::Module::default());
-    let what = format!("is not valid with the values of its overrides: {said}");
+    let message = in_full(error, &naga::Module::default());
+    let what = format!("is not valid with the values of its overrides: {message}");
     let places = vec![(function_span(source, entry), String::new())];
     let file = format!("`{}`", source.file.name);
     ShaderError::Naga(file, what, places, Vec::new())

@@ -83,11 +83,11 @@ impl Sources for FolderSources {
         // Looked at before it is opened, which a pipe can block; a file of many gigabytes is not
         // read to find that out.
         match std::fs::metadata(&path) {
-            Ok(found) if found.is_file() => match found.len() {
+            Ok(metadata) if metadata.is_file() => match metadata.len() {
                 0..=LONGEST_FILE => {}
                 length => return Err(too_long(&format!("{} MiB", length.div_ceil(1 << 20)))),
             },
-            Ok(found) if !found.is_dir() => {
+            Ok(metadata) if !metadata.is_dir() => {
                 return Err(
                     "it is a device, a pipe or a socket: copy its content into a file".to_owned(),
                 );
@@ -187,8 +187,8 @@ impl Sources for MemorySources {
 
     fn list(&self, folder: &str) -> Vec<String> {
         let inside = |path: &String| {
-            let (of, name) = path.rsplit_once('/').unwrap_or(("", path));
-            (of == folder).then(|| name.to_owned())
+            let (parent, name) = path.rsplit_once('/').unwrap_or(("", path));
+            (parent == folder).then(|| name.to_owned())
         };
         let paths = self.texts.keys().chain(self.pictures.keys());
         let names: BTreeSet<String> = paths.filter_map(inside).collect();
@@ -231,8 +231,8 @@ fn first<T>(
     ask: impl Fn(&dyn Sources) -> Result<Option<T>, String>,
 ) -> Result<Option<T>, String> {
     for layer in layers {
-        if let Some(found) = ask(&**layer)? {
-            return Ok(Some(found));
+        if let Some(content) = ask(&**layer)? {
+            return Ok(Some(content));
         }
     }
     Ok(None)

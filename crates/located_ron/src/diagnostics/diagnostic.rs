@@ -121,11 +121,11 @@ impl Diagnostic {
     }
 
     /// Appends a hint for the misspelt `word`, as [`suggestion`] makes it: "did you mean …?" if a
-    /// name in `known` is close, or else a list of the first names in `known`. An empty `known`
+    /// name in `names` is close, or else a list of the first names in `names`. An empty `names`
     /// adds nothing.
     #[must_use]
-    pub fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
-        self.help_any(suggestion(word, known))
+    pub fn suggest<S: AsRef<str>>(self, word: &str, names: impl IntoIterator<Item = S>) -> Self {
+        self.help_any(suggestion(word, names))
     }
 
     /// Returns the first place and the message as `FILE:LINE:COLUMN: MESSAGE`, line and column

@@ -49,8 +49,8 @@ impl Diagnostics {
 /// the help. The feature `render` prints the source lines, too.
 impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, found) in self.0.iter().enumerate() {
-            let severity = match found.severity {
+        for (index, diagnostic) in self.0.iter().enumerate() {
+            let severity = match diagnostic.severity {
                 Severity::Error => "error",
                 Severity::Warning => "warning",
             };
@@ -58,13 +58,13 @@ impl fmt::Display for Diagnostics {
             write!(
                 f,
                 "{gap}{severity}[{}]: {}",
-                found.code.as_str(),
-                found.message
+                diagnostic.code.as_str(),
+                diagnostic.message
             )?;
-            for label in &found.labels {
+            for label in &diagnostic.labels {
                 write!(f, "\n  --> {} {}", label.span, label.text)?;
             }
-            if let Some(help) = &found.help {
+            if let Some(help) = &diagnostic.help {
                 write!(f, "\n  help: {}", help.replace('\n', "\n        "))?;
             }
         }

@@ -61,10 +61,10 @@ impl<'a> Report<'a> {
         let mut files = diagnostic.labels.iter().map(|label| &label.span.file);
         let first = files.next();
         let mut report = Self::from_file(diagnostic, diagnostic.message.clone(), first);
-        let mut others: Vec<_> = files.filter(|file| Some(*file) != first).collect();
-        others.sort_by(|a, b| a.name.cmp(&b.name));
-        others.dedup();
-        for file in others {
+        let mut files: Vec<_> = files.filter(|file| Some(*file) != first).collect();
+        files.sort_by(|a, b| a.name.cmp(&b.name));
+        files.dedup();
+        for file in files {
             let note = Self::from_file(diagnostic, format!("and in {}", file.name), Some(file));
             report.related.push(Self {
                 is_note: true,

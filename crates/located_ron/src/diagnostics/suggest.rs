@@ -10,25 +10,25 @@ const LONGEST: usize = 80;
 /// Names in a list.
 const SHOWN: usize = 16;
 
-/// Returns the name in `known` that is most like the misspelt `word`, by similarity of the letters;
+/// Returns the name in `names` that is most like the misspelt `word`, by similarity of the letters;
 /// `None` if no name is close enough or `word` has more than 80 bytes. A dotted name that ends in
 /// `.word` counts as closest if it is the only one that does. Names of more than 80 bytes, and
 /// those after the first 1,024 others, are not compared.
-pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+pub fn closest<'k>(word: &str, names: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
     if word.len() > LONGEST {
         return None;
     }
-    let known = known.into_iter().filter(|name| name.len() <= LONGEST);
-    let known: Vec<&str> = known.take(COMPARED).collect();
+    let names = names.into_iter().filter(|name| name.len() <= LONGEST);
+    let names: Vec<&str> = names.take(COMPARED).collect();
     // A name that a named include exposes begins with the include's name.
-    let mut exposed = known.iter().filter(|name| {
+    let mut exposed = names.iter().filter(|name| {
         let own = name.rsplit_once('.').map(|(_, own)| own);
         own == Some(word)
     });
     if let (Some(name), None) = (exposed.next(), exposed.next()) {
         return Some(*name);
     }
-    let likeness = known.into_iter().map(|name| {
+    let likeness = names.into_iter().map(|name| {
         let likeness = strsim::jaro_winkler(word, name);
         // It has no eye for a slip in a short name; the share of letters that stay has.
         let stays = strsim::normalized_damerau_levenshtein(word, name);
@@ -41,31 +41,31 @@ pub fn closest<'k>(word: &str, known: impl IntoIterator<Item = &'k str>) -> Opti
     best.map(|(.., name)| name)
 }
 
-/// Returns a hint for a misspelt `word`: "did you mean …?" with the [`closest`] name in `known`, or
-/// else "known here: …" with the first 16 names in `known` and the number of the others. Names of
+/// Returns a hint for a misspelt `word`: "did you mean …?" with the [`closest`] name in `names`, or
+/// else "known here: …" with the first 16 names in `names` and the number of the others. Names of
 /// more than 80 bytes are left out. `None` if no name is left.
-pub fn suggestion<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
-    let known: Vec<S> = known.into_iter().collect();
-    let count = known.len();
+pub fn suggestion<S: AsRef<str>>(word: &str, names: impl IntoIterator<Item = S>) -> Option<String> {
+    let names: Vec<S> = names.into_iter().collect();
+    let count = names.len();
     let short = |name: &&str| name.len() <= LONGEST;
-    let known: Vec<&str> = known.iter().map(AsRef::as_ref).filter(short).collect();
-    if let Some(name) = closest(word, known.iter().copied()) {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).filter(short).collect();
+    if let Some(name) = closest(word, names.iter().copied()) {
         return Some(format!("did you mean `{name}`?"));
     }
-    if known.is_empty() {
+    if names.is_empty() {
         return None;
     }
-    let rest = count - known.len().min(SHOWN);
-    let known = known.iter().take(SHOWN).map(|name| format!("`{name}`"));
-    let mut list = known.collect::<Vec<_>>().join(", ");
+    let rest = count - names.len().min(SHOWN);
+    let shown = names.iter().take(SHOWN).map(|name| format!("`{name}`"));
+    let mut list = shown.collect::<Vec<_>>().join(", ");
     if rest > 0 {
         list.push_str(&format!(" and {rest} more"));
     }
     Some(format!("known here: {list}"))
 }
 
-/// Returns the hint "did you mean …?" for a misspelt `word`, with the [`closest`] name in `known`;
+/// Returns the hint "did you mean …?" for a misspelt `word`, with the [`closest`] name in `names`;
 /// `None` if no name is close enough.
-pub fn likeness<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
-    suggestion(word, known).filter(|hint| hint.starts_with("did"))
+pub fn likeness<S: AsRef<str>>(word: &str, names: impl IntoIterator<Item = S>) -> Option<String> {
+    suggestion(word, names).filter(|hint| hint.starts_with("did"))
 }

@@ -64,8 +64,8 @@ mod tests {
             assert!(lights.len() == 1, "{name}");
             assert_eq!(lights[0].check(), Ok(()), "{name}");
             assert!(mesh.positions.iter().all(|p| p.is_finite()), "{name}");
-            let known = |index: &u32| (*index as usize) < mesh.positions.len();
-            assert!(mesh.triangles.iter().flatten().all(known), "{name}");
+            let in_range = |index: &u32| (*index as usize) < mesh.positions.len();
+            assert!(mesh.triangles.iter().flatten().all(in_range), "{name}");
             assert_eq!(mesh.triangles.len(), mesh.normal_indices.len(), "{name}");
             // One is about their number.
             let most = if name == "crowded_texel" {

@@ -152,7 +152,7 @@ mod tests {
         });
         let corners = shelves().concat().into_iter();
         let corners = corners.map(|corner| glam::Vec3::from(corner).as_dvec3());
-        let found = texels(&fit, floor.chain(corners));
-        assert_eq!(found.len(), 2, "{found:?}");
+        let covered = texels(&fit, floor.chain(corners));
+        assert_eq!(covered.len(), 2, "{covered:?}");
     }
 }

@@ -37,8 +37,8 @@ fn put_mask(scene: &mut Scene, y: f32, mask: Mask, uv: impl Fn(Vec3) -> Vec2) {
             top.max(mesh.positions[index as usize].y)
         }) > y
     };
-    let of = mesh.triangles.iter().map(|of| u32::from(above(of)));
-    mesh.surfaces.of = of.collect();
+    let materials = mesh.triangles.iter().map(|tri| u32::from(above(tri)));
+    mesh.surfaces.of = materials.collect();
 }
 
 /// From 0 to 1 over a sheet.

@@ -64,8 +64,8 @@ struct Embedded;
 
 impl Sources for Embedded {
     fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
-        let found = path == "shaders/equalize.wgsl";
-        Ok(found.then(|| include_str!("custom_pass/equalize.wgsl").into()))
+        let is_ours = path == "shaders/equalize.wgsl";
+        Ok(is_ours.then(|| include_str!("custom_pass/equalize.wgsl").into()))
     }
 
     fn list(&self, folder: &str) -> Vec<String> {

@@ -229,12 +229,12 @@ pub fn open_with(wanted: &Wanted<'_>) -> Result<Gpu, GpuError> {
     let instance = instance(asked.unwrap_or(BACKENDS));
     let adapters = enumerate(&instance);
     if adapters.is_empty() {
-        let others = self::adapters();
+        let infos = self::adapters();
         return Err(match (asked, wanted.backends, of_environment) {
             (None, ..) => GpuError::NoAdapter,
-            _ if others.is_empty() => GpuError::NoAdapter,
-            (Some(_), None, Some(words)) => no_such_backend(words, &others),
-            (Some(backends), ..) => no_such_backend(names_of(backends), &others),
+            _ if infos.is_empty() => GpuError::NoAdapter,
+            (Some(_), None, Some(words)) => no_such_backend(words, &infos),
+            (Some(backends), ..) => no_such_backend(names_of(backends), &infos),
         });
     }
     let name = wanted
@@ -252,8 +252,8 @@ pub fn open_with(wanted: &Wanted<'_>) -> Result<Gpu, GpuError> {
         let driver = format!("{} {}", info.driver, info.driver_info).to_lowercase();
         driver.contains(&wanted_name)
     };
-    let found = adapters.iter().find(by_name);
-    let Some(adapter) = found.or_else(|| adapters.iter().find(by_driver)) else {
+    let named = adapters.iter().find(by_name);
+    let Some(adapter) = named.or_else(|| adapters.iter().find(by_driver)) else {
         let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
         return Err(GpuError::NoSuchAdapter {
             name: name.unwrap_or_default(),
@@ -295,10 +295,10 @@ fn device_of(
     }
 }
 
-fn no_such_backend(wanted: String, others: &[wgpu::AdapterInfo]) -> GpuError {
+fn no_such_backend(wanted: String, infos: &[wgpu::AdapterInfo]) -> GpuError {
     GpuError::NoSuchBackend {
         wanted: format!("`{wanted}`"),
-        seen: list(others),
+        seen: list(infos),
     }
 }
 

@@ -367,11 +367,11 @@ impl From<Diagnostics> for ExecuteError {
 
 /// Waits until all submitted work is done; returns false if that takes longer than `timeout`.
 pub(crate) fn wait(device: &wgpu::Device, timeout: Option<Duration>) -> Result<bool, ExecuteError> {
-    let all = wgpu::PollType::Wait {
+    let until_done = wgpu::PollType::Wait {
         submission_index: None,
         timeout,
     };
-    poll(device, all)
+    poll(device, until_done)
 }
 
 /// Polls the device for finished work; returns false if a timeout came first.

@@ -122,8 +122,8 @@ impl Content {
         let Self::Texture { format, bytes, .. } = self else {
             return None;
         };
-        let (of, width) = layout(*format)?;
-        (of == kind).then(|| bytes.chunks_exact(width).map(decode).collect())
+        let (own_kind, width) = layout(*format)?;
+        (own_kind == kind).then(|| bytes.chunks_exact(width).map(decode).collect())
     }
 }
 

@@ -22,18 +22,18 @@ impl Adjacencies {
         let Some(turned) = turned else {
             return Arc::new(Adjacency::new(mesh).opposite);
         };
-        let known = match self.known.take() {
-            Some((mut known, since)) => {
-                let opposite: &mut Vec<u32> = Arc::make_mut(&mut known);
+        let opposite = match self.known.take() {
+            Some((mut shared, since)) => {
+                let opposite: &mut Vec<u32> = Arc::make_mut(&mut shared);
                 for piece in turned(since) {
                     renew(opposite, &piece, mesh);
                 }
-                known
+                shared
             }
             None => Arc::new(Adjacency::new(mesh).opposite),
         };
-        self.known = Some((Arc::clone(&known), version));
-        known
+        self.known = Some((Arc::clone(&opposite), version));
+        opposite
     }
 
     /// Forgets it, for a mesh of another number of triangles.
@@ -44,12 +44,12 @@ impl Adjacencies {
 
 /// Finds the neighbours of a piece's triangles, all of which are of the piece.
 fn renew(opposite: &mut [u32], piece: &[u32], mesh: &Mesh) {
-    let of = |list: &Vec<u32>| piece.iter().map(|&id| list[id as usize]).collect();
+    let picked = |list: &Vec<u32>| piece.iter().map(|&id| list[id as usize]).collect();
     let surfaces = &mesh.surfaces;
     let surfaces = if surfaces.need_care() {
         Surfaces {
             materials: surfaces.materials.clone(),
-            of: of(&surfaces.of),
+            of: picked(&surfaces.of),
             ..Surfaces::default()
         }
     } else {
@@ -61,12 +61,12 @@ fn renew(opposite: &mut [u32], piece: &[u32], mesh: &Mesh) {
         surfaces,
         ..Mesh::default()
     };
-    let found = Adjacency::new(&alone).opposite;
-    for (corners, &id) in found.chunks_exact(3).zip(piece) {
+    let neighbours = Adjacency::new(&alone).opposite;
+    for (corners, &id) in neighbours.chunks_exact(3).zip(piece) {
         for (side, &corner) in corners.iter().enumerate() {
             let place = |corner: u32| 3 * piece[corner as usize / 3] + corner % 3;
-            let known = Some(corner).filter(|corner| *corner != NO_NEIGHBOUR);
-            opposite[3 * id as usize + side] = known.map_or(NO_NEIGHBOUR, place);
+            let neighbour = Some(corner).filter(|corner| *corner != NO_NEIGHBOUR);
+            opposite[3 * id as usize + side] = neighbour.map_or(NO_NEIGHBOUR, place);
         }
     }
 }

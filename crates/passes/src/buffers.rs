@@ -85,15 +85,15 @@ impl Buffers {
     /// The buffer of that name, if there is one whose content is of that version.
     pub fn get(&self, name: &str, version: u64) -> Option<&wgpu::Buffer> {
         let held = self.held.get(name)?.iter();
-        let mut held = held.filter(|(_, of)| *of == version);
+        let mut held = held.filter(|(_, stored)| *stored == version);
         held.next().map(|(buffer, _)| buffer)
     }
 
     /// Marks the content of the buffer of that name that was made last, if there is one, as being
     /// of that version now.
     pub fn still_hold(&mut self, name: &str, version: u64) {
-        if let Some((_, of)) = self.held.get_mut(name).and_then(|held| held.last_mut()) {
-            *of = version;
+        if let Some((_, before)) = self.held.get_mut(name).and_then(|held| held.last_mut()) {
+            *before = version;
         }
     }
 
@@ -103,7 +103,7 @@ impl Buffers {
         let Some(held) = self.held.get_mut(name) else {
             return false;
         };
-        let at = held.iter().position(|(_, of)| *of == version);
+        let at = held.iter().position(|(_, stored)| *stored == version);
         if let Some(at) = at {
             held[at..].rotate_left(1);
         }
@@ -113,7 +113,7 @@ impl Buffers {
     /// Drops the buffer of that name whose content is of a version, which another one has replaced.
     pub fn leave(&mut self, name: &str, version: u64, by: u64) {
         if let Some(held) = self.held.get_mut(name).filter(|_| version != by) {
-            held.retain(|(_, of)| *of != version);
+            held.retain(|(_, stored)| *stored != version);
         }
     }
 
@@ -205,23 +205,23 @@ impl Buffers {
         let gap = if self.keeps_gaps { 1 } else { GAP / stride };
         let ranges = joined(changed, gap);
         let written: usize = ranges.iter().map(Range::len).sum();
-        let known = self.last(name).map(|(buffer, _)| buffer.clone());
-        let known = known.filter(|known| known.size() == (count * stride) as u64);
-        if written == 0 && known.is_some() {
+        let last = self.last(name).map(|(buffer, _)| buffer.clone());
+        let last = last.filter(|buffer| buffer.size() == (count * stride) as u64);
+        if written == 0 && last.is_some() {
             self.still_hold(name, version);
             return Ok(Patched::Nothing);
         }
-        let Some(known) = known.filter(|_| 2 * written <= count) else {
-            let mut all = Vec::with_capacity(count);
-            items(0..count, &mut all);
-            self.make(name, &all, version, on)?;
+        let Some(last) = last.filter(|_| 2 * written <= count) else {
+            let mut content = Vec::with_capacity(count);
+            items(0..count, &mut content);
+            self.make(name, &content, version, on)?;
             return Ok(Patched::All);
         };
         let mut content = Vec::with_capacity(written);
         for range in &ranges {
             items(range.clone(), &mut content);
         }
-        self.succeed(name, &known, (count, &ranges, &content), version, on);
+        self.succeed(name, &last, (count, &ranges, &content), version, on);
         Ok(Patched::Some)
     }
 
@@ -234,12 +234,12 @@ impl Buffers {
         version: u64,
         on: On,
     ) -> Result<(), Error> {
-        let known = self.last(name).map(|(buffer, _)| buffer.clone());
+        let last = self.last(name).map(|(buffer, _)| buffer.clone());
         // One item may stand for none.
-        let known = known.map(|known| (known.size() as usize / size_of::<T>(), known));
-        match known.filter(|(there, _)| *there > 1 && *there <= items.len()) {
+        let last = last.map(|buffer| (buffer.size() as usize / size_of::<T>(), buffer));
+        match last.filter(|(there, _)| *there > 1 && *there <= items.len()) {
             Some((there, _)) if there == items.len() => self.still_hold(name, version),
-            Some((there, known)) => {
+            Some((there, last)) => {
                 check_size(
                     name,
                     size_of_val(items) as u64,
@@ -247,19 +247,19 @@ impl Buffers {
                 )?;
                 let (range, content) = (there..items.len(), &items[there..]);
                 let changed = (items.len(), std::slice::from_ref(&range), content);
-                self.succeed(name, &known, changed, version, on);
+                self.succeed(name, &last, changed, version, on);
             }
             None => return self.make(name, items, version, on),
         }
         Ok(())
     }
 
-    /// Makes the buffer that follows `known`: of `count` items, of which `content` has those in
+    /// Makes the buffer that follows `last`: of `count` items, of which `content` has those in
     /// `ranges`.
     fn succeed<T: bytemuck::NoUninit>(
         &mut self,
         name: &str,
-        known: &wgpu::Buffer,
+        last: &wgpu::Buffer,
         (count, ranges, content): (usize, &[Range<usize>], &[T]),
         version: u64,
         on: On,
@@ -267,7 +267,7 @@ impl Buffers {
         let stride = size_of::<T>();
         let buffer = create(name, (count * stride) as u64, on.device);
         let encoder = self.record(name, on);
-        encoder.copy_buffer_to_buffer(known, 0, &buffer, 0, known.size());
+        encoder.copy_buffer_to_buffer(last, 0, &buffer, 0, last.size());
         let (content, usage) = (bytemuck::cast_slice(content), wgpu::BufferUsages::COPY_SRC);
         let staging = upload(on.device, "changed items", content, usage);
         let mut from = 0;
@@ -277,7 +277,7 @@ impl Buffers {
             from += size;
         }
         self.work.uploaded += from;
-        self.work.copied += known.size();
+        self.work.copied += last.size();
         self.hold(name, buffer, version);
     }
 
@@ -300,14 +300,14 @@ impl Buffers {
     /// Makes the buffer of that name that was made last one that the GPU may write: a copy, if it
     /// was handed out.
     pub fn renew(&mut self, name: &str, patched: Patched, on: On) -> Option<wgpu::Buffer> {
-        let (known, version) = self.last(name)?.clone();
+        let (last, version) = self.last(name)?.clone();
         if patched != Patched::Nothing {
-            return Some(known);
+            return Some(last);
         }
-        let buffer = create(name, known.size(), on.device);
+        let buffer = create(name, last.size(), on.device);
         let encoder = self.record(name, on);
-        encoder.copy_buffer_to_buffer(&known, 0, &buffer, 0, known.size());
-        self.work.copied += known.size();
+        encoder.copy_buffer_to_buffer(&last, 0, &buffer, 0, last.size());
+        self.work.copied += last.size();
         self.hold(name, buffer.clone(), version);
         Some(buffer)
     }
@@ -334,9 +334,9 @@ fn joined(ranges: &[Range<usize>], gap: usize) -> Vec<Range<usize>> {
 pub(crate) fn refused<T>(device: &wgpu::Device, act: impl FnOnce() -> T) -> Result<T, String> {
     let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
     let done = act();
-    let mut told = std::pin::pin!(scope.pop());
+    let mut outcome = std::pin::pin!(scope.pop());
     let mut context = std::task::Context::from_waker(std::task::Waker::noop());
-    match told.as_mut().poll(&mut context) {
+    match outcome.as_mut().poll(&mut context) {
         std::task::Poll::Ready(Some(why)) => Err(why.to_string()),
         _ => Ok(done),
     }

@@ -85,8 +85,8 @@ impl Embree {
                     }
                 }
             }
-            let all = ValidMaskN::<PACKET>::all_active();
-            self.0.occluded16(context, &mut lanes, &all);
+            let active = ValidMaskN::<PACKET>::all_active();
+            self.0.occluded16(context, &mut lanes, &active);
         }
     }
 

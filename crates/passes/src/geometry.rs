@@ -179,7 +179,7 @@ impl Geometry {
     /// # Errors
     /// [`Error::NoPart`] for one that was removed, or is of another mesh.
     fn number(&self, id: PartId) -> Result<usize, Error> {
-        let number = self.parts.iter().position(|known| *known == id);
+        let number = self.parts.iter().position(|part| *part == id);
         number.ok_or(Error::NoPart(id))
     }
 
@@ -386,7 +386,7 @@ impl Geometry {
 
     fn add_as(
         &mut self,
-        (of, host): (Arc<Movable>, Option<Box<HostPart>>),
+        (movable, host): (Arc<Movable>, Option<Box<HostPart>>),
         map: &DAffine3,
         scene: &mut Arc<Scene>,
     ) -> Result<(PartId, Change), Error> {
@@ -397,28 +397,28 @@ impl Geometry {
             Some(_) => Ok(MovedPart::written_elsewhere(
                 map.matrix3.determinant() < 0.0,
             )),
-            None => of.moved_part(0, map),
+            None => movable.moved_part(0, map),
         };
         let moved = moved.map_err(|error| error.renumbered(self.parts.len()))?;
-        let (at, is_grown) = self.place(&of.rest, scene)?;
+        let (at, is_grown) = self.place(&movable.rest, scene)?;
         let whole = &mut Arc::make_mut(scene).mesh;
-        for (index, corners) in of.rest.triangles.iter().enumerate() {
+        for (index, corners) in movable.rest.triangles.iter().enumerate() {
             let corner = |corner| at.position as u32 + corner;
             whole.triangles[at.triangle + index] = corners.map(corner);
-            let normals = of.rest.normal_indices[index];
+            let normals = movable.rest.normal_indices[index];
             let normal = |normal| at.normal as u32 + normal;
             whole.normal_indices[at.triangle + index] = normals.map(normal);
         }
-        let all = whole.triangles.len();
-        let own = (at.triangle, of.rest.triangles.len());
-        whole.surfaces.put(&of.rest.surfaces, own, all);
+        let total = whole.triangles.len();
+        let own = (at.triangle, movable.rest.triangles.len());
+        whole.surfaces.put(&movable.rest.surfaces, own, total);
         if host.is_some() {
             // Its tree may have to be built once more.
             let positions = &mut whole.positions[at.position..];
-            positions[..of.rest.positions.len()].copy_from_slice(&of.rest.positions);
+            positions[..movable.rest.positions.len()].copy_from_slice(&movable.rest.positions);
         }
-        let positions = of.rest.positions.len();
-        of.put_at(0, &moved, false, whole, at);
+        let positions = movable.rest.positions.len();
+        movable.put_at(0, &moved, false, whole, at);
         let piece = self.gone.pop().unwrap_or(self.pieces.len());
         let id = PartId::new(piece, next_version());
         let part = Piece::new(Content::Part(Part {
@@ -426,7 +426,7 @@ impl Geometry {
             number: 0,
             at,
             is_mirrored: moved.is_mirrored,
-            of,
+            of: movable,
             host,
         }));
         if let Some(kept) = &mut self.bvh {
@@ -600,9 +600,10 @@ impl Geometry {
     /// with the pieces that they are; all of them if the scene's buffer was made anew.
     pub fn host_writes(&self, since: Option<u64>) -> Vec<(usize, HostWrite)> {
         let pieces = self.pieces.iter().enumerate();
-        let moved = pieces.filter(|(_, of)| since.is_none_or(|version| of.changed() > version));
-        let writes = moved.filter_map(|(piece, of)| match &of.content {
-            Content::Part(part) => Some((piece, part.host_write(self.maps[piece]?)?)),
+        let moved =
+            pieces.filter(|(_, piece)| since.is_none_or(|version| piece.changed() > version));
+        let writes = moved.filter_map(|(number, piece)| match &piece.content {
+            Content::Part(part) => Some((number, part.host_write(self.maps[number]?)?)),
             _ => None,
         });
         writes.collect()
@@ -681,14 +682,15 @@ impl Geometry {
         opposite
     }
 
-    /// Returns the hierarchy of the mesh, fitted to it. `version` is that of the shape now, `known`
+    /// Returns the hierarchy of the mesh, fitted to it. `version` is that of the shape now, `held`
     /// that of the nodes and primitives on the device.
-    pub fn bvh(&mut self, mesh: &Mesh, most: usize, version: u64, known: Option<u64>) -> Fitted {
+    pub fn bvh(&mut self, mesh: &Mesh, most: usize, version: u64, held: Option<u64>) -> Fitted {
         let Some(kept) = self.bvh.take() else {
             return self.build_bvh(mesh, most, version);
         };
         let moved = self.pieces.iter().enumerate();
-        let moved = moved.filter_map(|(piece, of)| (of.moved > kept.version).then_some(piece));
+        let moved =
+            moved.filter_map(|(number, piece)| (piece.moved > kept.version).then_some(number));
         let moved: Vec<usize> = moved.collect();
         let how = if self.is_bent {
             Moved::Freely
@@ -706,17 +708,17 @@ impl Geometry {
         for &piece in &refit.rebuilt {
             self.pieces[piece].built = version;
         }
-        let known = known.unwrap_or_default();
-        let since = |of: fn(&Piece) -> u64| {
+        let held = held.unwrap_or_default();
+        let since = |stamp: fn(&Piece) -> u64| {
             let pieces = self.pieces.iter().enumerate();
-            let since = pieces.filter(move |(_, piece)| of(piece) > known);
+            let since = pieces.filter(move |(_, piece)| stamp(piece) > held);
             since.map(|(piece, _)| piece)
         };
-        let others: Vec<usize> = since(Piece::changed).collect();
+        let changed: Vec<usize> = since(Piece::changed).collect();
         // The GPU fits the nodes of hosts' parts, once they are there.
-        let written = others.iter().filter(|&&piece| {
+        let written = changed.iter().filter(|&&piece| {
             let piece = &self.pieces[piece];
-            piece.host().is_none() || piece.built > known
+            piece.host().is_none() || piece.built > held
         });
         let nodes = written.map(|&piece| tree.nodes_of(piece));
         let nodes = nodes.chain(tree.top()).collect();
@@ -735,7 +737,7 @@ impl Geometry {
         });
         Fitted {
             tree,
-            pieces: others,
+            pieces: changed,
             nodes,
             primitives,
             how,
@@ -772,14 +774,14 @@ impl Geometry {
     }
 
     fn build_parts(&self, mesh: &Mesh, first: &Movable, most: usize) -> TwoLevelBvh {
-        let mut known = BTreeMap::new();
+        let mut numbers = BTreeMap::new();
         let mut added = Vec::new();
         let mut begun = Vec::new();
         for (number, piece) in self.pieces.iter().enumerate() {
             let (triangles, copy_of) = match &piece.content {
                 Content::Part(part) if std::ptr::eq(&*part.of, first) => {
                     let copy_of = first.copy_of(part.number);
-                    let copy_of = *known.entry(copy_of).or_insert(number);
+                    let copy_of = *numbers.entry(copy_of).or_insert(number);
                     (first.triangles(part.number), copy_of)
                 }
                 Content::Outside(outside) => (&outside.triangles[..], number),
@@ -833,12 +835,12 @@ impl Geometry {
         most: usize,
         versions: [u64; 2],
     ) -> Result<Parted, Error> {
-        let known = self.hierarchies.take(space.direction);
-        let since = known.as_ref().map(|known| known.shape);
+        let nodes = self.hierarchies.take(space.direction);
+        let since = nodes.as_ref().map(|nodes| nodes.shape);
         let fitted = self.bvh(mesh, most, versions[0], since);
-        let of = (space, near);
+        let target = (space, near);
         let hierarchies = &mut self.hierarchies;
-        let parted = hierarchies.of_parts(known, of, &fitted, mesh, versions)?;
+        let parted = hierarchies.of_parts(nodes, target, &fitted, mesh, versions)?;
         self.work.nodes += parted.fitted as u64;
         Ok(parted)
     }

@@ -83,12 +83,12 @@ pub(crate) struct Tree<N> {
 impl Hierarchies {
     /// Takes the nodes over parts for a direction.
     pub fn take(&mut self, direction: Vec3) -> Option<OfParts> {
-        let mut known = self.of_parts.iter();
-        let at = known.position(|known| known.space.direction == direction)?;
+        let mut kept = self.of_parts.iter();
+        let at = kept.position(|nodes| nodes.space.direction == direction)?;
         Some(self.of_parts.remove(at))
     }
 
-    /// Returns the nodes over parts in the light space of `space`. `known` are those for its
+    /// Returns the nodes over parts in the light space of `space`. `former` are those for its
     /// direction, if there are any, since when the pieces of `fitted` have changed. They keep their
     /// centre as long as it is nearer than `near`, so that parts that stand still keep their nodes.
     ///
@@ -96,19 +96,19 @@ impl Hierarchies {
     /// More triangles than its links can name.
     pub fn of_parts(
         &mut self,
-        known: Option<OfParts>,
+        former: Option<OfParts>,
         (space, near): (LightSpace, f32),
         fitted: &Fitted,
         mesh: &Mesh,
         [shape, version]: [u64; 2],
     ) -> Result<Parted, Error> {
         let tree = &fitted.tree;
-        let known = known.filter(|known| known.space.centre.distance(space.centre) <= near);
-        let (mut kept, since, pieces, mut changed) = match known {
-            Some(known) => {
+        let former = former.filter(|nodes| nodes.space.centre.distance(space.centre) <= near);
+        let (mut kept, since, pieces, mut changed) = match former {
+            Some(former) => {
                 let changed = [fitted.nodes.clone(), fitted.primitives.clone()];
-                let since = known.version;
-                (known, since, fitted.pieces.clone(), changed)
+                let since = former.version;
+                (former, since, fitted.pieces.clone(), changed)
             }
             None => {
                 let nodes = Arc::default();

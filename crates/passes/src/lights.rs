@@ -114,7 +114,7 @@ pub(crate) fn content(
 pub(crate) fn list_of(name: &str) -> Option<&'static str> {
     let (list, _) = parse(name)?;
     let mut lists = [LIGHTS, LIGHT_AREAS].into_iter();
-    lists.find(|known| *known == list)
+    lists.find(|candidate| *candidate == list)
 }
 
 /// The list of a name, and which of it.

@@ -115,8 +115,8 @@ impl<T: PartialEq> Lately<T> {
         if value == self.now {
             return;
         }
-        let known = self.known.iter().position(|(known, _)| *known == value);
-        let number = known.map_or_else(next_version, |at| self.known.remove(at).1);
+        let place = self.known.iter().position(|(former, _)| *former == value);
+        let number = place.map_or_else(next_version, |at| self.known.remove(at).1);
         let before = std::mem::replace(&mut self.now, value);
         remember(&mut self.known, (before, self.number), Self::MOST);
         self.number = number;
@@ -195,8 +195,8 @@ impl Versions {
         for (laid, light) in self.each.iter_mut().zip(&lights) {
             laid.set(*light, self.shape);
         }
-        let known = self.each.len();
-        let added = lights[known..].iter();
+        let count = self.each.len();
+        let added = lights[count..].iter();
         self.each
             .extend(added.map(|light| Laid::new(*light, self.shape)));
         self.lights.set(lights);
@@ -244,9 +244,9 @@ impl Versions {
 
     /// Returns the version of `lights`, or of the light of that number in it.
     pub fn of_lights(&self, number: Option<usize>) -> u64 {
-        let all = self.lights_over.number;
+        let version = self.lights_over.number;
         let laid = number.and_then(|number| self.each.get(number));
-        laid.map_or(all, |laid| laid.over.number)
+        laid.map_or(version, |laid| laid.over.number)
     }
 
     /// Returns the version of `light_areas`, or of the one of that number in it, which the mesh has

@@ -62,40 +62,40 @@ impl Outlines {
             moved: 0,
         });
         let (boxes, borders) = (&self.boxes, &mut self.borders);
-        let bounds = boxes.iter().filter_map(|of| of.made);
+        let bounds = boxes.iter().filter_map(|entry| entry.made);
         let bounds = bounds.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let directions = &mut self.directions;
         let fit = |sun: &DirectionalLight| {
-            let mut known = take(directions, sun.direction);
-            known.forget_moved(moved);
-            let own = &mut known.boxes;
+            let mut direction = take(directions, sun.direction);
+            direction.forget_moved(moved);
+            let own = &mut direction.boxes;
             let loose = |piece: usize| {
                 let ends = boxes[piece].made.into_iter();
                 let outline = || sun.outline(ends.flat_map(corners_of));
                 own[piece].get_or_insert_with(outline).clone()
             };
             let exact = |piece: usize| {
-                let of = &mut borders[piece];
-                if of.moved != moved[piece] {
-                    *of = Of {
+                let entry = &mut borders[piece];
+                if entry.moved != moved[piece] {
+                    *entry = Of {
                         made: Border::Unasked,
                         moved: moved[piece],
                     };
                 }
-                if let Border::Found(border) = &of.made {
+                if let Border::Found(border) = &entry.made {
                     laid += border.len() as u64;
                     return sun.outline(border.iter().copied());
                 }
                 let corners = corners(piece);
                 laid += corners.len() as u64;
-                of.made = match of.made {
+                entry.made = match entry.made {
                     Border::Unasked => Border::AskedOnce,
                     _ => Border::Found(border(&corners)),
                 };
                 sun.outline(corners)
             };
-            let outline = Outline::joined(&mut known.outlines, loose, exact);
-            directions.push(known);
+            let outline = Outline::joined(&mut direction.outlines, loose, exact);
+            directions.push(direction);
             sun.fit_outline(&outline)
         };
         let bounds = bounds.map(|[low, high]| (low, high));
@@ -110,13 +110,13 @@ impl Outlines {
             made: None,
             moved: 0,
         });
-        for (piece, (known, &moved)) in self.boxes.iter_mut().zip(moved).enumerate() {
-            if known.moved != moved {
+        for (piece, (entry, &moved)) in self.boxes.iter_mut().zip(moved).enumerate() {
+            if entry.moved != moved {
                 let corners = corners(piece);
                 laid += corners.len() as u64;
                 let corners = corners.into_iter().map(|corner| [corner; 2]);
                 let made = corners.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-                *known = Of { made, moved };
+                *entry = Of { made, moved };
             }
         }
         laid
@@ -129,9 +129,9 @@ impl Direction {
         self.outlines.resize(moved.len(), None);
         self.boxes.resize(moved.len(), None);
         self.moved.resize(moved.len(), 0);
-        for (piece, (known, &moved)) in self.moved.iter_mut().zip(moved).enumerate() {
-            if *known != moved {
-                *known = moved;
+        for (piece, (version, &moved)) in self.moved.iter_mut().zip(moved).enumerate() {
+            if *version != moved {
+                *version = moved;
                 (self.outlines[piece], self.boxes[piece]) = (None, None);
             }
         }

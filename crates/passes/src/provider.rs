@@ -227,8 +227,8 @@ impl SceneProvider {
     /// Notes what was made; of lights, which list they are of.
     fn note(&mut self, name: &str, how: How, began: Instant) {
         let time = began.elapsed();
-        let known = || NAMES.iter().copied().find(|known| *known == name);
-        let Some(name) = lights::list_of(name).or_else(known) else {
+        let listed = || NAMES.iter().copied().find(|own| *own == name);
+        let Some(name) = lights::list_of(name).or_else(listed) else {
             return;
         };
         match self.built.iter_mut().find(|built| built.name == name) {
@@ -260,9 +260,9 @@ impl SceneProvider {
         // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
         // to bind, and so the smallest leaves are joined.
         let most = binding_limit(&on.device.limits()) / size_of::<BvhNode>() as u64;
-        let (version, known) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
+        let (version, held) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
         let mesh = &self.scene.mesh;
-        let fitted = self.geometry.bvh(mesh, most as usize, version, known);
+        let fitted = self.geometry.bvh(mesh, most as usize, version, held);
         let (tree, nodes) = (&fitted.tree, nodes_to_walk(&fitted.tree));
         let (buffers, changed) = (&mut self.buffers, &fitted.nodes);
         let patched = buffers.patch_list(BVH_NODES, nodes, changed, version, on)?;
@@ -270,7 +270,7 @@ impl SceneProvider {
         buffers.patch_list(BVH_PRIMITIVES, primitives, changed, version, on)?;
         let writes = match patched {
             Patched::All => self.geometry.host_writes(None),
-            _ => self.geometry.host_writes(known),
+            _ => self.geometry.host_writes(held),
         };
         let with_nodes = |(piece, write): (usize, HostWrite)| {
             let levels = write.mesh.levels(tree, piece, on.device);
@@ -292,16 +292,16 @@ impl SceneProvider {
         (items, w): (&[Vec3], f32),
         on: On,
     ) -> Result<How, Error> {
-        let (version, known) = (self.version(name), self.buffers.version(name));
-        let (known, mesh) = (known.unwrap_or_default(), &self.scene.mesh);
+        let (version, held) = (self.version(name), self.buffers.version(name));
+        let (held, mesh) = (held.unwrap_or_default(), &self.scene.mesh);
         let list = (name, items.len());
-        let changed = self.geometry.moved_since(known, list, mesh);
+        let changed = self.geometry.moved_since(held, list, mesh);
         let append = |range: Range<usize>, to: &mut Vec<Vec4>| {
             to.extend(items[range].iter().map(|item| item.extend(w)));
         };
         let changed = (items.len(), &changed[..]);
         let patched = self.buffers.patch(name, changed, append, version, on)?;
-        let since = (patched != Patched::All).then_some(known);
+        let since = (patched != Patched::All).then_some(held);
         let writes = self.geometry.host_writes(since).into_iter();
         let writes = writes.map(|(_, write)| write).collect();
         self.write_host_parts(name, patched, writes, on)?;
@@ -364,10 +364,10 @@ impl SceneProvider {
         items: &[[u32; N]],
         on: On,
     ) -> Result<How, Error> {
-        let (version, known) = (self.version(name), self.buffers.version(name));
+        let (version, held) = (self.version(name), self.buffers.version(name));
         let mesh = &self.scene.mesh;
-        let known = known.unwrap_or_default();
-        let turned = self.geometry.triangles_since(known, mesh);
+        let held = held.unwrap_or_default();
+        let turned = self.geometry.triangles_since(held, mesh);
         let turned = turned.iter().map(|range| N * range.start..N * range.end);
         let (items, changed) = (items.as_flattened(), turned.collect::<Vec<_>>());
         self.buffers
@@ -382,8 +382,8 @@ impl SceneProvider {
         items: &[T],
         on: On,
     ) -> Result<How, Error> {
-        let (version, known) = (self.version(name), self.buffers.version(name));
-        if known.is_none_or(|known| self.geometry.is_begun_after(known)) {
+        let (version, held) = (self.version(name), self.buffers.version(name));
+        if held.is_none_or(|held| self.geometry.is_begun_after(held)) {
             return self.upload_items(name, items, on);
         }
         self.buffers.extend(name, items, version, on)?;
@@ -416,7 +416,7 @@ impl SceneProvider {
         };
         let mut lights = self.scene.lights.iter();
         // Numbers that are none equal nothing, but their mistakes do.
-        let named = lights.find(|of| of.kind.check().as_ref() == Err(&reason));
+        let named = lights.find(|light| light.kind.check().as_ref() == Err(&reason));
         let named = named.and_then(|light| light.check().err());
         Err(Error::Light(named.unwrap_or(reason)))
     }
@@ -455,24 +455,28 @@ impl SceneProvider {
         let version = self.version(LIGHT_SPACE_NODES);
         let (mesh, versions) = (&self.scene.mesh, [self.versions.shape, version]);
         let geometry = &mut self.geometry;
-        let of = geometry.light_space_of_parts(space, mesh, most, versions)?;
+        let parted = geometry.light_space_of_parts(space, mesh, most, versions)?;
         let buffers = &mut self.buffers;
         let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
-        let known = names.map(|name| buffers.take_up(name, of.since));
-        let [nodes, primitives] = of.changed;
-        let nodes = if known[0] { nodes } else { all(of.nodes.len()) };
-        buffers.patch_list(names[0], &of.nodes, &nodes, version, on)?;
-        let items = &of.tree.primitives;
-        let primitives = if known[1] {
+        let is_held = names.map(|name| buffers.take_up(name, parted.since));
+        let [nodes, primitives] = parted.changed;
+        let nodes = if is_held[0] {
+            nodes
+        } else {
+            all(parted.nodes.len())
+        };
+        buffers.patch_list(names[0], &parted.nodes, &nodes, version, on)?;
+        let items = &parted.tree.primitives;
+        let primitives = if is_held[1] {
             primitives
         } else {
             all(items.len())
         };
         buffers.patch_list(names[1], items, &primitives, version, on)?;
         for name in names {
-            buffers.leave(name, of.since, version);
+            buffers.leave(name, parted.since, version);
         }
-        Ok(if of.since == 0 {
+        Ok(if parted.since == 0 {
             How::Made
         } else {
             How::Refitted
@@ -903,8 +907,8 @@ impl SceneProvider {
 
     /// Notes which triangles of a part that was put into the mesh are sheets.
     fn put_sheets(&mut self, part: &Mesh, first: usize) {
-        let all = self.scene.mesh.triangles.len();
-        Arc::make_mut(&mut self.sheets).put(part, first, all);
+        let total = self.scene.mesh.triangles.len();
+        Arc::make_mut(&mut self.sheets).put(part, first, total);
     }
 
     fn note_change(&mut self, change: Change) {
@@ -1069,8 +1073,8 @@ impl Provider for SceneProvider {
             return Err(why(unknown(name)));
         }
         let version = self.versions.get(EMBREE);
-        if let Some((embree, of)) = &self.embree
-            && *of == version
+        if let Some((embree, held)) = &self.embree
+            && *held == version
         {
             return Ok(embree.clone());
         }

@@ -107,21 +107,23 @@ impl Structures {
     /// # Errors
     /// More triangles than the device can take, an index beyond the mesh's positions, or builds
     /// that the device refuses; those structures are built again when they are next asked for.
-    pub fn get(&mut self, of: Source<'_>) -> Result<(wgpu::Tlas, Option<usize>), Error> {
-        let known = self.top.take();
-        let is_same = known.as_ref().is_some_and(|top| top.shape == of.shape);
-        if let Some(top) = known.as_ref().filter(|top| is_same && !top.is_ready()) {
+    pub fn get(&mut self, source: Source<'_>) -> Result<(wgpu::Tlas, Option<usize>), Error> {
+        let former = self.top.take();
+        let is_same = former.as_ref().is_some_and(|top| top.shape == source.shape);
+        if let Some(top) = former.as_ref().filter(|top| is_same && !top.is_ready()) {
             let tlas = top.tlas.clone();
-            self.top = known;
+            self.top = former;
             return Ok((tlas, None));
         }
-        let limits = of.device.limits();
-        let solids = of.geometry.solids(of.mesh, limits.max_tlas_instance_count);
-        let mut versions = [of.shape, next_version()];
+        let limits = source.device.limits();
+        let solids = source
+            .geometry
+            .solids(source.mesh, limits.max_tlas_instance_count);
+        let mut versions = [source.shape, next_version()];
         let mut open = None;
-        if let Some(top) = known {
+        if let Some(top) = former {
             if top.is_ready() {
-                self.compact(of.queue);
+                self.compact(source.queue);
             } else {
                 open = top.open;
             }
@@ -129,8 +131,8 @@ impl Structures {
                 versions = [top.versions[1]; 2];
             }
         }
-        let new = self.create(&solids, of)?;
-        let tlas = self.build(&solids, &new, of);
+        let new = self.create(&solids, source)?;
+        let tlas = self.build(&solids, &new, source);
         let tlas = tlas.inspect_err(|_| self.bottoms.clear())?;
         for (solid, _) in new.iter().filter(|(_, is_first)| *is_first) {
             if let Some(bottom) = self.bottoms.get(&solid.piece) {
@@ -140,7 +142,7 @@ impl Structures {
         let triangles = new.iter().map(|(solid, _)| solid.triangles.len()).sum();
         self.top = Some(Top {
             tlas: tlas.clone(),
-            shape: of.shape,
+            shape: source.shape,
             versions,
             open,
         });
@@ -160,22 +162,22 @@ impl Structures {
     fn create<'s>(
         &mut self,
         solids: &'s [Solid],
-        of: Source<'_>,
+        source: Source<'_>,
     ) -> Result<Vec<(&'s Solid, bool)>, Error> {
-        let most = of.device.limits().max_blas_primitive_count;
+        let most = source.device.limits().max_blas_primitive_count;
         let mut before = std::mem::take(&mut self.bottoms);
         let mut new = Vec::new();
         for solid in solids {
-            let known = before.remove(&solid.piece);
-            let is_first = known.is_none();
-            let bottom = match known.filter(|known| known.changed == solid.changed) {
-                Some(known) => known,
+            let former = before.remove(&solid.piece);
+            let is_first = former.is_none();
+            let bottom = match former.filter(|bottom| bottom.changed == solid.changed) {
+                Some(former) => former,
                 None => {
                     let triangles = solid.triangles.len();
                     if triangles as u64 > u64::from(most) {
                         return Err(Error::TooManyTriangles { triangles, most });
                     }
-                    check_corners(of.mesh, solid.triangles.clone())?;
+                    check_corners(source.mesh, solid.triangles.clone())?;
                     new.push((solid, is_first));
                     let flags = if is_first {
                         Flags::PREFER_FAST_TRACE | Flags::ALLOW_COMPACTION
@@ -187,10 +189,10 @@ impl Structures {
                         flags,
                         update_mode: wgpu::AccelerationStructureUpdateMode::Build,
                     };
-                    let descriptors = vec![size_of(solid, of.mesh)];
+                    let descriptors = vec![size_of(solid, source.mesh)];
                     let sizes = wgpu::BlasGeometrySizeDescriptors::Triangles { descriptors };
                     Bottom {
-                        blas: of.device.create_blas(&descriptor, sizes),
+                        blas: source.device.create_blas(&descriptor, sizes),
                         changed: solid.changed,
                     }
                 }
@@ -205,9 +207,9 @@ impl Structures {
         &self,
         solids: &[Solid],
         new: &[(&Solid, bool)],
-        of: Source<'_>,
+        source: Source<'_>,
     ) -> Result<wgpu::Tlas, Error> {
-        let mut tlas = of.device.create_tlas(&wgpu::CreateTlasDescriptor {
+        let mut tlas = source.device.create_tlas(&wgpu::CreateTlasDescriptor {
             label: Some("scene.tlas"),
             max_instances: solids.len().max(1) as u32,
             flags: Flags::PREFER_FAST_TRACE,
@@ -219,21 +221,21 @@ impl Structures {
             tlas[index] = bottom
                 .map(|bottom| wgpu::TlasInstance::new(&bottom.blas, IDENTITY, first, u8::MAX));
         }
-        let most = of.device.limits().max_tlas_instance_count;
+        let most = source.device.limits().max_tlas_instance_count;
         let together = new.iter().find(|(solid, _)| solid.piece.is_none());
         let together = together.map(|(solid, _)| {
-            let corners = of.geometry.together(of.mesh, solid, most);
+            let corners = source.geometry.together(source.mesh, solid, most);
             let corners = bytemuck::cast_slice(corners.as_flattened());
             upload(
-                of.device,
+                source.device,
                 "scene.blas",
                 corners,
                 wgpu::BufferUsages::BLAS_INPUT,
             )
         });
-        let sizes = new.iter().map(|(solid, _)| size_of(solid, of.mesh));
+        let sizes = new.iter().map(|(solid, _)| size_of(solid, source.mesh));
         let sizes: Vec<Size> = sizes.collect();
-        let [positions, indices] = of.buffers;
+        let [positions, indices] = source.buffers;
         let entries = new.iter().zip(&sizes).filter_map(|((solid, _), size)| {
             let (index_buffer, first) = match (solid.piece, &together) {
                 (None, Some(own)) => (own, 0),
@@ -257,9 +259,9 @@ impl Structures {
         let descriptor = wgpu::CommandEncoderDescriptor {
             label: Some("scene.tlas"),
         };
-        let mut encoder = of.device.create_command_encoder(&descriptor);
+        let mut encoder = source.device.create_command_encoder(&descriptor);
         encoder.build_acceleration_structures(entries.iter(), [&tlas]);
-        let submitted = refused(of.device, || of.queue.submit([encoder.finish()]));
+        let submitted = refused(source.device, || source.queue.submit([encoder.finish()]));
         submitted.map(|_| tlas).map_err(Error::Structures)
     }
 }

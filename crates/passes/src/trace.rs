@@ -265,7 +265,7 @@ impl PassKind for Trace {
         if pass.provided_items(MASKS) > 0 {
             let modules = MASKED.iter();
             trace.imports = modules
-                .map(|(of, is)| ((*of).to_owned(), (*is).to_owned()))
+                .map(|(name, is)| ((*name).to_owned(), (*is).to_owned()))
                 .collect();
         }
         trace.compute = Some(pass.named(self.entry_point()));

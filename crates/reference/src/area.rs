@@ -121,8 +121,8 @@ pub fn ground_truth(
     let answer = |receiver: &Receiver, pixel: [u32; 2], stack: &mut Vec<u32>| {
         answered(oracle, &light, &strata, (receiver, pixel), mode, stack)
     };
-    let of = (oracle.mesh, camera, &light);
-    let (pixels, shares) = GroundTruthPixels::answered(of, primitives, progress, answer)?;
+    let scene = (oracle.mesh, camera, &light);
+    let (pixels, shares) = GroundTruthPixels::answered(scene, primitives, progress, answer)?;
     let area = AreaVisibility {
         samples: 2 * strata.count(),
         shares: shares.iter().map(|[share, _]| *share as f32).collect(),
@@ -153,13 +153,13 @@ pub(crate) fn answered(
         return (answer, [0.0; 2]);
     }
     let emitter = Emitter::seen_from(light, receiver);
-    let of = share(oracle, &emitter, strata, receiver, mode, pixel, stack);
-    answer.class = if of[0] < 0.5 {
+    let estimate = share(oracle, &emitter, strata, receiver, mode, pixel, stack);
+    answer.class = if estimate[0] < 0.5 {
         Class::Shadow
     } else {
         Class::Lit
     };
-    (answer, of)
+    (answer, estimate)
 }
 
 /// Those that could stand in the light's cone; `None` if they are many, or the receiver is

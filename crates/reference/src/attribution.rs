@@ -61,8 +61,8 @@ pub fn unattributable(
             let receiver = Receiver::new(oracle.mesh, primitive, camera, [x, y], light);
             let (answer, other) = match &strata {
                 Some(strata) => {
-                    let of = (&receiver, [x, y]);
-                    let (answer, [share, _]) = answered(oracle, light, strata, of, mode, stack);
+                    let place = (&receiver, [x, y]);
+                    let (answer, [share, _]) = answered(oracle, light, strata, place, mode, stack);
                     (answer, share)
                 }
                 None => {

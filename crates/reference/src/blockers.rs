@@ -61,7 +61,7 @@ pub fn blockers(
         }))
     });
     let blockers: Vec<Option<Blocker>> = blockers.collect::<Result<_, Error>>()?;
-    let count = |of| blockers.iter().filter(|it| **it == of).count() as u64;
+    let count = |kind| blockers.iter().filter(|it| **it == kind).count() as u64;
     Ok(BlockerCounts {
         open_part: count(Some(Blocker::OpenPart)),
         closed_part: count(Some(Blocker::ClosedPart)),
@@ -125,17 +125,17 @@ fn blocker(
     stack: &mut Vec<u32>,
 ) -> Option<Blocker> {
     let ray = oracle.tree.ray(origin, &way, 0.0);
-    let mut found = None;
+    let mut blocker = None;
     oracle.tree.walk(&ray, stack, |caster, _| {
         if caster.primitive == passed || !caster.blocks(&ray) {
             return ControlFlow::Continue(());
         }
         if parts.is_open(caster.primitive) {
-            found = Some(Blocker::OpenPart);
+            blocker = Some(Blocker::OpenPart);
             return ControlFlow::Continue(());
         }
-        found = Some(Blocker::ClosedPart);
+        blocker = Some(Blocker::ClosedPart);
         ControlFlow::Break(())
     });
-    found
+    blocker
 }

@@ -54,9 +54,9 @@ pub struct Distances {
 
 impl Distances {
     fn new(distances: impl Iterator<Item = Option<[f64; 2]>>) -> Self {
-        let mut all = Self::default();
+        let mut sums = Self::default();
         for distance in distances {
-            all = all.with(match distance {
+            sums = sums.with(match distance {
                 None => Self {
                     without: 1,
                     ..Self::default()
@@ -72,7 +72,7 @@ impl Distances {
                 },
             });
         }
-        all
+        sums
     }
 
     /// Returns the distances of two sets of pixels together. The sets share no pixel, such as those
@@ -157,8 +157,8 @@ impl<'a> Edges<'a> {
         let is_edge = |pixel: &usize| {
             let class = truth.classes[*pixel];
             let is_other = |other: Class| other.faces_light() && other != class;
-            let mut others = neighbours(*pixel, size);
-            class.faces_light() && others.any(|other| is_other(truth.classes[other]))
+            let mut nearby = neighbours(*pixel, size);
+            class.faces_light() && nearby.any(|other| is_other(truth.classes[other]))
         };
         let edges: Vec<usize> = (0..truth.classes.len()).filter(is_edge).collect();
         let screen = edges.iter().map(|&pixel| place(seen, pixel).map(f64::from));
@@ -255,34 +255,37 @@ mod tests {
     fn distances_are_those_counted_by_hand() {
         // The edge lies between the third pixel and the fourth.
         let classes = [Lit, Lit, Lit, Shadow, Shadow, Shadow, Shadow];
-        let of = measured(&classes, 7, &[0, 1, 0, 0, 0, 0, 1], &[]);
+        let edges = measured(&classes, 7, &[0, 1, 0, 0, 0, 0, 1], &[]);
         // Wrongly in shadow: two pixels from the third one, and the third one itself.
         let shadow = Distances {
             count: 2,
             near: 2,
             mean_pixels: 1.0,
             max_pixels: 2.0,
-            ..of.shadow
+            ..edges.shadow
         };
-        assert_eq!(of.shadow, shadow);
-        assert!((of.shadow.mean_world - 1.0).abs() < 1e-9, "{of:?}");
-        assert!((of.shadow.max_world - 2.0).abs() < 1e-9);
+        assert_eq!(edges.shadow, shadow);
+        assert!((edges.shadow.mean_world - 1.0).abs() < 1e-9, "{edges:?}");
+        assert!((edges.shadow.max_world - 2.0).abs() < 1e-9);
         // Wrongly lit: three pixels from the fourth.
-        assert_eq!((of.lit.count, of.lit.near, of.lit.max_pixels), (1, 0, 3.0));
-        assert!((of.lit.mean_world - 3.0).abs() < 1e-9);
-        assert_eq!(of.all().count, 3);
-        assert!((of.all().mean_pixels - 5.0 / 3.0).abs() < 1e-12);
+        assert_eq!(
+            (edges.lit.count, edges.lit.near, edges.lit.max_pixels),
+            (1, 0, 3.0)
+        );
+        assert!((edges.lit.mean_world - 3.0).abs() < 1e-9);
+        assert_eq!(edges.all().count, 3);
+        assert!((edges.all().mean_pixels - 5.0 / 3.0).abs() < 1e-12);
     }
 
     #[test]
     fn distances_go_across_the_picture_and_leave_out_the_band() {
         // Two rows and an edge at the upper right corner.
         let classes = [Lit, Lit, Lit, Shadow, Lit, Lit, Lit, Lit];
-        let of = measured(&classes, 4, &[1, 1, 1, 0, 0, 0, 1, 1], &[5]);
+        let edges = measured(&classes, 4, &[1, 1, 1, 0, 0, 0, 1, 1], &[5]);
         // From (0, 1) to the edge pixel (2, 0).
-        assert_eq!(of.shadow.count, 1);
-        assert!((of.shadow.max_pixels - 5f64.sqrt()).abs() < 1e-12);
-        assert_eq!(of.lit, Distances::default());
+        assert_eq!(edges.shadow.count, 1);
+        assert!((edges.shadow.max_pixels - 5f64.sqrt()).abs() < 1e-12);
+        assert_eq!(edges.lit, Distances::default());
     }
 
     proptest! {
@@ -293,14 +296,14 @@ mod tests {
             cut in 0usize..60,
         ) {
             let (one, other) = pixels.split_at(cut.min(pixels.len()));
-            let of = |pixels: &[Option<[f64; 2]>]| Distances::new(pixels.iter().copied());
-            let (together, whole) = (of(one).with(of(other)), of(&pixels));
+            let summed = |pixels: &[Option<[f64; 2]>]| Distances::new(pixels.iter().copied());
+            let (together, whole) = (summed(one).with(summed(other)), summed(&pixels));
             prop_assert_eq!(
                 (together.count, together.near, together.without),
                 (whole.count, whole.near, whole.without)
             );
-            let figures = |of: Distances| {
-                [of.mean_pixels, of.max_pixels, of.mean_world, of.max_world]
+            let figures = |sums: Distances| {
+                [sums.mean_pixels, sums.max_pixels, sums.mean_world, sums.max_world]
             };
             for (one, other) in figures(together).into_iter().zip(figures(whole)) {
                 prop_assert!((one - other).abs() < 1e-9, "{together:?} {whole:?}");
@@ -311,12 +314,12 @@ mod tests {
     #[test]
     fn a_picture_without_edges_has_no_distances() {
         // Facing away is no shadow edge.
-        let of = measured(&[FacingAway, Lit, Lit], 3, &[0, 0, 1], &[]);
+        let edges = measured(&[FacingAway, Lit, Lit], 3, &[0, 0, 1], &[]);
         let without = Distances {
             without: 1,
             ..Distances::default()
         };
-        assert_eq!(of.shadow, without);
+        assert_eq!(edges.shadow, without);
         assert_eq!(
             measured(&[Lit, Shadow], 2, &[1, 0], &[]),
             EdgeDistances::default()

@@ -67,7 +67,7 @@ pub fn flip(reference: &Image, test: &Image) -> Result<f64, Error> {
     let each = (0..reference.colours.len()).into_par_iter().map(|pixel| {
         let colour = colour_difference(reference.colours[pixel], test.colours[pixel]);
         let colour = beyond_knee(colour, greatest);
-        let feature = |of: fn(&Seen) -> &[f64]| (of(&reference)[pixel] - of(&test)[pixel]).abs();
+        let feature = |map: fn(&Seen) -> &[f64]| (map(&reference)[pixel] - map(&test)[pixel]).abs();
         let feature = feature(|seen| &seen.edges).max(feature(|seen| &seen.points));
         let feature = (FRAC_1_SQRT_2 * feature).powf(FEATURE_EXPONENT);
         colour.powf(1.0 - feature)
@@ -316,15 +316,15 @@ mod tests {
 
     #[test]
     fn uniform_pictures_differ_by_their_colour_alone() {
-        let of = |one, other| flip(&uniform(one), &uniform(other)).unwrap();
-        assert_eq!(of([90, 20, 200], [90, 20, 200]), 0.0);
+        let difference = |one, other| flip(&uniform(one), &uniform(other)).unwrap();
+        assert_eq!(difference([90, 20, 200], [90, 20, 200]), 0.0);
         // The two colours that are farthest apart.
-        assert!((of([0, 255, 0], [0, 0, 255]) - 1.0).abs() < 1e-9);
+        assert!((difference([0, 255, 0], [0, 0, 255]) - 1.0).abs() < 1e-9);
         // Black and white: L* is 0 and 100, so HyAB is 100, whose power 0.7 is 25.119. Green has
         // L* 87.735, a* −86.183, b* 83.180; blue 32.299, 79.191, −107.865; both with Hunt's
         // adjustment: HyAB 205.3 or so, whose power is 41.5. 25.119 lies beyond the knee at 16.6:
         // 0.95 + 0.05 · (25.119 − 16.6) / (41.5 − 16.6) = 0.967.
-        assert!((of([0; 3], [255; 3]) - 0.967).abs() < 2e-3);
+        assert!((difference([0; 3], [255; 3]) - 0.967).abs() < 2e-3);
     }
 
     #[test]

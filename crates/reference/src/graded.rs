@@ -74,26 +74,26 @@ const PENUMBRA: RangeInclusive<f32> = 0.1..=0.9;
 impl SoftErrors {
     /// The errors of one pixel, too light by `off`.
     fn of_pixel(share: f32, off: f64) -> Self {
-        let mut of = Self::default();
+        let mut errors = Self::default();
         if PENUMBRA.contains(&share) {
-            (of.penumbra, of.penumbra_rmse, of.penumbra_bias) = (1, off.abs(), off);
+            (errors.penumbra, errors.penumbra_rmse, errors.penumbra_bias) = (1, off.abs(), off);
         } else if share < *PENUMBRA.start() {
-            (of.umbra, of.light_in_umbra) = (1, off.max(0.0));
+            (errors.umbra, errors.light_in_umbra) = (1, off.max(0.0));
         } else {
-            (of.light, of.dark_in_light) = (1, (-off).max(0.0));
+            (errors.light, errors.dark_in_light) = (1, (-off).max(0.0));
         }
-        of
+        errors
     }
 
     /// Adds errors to sums, those of squares among them, until [`means`](Self::means).
-    fn add(&mut self, of: Self) {
-        self.umbra += of.umbra;
-        self.light_in_umbra += of.light_in_umbra * of.umbra as f64;
-        self.light += of.light;
-        self.dark_in_light += of.dark_in_light * of.light as f64;
-        self.penumbra += of.penumbra;
-        self.penumbra_rmse += of.penumbra_rmse.powi(2) * of.penumbra as f64;
-        self.penumbra_bias += of.penumbra_bias * of.penumbra as f64;
+    fn add(&mut self, errors: Self) {
+        self.umbra += errors.umbra;
+        self.light_in_umbra += errors.light_in_umbra * errors.umbra as f64;
+        self.light += errors.light;
+        self.dark_in_light += errors.dark_in_light * errors.light as f64;
+        self.penumbra += errors.penumbra;
+        self.penumbra_rmse += errors.penumbra_rmse.powi(2) * errors.penumbra as f64;
+        self.penumbra_bias += errors.penumbra_bias * errors.penumbra as f64;
     }
 
     fn means(mut self) -> Self {
@@ -209,9 +209,9 @@ impl Graded {
     /// Returns the errors of several pictures together, each given with the numbers of its pixels:
     /// counts are added, means are taken over all their pixels. FLIP is the mean over the pictures.
     pub fn together(pictures: impl IntoIterator<Item = (Self, JudgedPixels)>) -> Self {
-        let mut all = Self::default();
+        let mut total = Self::default();
         let (mut count, mut facing, mut outside) = (0.0, 0.0, 0.0);
-        for (of, pixels) in pictures {
+        for (graded, pixels) in pictures {
             // Field by field: one that is left out does not compile.
             let Self {
                 rmse,
@@ -221,27 +221,27 @@ impl Graded {
                 flip,
                 invalid,
                 soft,
-            } = of;
-            all.soft.add(soft);
+            } = graded;
+            total.soft.add(soft);
             let of_facing = pixels.facing_light as f64;
             let of_outside = pixels.facing_light.saturating_sub(pixels.in_band) as f64;
             count += 1.0;
             facing += of_facing;
             outside += of_outside;
             // Sums of squares until all are there.
-            all.rmse += rmse * rmse * of_facing;
-            all.rmse_outside_band += rmse_outside_band * rmse_outside_band * of_outside;
-            all.mean_absolute_error += mean_absolute_error * of_facing;
-            all.off += off;
-            all.flip += flip;
-            all.invalid += invalid;
+            total.rmse += rmse * rmse * of_facing;
+            total.rmse_outside_band += rmse_outside_band * rmse_outside_band * of_outside;
+            total.mean_absolute_error += mean_absolute_error * of_facing;
+            total.off += off;
+            total.flip += flip;
+            total.invalid += invalid;
         }
-        all.rmse = (all.rmse / f64::max(facing, 1.0)).sqrt();
-        all.rmse_outside_band = (all.rmse_outside_band / f64::max(outside, 1.0)).sqrt();
-        all.mean_absolute_error /= f64::max(facing, 1.0);
-        all.flip /= f64::max(count, 1.0);
-        all.soft = all.soft.means();
-        all
+        total.rmse = (total.rmse / f64::max(facing, 1.0)).sqrt();
+        total.rmse_outside_band = (total.rmse_outside_band / f64::max(outside, 1.0)).sqrt();
+        total.mean_absolute_error /= f64::max(facing, 1.0);
+        total.flip /= f64::max(count, 1.0);
+        total.soft = total.soft.means();
+        total
     }
 }
 
@@ -311,7 +311,7 @@ mod tests {
     #[test]
     fn pictures_together_are_as_one_of_all_their_pixels() {
         // The last pixel of each picture is in the band; that of the whole one is put there.
-        let of = |shown: &[f32], in_band: &[usize]| {
+        let judged = |shown: &[f32], in_band: &[usize]| {
             let mut truth = truth(&vec![Class::Lit; shown.len()]);
             for &pixel in in_band {
                 truth.indeterminate[pixel] = true;
@@ -325,8 +325,8 @@ mod tests {
             };
             (graded, pixels)
         };
-        let parts = [of(&[0.5, 1.0, 0.9], &[]), of(&[0.25, 0.0], &[])];
-        let whole = of(&[0.5, 1.0, 0.9, 0.25, 0.0], &[2]).0;
+        let parts = [judged(&[0.5, 1.0, 0.9], &[]), judged(&[0.25, 0.0], &[])];
+        let whole = judged(&[0.5, 1.0, 0.9, 0.25, 0.0], &[2]).0;
         let together = Graded::together(parts);
         assert!((together.rmse - whole.rmse).abs() < 1e-9);
         assert!(whole.rmse_outside_band > 0.4 && whole.rmse_outside_band != whole.rmse);
@@ -361,10 +361,10 @@ mod tests {
             together.add(sum(one));
             together.add(sum(other));
             let together = together.means();
-            let counts = |of: SoftErrors| [of.umbra, of.light, of.penumbra];
+            let counts = |sums: SoftErrors| [sums.umbra, sums.light, sums.penumbra];
             prop_assert_eq!(counts(together), counts(whole));
-            let figures = |of: SoftErrors| {
-                [of.light_in_umbra, of.dark_in_light, of.penumbra_rmse, of.penumbra_bias]
+            let figures = |sums: SoftErrors| {
+                [sums.light_in_umbra, sums.dark_in_light, sums.penumbra_rmse, sums.penumbra_bias]
             };
             for (one, other) in figures(together).into_iter().zip(figures(whole)) {
                 prop_assert!((one - other).abs() < 1e-9, "{together:?} {whole:?}");

@@ -404,10 +404,10 @@ mod tests {
             visibility[pixel] = 0;
         }
         let status = vec![status::CERTAIN_LIGHT as u8; width * height];
-        let found = colours(Image::error(&visibility, &status, &truth).unwrap());
-        let count = |of: Colour| found.iter().filter(|colour| **colour == of).count();
+        let shown = colours(Image::error(&visibility, &status, &truth).unwrap());
+        let count = |wanted: Colour| shown.iter().filter(|colour| **colour == wanted).count();
         assert_eq!(count(WRONGLY_SHADOWED), 2);
-        assert_eq!(found[in_band], WRONGLY_SHADOWED_INDETERMINATE);
+        assert_eq!(shown[in_band], WRONGLY_SHADOWED_INDETERMINATE);
         assert_eq!(count(DIM_LIGHT), width * height - 3);
     }
 

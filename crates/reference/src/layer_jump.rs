@@ -60,22 +60,22 @@ impl LayerJump {
         let surfaces: Vec<_> = (0..truth.classes.len()).map(surface).collect();
         let width = truth.viewport[0] as usize;
         let pixel_width = seen.pixel_area().sqrt();
-        let mut of = Self::default();
+        let mut jump = Self::default();
         let mut add = |one: usize, other: usize| {
             let (Some(a), Some(b)) = (surfaces[one], surfaces[other]) else {
                 return;
             };
-            let reach = |of: Surface| pixel_width * seen.camera.forward.dot(of.way);
+            let reach = |side: Surface| pixel_width * seen.camera.forward.dot(side.way);
             let apart = b.receiver - a.receiver;
-            let is_within = |of: Surface| of.normal.dot(apart).abs() <= reach(of);
+            let is_within = |side: Surface| side.normal.dot(apart).abs() <= reach(side);
             if !(is_within(a) && is_within(b)) {
                 return;
             }
             let [a, b] = [one, other].map(|pixel| error(shown[pixel], shares[pixel]));
             let (pairs, sum) = if layers[one] == layers[other] {
-                (&mut of.pairs_elsewhere, &mut of.elsewhere)
+                (&mut jump.pairs_elsewhere, &mut jump.elsewhere)
             } else {
-                (&mut of.pairs, &mut of.across)
+                (&mut jump.pairs, &mut jump.across)
             };
             *pairs += 1;
             *sum += (a - b).abs();
@@ -88,9 +88,9 @@ impl LayerJump {
                 add(pixel, pixel + width);
             }
         }
-        of.across /= of.pairs.max(1) as f64;
-        of.elsewhere /= of.pairs_elsewhere.max(1) as f64;
-        Ok((of.pairs > 0).then_some(of))
+        jump.across /= jump.pairs.max(1) as f64;
+        jump.elsewhere /= jump.pairs_elsewhere.max(1) as f64;
+        Ok((jump.pairs > 0).then_some(jump))
     }
 
     /// Returns by how much the mean difference across a border exceeds that elsewhere: `across −
@@ -160,24 +160,24 @@ mod tests {
     fn a_row_of_two_splits_is_as_counted_by_hand() {
         // The reference: shadow, then light. Errors: 0, 0, −1, −1 | 0, −½. Pairs of one split
         // differ by 0, 1, 0 and ½, the one across by 1.
-        let found = jump(&[0.0, 1.0, 0.0, 0.0, 1.0, 0.5], &[0, 0, 0, 0, 1, 1], 0, &[]).unwrap();
+        let measured = jump(&[0.0, 1.0, 0.0, 0.0, 1.0, 0.5], &[0, 0, 0, 0, 1, 1], 0, &[]).unwrap();
         let expected = LayerJump {
             pairs: 1,
             across: 1.0,
             pairs_elsewhere: 4,
             elsewhere: 0.375,
         };
-        assert_eq!(found, expected);
-        assert_eq!(found.jump(), 0.625);
+        assert_eq!(measured, expected);
+        assert_eq!(measured.jump(), 0.625);
     }
 
     #[test]
     fn pairs_of_two_surfaces_and_those_in_the_band_do_not_count() {
         let (shown, layers) = ([0.0, 1.0, 0.0, 1.0, 1.0], [0, 1, 1, 2, 2]);
         // The border of splits 1 and 2 lies at the edge of the near wall.
-        let found = jump(&shown, &layers, 2, &[]).unwrap();
-        assert_eq!((found.pairs, found.pairs_elsewhere), (1, 2));
-        assert_eq!((found.across, found.elsewhere), (0.0, 0.5));
+        let measured = jump(&shown, &layers, 2, &[]).unwrap();
+        assert_eq!((measured.pairs, measured.pairs_elsewhere), (1, 2));
+        assert_eq!((measured.across, measured.elsewhere), (0.0, 0.5));
         // Without the first pixel none is across.
         assert_eq!(jump(&shown, &layers, 2, &[0]), None);
         assert_eq!(jump(&shown, &[0; 5], 0, &[]), None);

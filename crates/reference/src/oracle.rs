@@ -173,12 +173,12 @@ impl<'a> Oracle<'a> {
         progress: Progress,
     ) -> Result<GroundTruthPixels, Error> {
         self.check_offset(mode)?;
-        let of = (self.mesh, camera, &light.into());
+        let scene = (self.mesh, camera, &light.into());
         let answer = |receiver: &Receiver, _, stack: &mut Vec<u32>| {
             let answer = self.answer(receiver, mode, stack);
             (answer, ())
         };
-        let (pixels, _) = GroundTruthPixels::answered(of, primitives, progress, answer)?;
+        let (pixels, _) = GroundTruthPixels::answered(scene, primitives, progress, answer)?;
         Ok(pixels)
     }
 
@@ -323,8 +323,8 @@ pub fn unshadowed(
     primitives: &[u32],
     progress: Progress,
 ) -> Result<GroundTruthPixels, Error> {
-    let of = (mesh, camera, light);
+    let scene = (mesh, camera, light);
     let answer = |receiver: &Receiver, _, _: &mut Vec<u32>| (Answer::facing(receiver), ());
-    let (pixels, _) = GroundTruthPixels::answered(of, primitives, progress, answer)?;
+    let (pixels, _) = GroundTruthPixels::answered(scene, primitives, progress, answer)?;
     Ok(pixels)
 }

@@ -106,17 +106,18 @@ pub struct Quantiles {
 impl TexelsPerPixel {
     /// Summarises the [`footprints`] of a picture. Entries that are `None` are left out.
     pub fn new(footprints: &[Option<Footprint>]) -> Self {
-        let all = footprints.iter().flatten();
-        let (inside, outside): (Vec<&Footprint>, Vec<_>) = all.partition(|of| of.perspective > 0.0);
+        let present = footprints.iter().flatten();
+        let (inside, outside): (Vec<&Footprint>, Vec<_>) =
+            present.partition(|pixel| pixel.perspective > 0.0);
         let quantiles =
-            |part: fn(Footprint) -> f64| Quantiles::new(inside.iter().map(|of| part(**of)));
+            |part: fn(Footprint) -> f64| Quantiles::new(inside.iter().map(|pixel| part(**pixel)));
         Self {
             pixels: inside.len() as u64,
-            under_one: inside.iter().filter(|of| of.texels() < 1.0).count() as u64,
+            under_one: inside.iter().filter(|pixel| pixel.texels() < 1.0).count() as u64,
             outside_map: outside.len() as u64,
             texels: quantiles(Footprint::texels),
-            perspective: quantiles(|of| of.perspective),
-            projection: quantiles(|of| of.projection),
+            perspective: quantiles(|pixel| pixel.perspective),
+            projection: quantiles(|pixel| pixel.projection),
         }
     }
 }
@@ -217,8 +218,8 @@ mod tests {
             radius: 0.0,
         };
         let (x, y, far) = (7u32, 6u32, 1e-4);
-        let all = on_plane(DVec3::Y, &light.into(), 2.0);
-        let found = all[(x + y * SIZE) as usize].unwrap();
+        let footprints = on_plane(DVec3::Y, &light.into(), 2.0);
+        let footprint = footprints[(x + y * SIZE) as usize].unwrap();
         // A pixel a ten-thousandth as wide, so that distances are alike in all of it.
         let place = |dx: f64, dy: f64| {
             let ndc = [
@@ -238,28 +239,30 @@ mod tests {
         let to_light = light.position - centre;
         let texels = 2.0 * area * to_light.y / to_light.length();
         assert!(
-            (found.texels() / texels - 1.0).abs() < 1e-3,
-            "{found:?} {texels}"
+            (footprint.texels() / texels - 1.0).abs() < 1e-3,
+            "{footprint:?} {texels}"
         );
     }
 
     #[test]
     fn figures_count_what_lies_in_the_map() {
-        let of = |perspective| {
+        let made = |perspective| {
             Some(Footprint {
                 perspective,
                 projection: 0.5,
             })
         };
-        let mut all: Vec<_> = (1..=40).map(|texels| of(f64::from(texels) * 0.5)).collect();
-        all.extend([None, of(0.0)]);
-        let found = TexelsPerPixel::new(&all);
+        let mut footprints: Vec<_> = (1..=40)
+            .map(|texels| made(f64::from(texels) * 0.5))
+            .collect();
+        footprints.extend([None, made(0.0)]);
+        let figures = TexelsPerPixel::new(&footprints);
         // Of 0.25, 0.5 … 10 those below 1 are three.
-        let counts = (found.pixels, found.under_one, found.outside_map);
+        let counts = (figures.pixels, figures.under_one, figures.outside_map);
         assert_eq!(counts, (40, 3, 1));
-        let Quantiles { p5, median, p95 } = found.texels;
+        let Quantiles { p5, median, p95 } = figures.texels;
         assert_eq!([p5, median, p95], [0.5, 5.0, 9.5]);
-        assert_eq!(found.projection.median, 0.5);
+        assert_eq!(figures.projection.median, 0.5);
         assert_eq!(TexelsPerPixel::new(&[]), TexelsPerPixel::default());
     }
 
@@ -267,8 +270,8 @@ mod tests {
     fn a_density_that_is_none_is_outside_the_map() {
         let light = DirectionalLight::new(DVec3::NEG_Y).into();
         for density in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            let all = on_plane(DVec3::Y, &light, density);
-            assert_eq!(all[MIDDLE].unwrap().texels(), 0.0, "{density}");
+            let footprints = on_plane(DVec3::Y, &light, density);
+            assert_eq!(footprints[MIDDLE].unwrap().texels(), 0.0, "{density}");
         }
     }
 }

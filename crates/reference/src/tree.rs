@@ -195,11 +195,11 @@ impl<'a> Tree<'a> {
 /// one to have it.
 fn open_edges(mesh: &Mesh) -> Vec<[bool; 3]> {
     let keys = |&[a, b, c]: &[u32; 3]| [(b, c), (c, a), (a, b)].map(|(p, q)| (p.min(q), p.max(q)));
-    let mut all: Vec<(u32, u32)> = mesh.triangles.iter().flat_map(keys).collect();
-    all.par_sort_unstable();
+    let mut edges: Vec<(u32, u32)> = mesh.triangles.iter().flat_map(keys).collect();
+    edges.par_sort_unstable();
     let alone = |key| {
-        let first = all.partition_point(|other| *other < key);
-        all.get(first + 1) != Some(&key)
+        let first = edges.partition_point(|other| *other < key);
+        edges.get(first + 1) != Some(&key)
     };
     mesh.triangles
         .par_iter()

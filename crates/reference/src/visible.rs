@@ -86,7 +86,7 @@ pub fn candidates(
     per_pixel(camera.viewport, progress, |x, y, stack| {
         let direction = camera.pixel_direction(x, y);
         let sample = Sample::new(camera, direction, max_distance);
-        let (mut found, mut nearest) = (Vec::new(), [f64::INFINITY; 5]);
+        let (mut candidates, mut nearest) = (Vec::new(), [f64::INFINITY; 5]);
         let ray = Ray::new(
             camera.eye,
             direction,
@@ -94,7 +94,7 @@ pub fn candidates(
             sample.reach(max_distance),
         );
         oracle.tree.walk(&ray, stack, |caster, t_max| {
-            found.extend(sample.candidate(caster));
+            candidates.extend(sample.candidate(caster));
             for (nearest, end) in nearest.iter_mut().zip(sample.hides_from(caster)) {
                 *nearest = nearest.min(end);
             }
@@ -103,14 +103,14 @@ pub fn candidates(
             ControlFlow::Continue(())
         });
         let end = nearest.into_iter().fold(0.0, f64::max);
-        found.retain(|of| of.distances[0] <= end);
+        candidates.retain(|candidate| candidate.distances[0] <= end);
         if end > camera.far * (1.0 - 16.0 * F32_ROUNDING) {
-            found.push(Candidate {
+            candidates.push(Candidate {
                 primitive: BACKGROUND,
                 distances: [camera.far, f64::INFINITY],
             });
         }
-        Ok(found)
+        Ok(candidates)
     })
 }
 
@@ -180,7 +180,7 @@ impl<'a> Sample<'a> {
     /// The triangle as a candidate, if it may be seen in the square while nothing hides it.
     fn candidate(&self, caster: &Caster<'_>) -> Option<Candidate> {
         let edges = self.edges(&caster.corners);
-        let is_seen = caster.double_sided || edges.iter().any(|of| of.iter().sum::<f64>() > 0.0);
+        let is_seen = caster.double_sided || edges.iter().any(|ray| ray.iter().sum::<f64>() > 0.0);
         if !is_seen || self.is_beside(&caster.corners) || !self.may_touch(&caster.corners) {
             return None;
         }
@@ -300,7 +300,7 @@ impl<'a> Sample<'a> {
         let masked = caster.masked.as_ref()?;
         let [centre, corners @ ..] = self.edges(&caster.corners);
         let spread = |edge: usize| {
-            let off = corners.iter().map(|of| (of[edge] - centre[edge]).abs());
+            let off = corners.iter().map(|ray| (ray[edge] - centre[edge]).abs());
             off.fold(0.0, f64::max)
         };
         Some(masked.ask(centre, [0, 1, 2].map(spread)))
@@ -308,8 +308,8 @@ impl<'a> Sample<'a> {
 
     /// The edge functions of each ray.
     fn edges(&self, corners: &Corners) -> [[f64; 3]; 5] {
-        let of = |ray: &Ray| Ray::edges(corners.map(|corner| ray.sheared(corner)));
-        self.rays.each_ref().map(of)
+        let edges = |ray: &Ray| Ray::edges(corners.map(|corner| ray.sheared(corner)));
+        self.rays.each_ref().map(edges)
     }
 
     /// Length by which rounding may move a surface along the view, at that distance.

@@ -9,8 +9,8 @@ use skiagraph_located_ron::panics;
 /// Names the library, and what it said.
 pub(crate) fn caught<T>(library: &str, parse: impl FnOnce() -> T) -> Result<T, String> {
     panics::caught(parse).map_err(|panicked| {
-        let said = panicked.message;
-        format!("the library `{library}` failed on it ({said}): save the file in another program")
+        let text = panicked.message;
+        format!("the library `{library}` failed on it ({text}): save the file in another program")
     })
 }
 

@@ -94,7 +94,7 @@ impl MeshBuilder {
             let masked = self.mesh.surfaces.of[primitive as usize];
             let mask = materials
                 .get(masked as usize)
-                .and_then(|of| of.mask.as_ref());
+                .and_then(|material| material.mask.as_ref());
             if mask.is_none_or(|mask| mask.is_uniform()) {
                 continue;
             }

@@ -173,16 +173,16 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named() {
-        let said = |mesh: Result<Mesh, IndexedError>| mesh.unwrap_err().to_string();
-        assert!(said(indexed(&[0, 1])).contains("2 indices"));
-        let beyond = said(indexed(&[0, 1, 2, 0, 4, 1]));
+        let error_text = |mesh: Result<Mesh, IndexedError>| mesh.unwrap_err().to_string();
+        assert!(error_text(indexed(&[0, 1])).contains("2 indices"));
+        let beyond = error_text(indexed(&[0, 1, 2, 0, 4, 1]));
         assert_eq!(beyond, "index 4 is 4, but there are only 4 positions");
         for (normals, positions, expected) in [
             (vec![[1.0; 3]; 2], CORNERS, "2 normals for 4 positions"),
             (vec![[f32::NAN; 3]; 4], CORNERS, "normal 0 is not finite"),
             (vec![], [[f32::INFINITY; 3]; 4], "position 0 is not finite"),
         ] {
-            let said = said(
+            let text = error_text(
                 Indexed {
                     positions: &positions,
                     normals: &normals,
@@ -190,7 +190,7 @@ mod tests {
                 }
                 .mesh(),
             );
-            assert!(said.contains(expected), "{said}");
+            assert!(text.contains(expected), "{text}");
         }
     }
 }

@@ -16,7 +16,7 @@ pub(crate) fn not_later<K>(keys: &[K], time: fn(&K) -> f64) -> Option<String> {
 pub(crate) fn spline<K>(
     keys: &[K],
     time: fn(&K) -> f64,
-    of: impl Fn(&K) -> DVec3,
+    vector: impl Fn(&K) -> DVec3,
     at: f64,
 ) -> DVec3 {
     // The last key that has passed, but one that has another behind it.
@@ -24,7 +24,7 @@ pub(crate) fn spline<K>(
     let from = passed.min(keys.len().saturating_sub(2));
     let [a, b] = match keys.get(from..from + 2) {
         Some([a, b]) => [a, b],
-        _ => return keys.first().map_or(DVec3::ZERO, of),
+        _ => return keys.first().map_or(DVec3::ZERO, vector),
     };
     // The slope at a key is that between its neighbours.
     let slope = |key: usize| {
@@ -32,18 +32,18 @@ pub(crate) fn spline<K>(
             &keys[key.saturating_sub(1)],
             &keys[(key + 1).min(keys.len() - 1)],
         );
-        (of(after) - of(before)) / (time(after) - time(before))
+        (vector(after) - vector(before)) / (time(after) - time(before))
     };
     let (before, after) = (slope(from), slope(from + 1));
     // A key that stands still is the same to the last bit in every frame.
-    if of(a) == of(b) && before == DVec3::ZERO && after == DVec3::ZERO {
-        return of(a);
+    if vector(a) == vector(b) && before == DVec3::ZERO && after == DVec3::ZERO {
+        return vector(a);
     }
     let span = time(b) - time(a);
     let t = ((at - time(a)) / span).clamp(0.0, 1.0);
     let (square, cube) = (t * t, t * t * t);
-    of(a) * (2.0 * cube - 3.0 * square + 1.0)
+    vector(a) * (2.0 * cube - 3.0 * square + 1.0)
         + before * (span * (cube - 2.0 * square + t))
-        + of(b) * (3.0 * square - 2.0 * cube)
+        + vector(b) * (3.0 * square - 2.0 * cube)
         + after * (span * (cube - square))
 }

@@ -119,7 +119,7 @@ impl SceneLibrary {
             });
         }
         let (file, mut scene) = self.parse_sized(argument)?;
-        let found = match &scene.mesh {
+        let path = match &scene.mesh {
             MeshSource::Obj {
                 file: mesh, source, ..
             }
@@ -128,10 +128,10 @@ impl SceneLibrary {
             } => Some(self.mesh_file(&scene, mesh, source, file.as_deref())?),
             MeshSource::Generated(_) => None,
         };
-        if let (Some(found), MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. }) =
-            (found, &mut scene.mesh)
+        if let (Some(path), MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. }) =
+            (path, &mut scene.mesh)
         {
-            *file = found.to_string_lossy().into_owned();
+            *file = path.to_string_lossy().into_owned();
         }
         Ok(scene)
     }
@@ -219,9 +219,9 @@ impl SceneLibrary {
                 };
                 listing.description = scene.description;
             }
-            Err(SceneError::SceneFile(found)) => {
-                let found: Vec<String> = found.iter().map(Diagnostic::brief).collect();
-                listing.description = found.join("\n");
+            Err(SceneError::SceneFile(diagnostics)) => {
+                let briefs: Vec<String> = diagnostics.iter().map(Diagnostic::brief).collect();
+                listing.description = briefs.join("\n");
             }
             Err(error) => listing.description = error.to_string(),
         }

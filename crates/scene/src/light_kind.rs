@@ -74,8 +74,8 @@ const FARTHEST: f64 = 1e18;
 pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
 
 /// The light of a view, which checks it and says whose it is.
-pub(crate) fn own_light<'de, D: Deserializer<'de>>(of: D) -> Result<Option<Light>, D::Error> {
-    DirectionalLight::deserialize(of).map(|sun| Some(sun.into()))
+pub(crate) fn own_light<'de, D: Deserializer<'de>>(input: D) -> Result<Option<Light>, D::Error> {
+    DirectionalLight::deserialize(input).map(|sun| Some(sun.into()))
 }
 
 impl Light {

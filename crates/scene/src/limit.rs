@@ -27,22 +27,22 @@ impl Limit {
     /// An error of the operating system; a folder, a device or a pipe, which is not opened because
     /// that alone can block; a file beyond the limit. The message does not name the file.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        let found = std::fs::metadata(path)?;
-        if found.is_dir() {
+        let metadata = std::fs::metadata(path)?;
+        if metadata.is_dir() {
             return Err(io::Error::other("it is a folder, expected a file"));
         }
-        if !found.is_file() {
+        if !metadata.is_file() {
             return Err(io::Error::other(
                 "it is a device, a pipe or a socket, of unknown length: copy its content \
                  into a file, and name that",
             ));
         }
         let most = self.mib * MIB;
-        if found.len() > most {
-            return Err(self.exceeded(&format!("{} MiB", found.len().div_ceil(MIB))));
+        if metadata.len() > most {
+            return Err(self.exceeded(&format!("{} MiB", metadata.len().div_ceil(MIB))));
         }
         let mut bytes = Vec::new();
-        bytes.try_reserve_exact(found.len() as usize + 1)?;
+        bytes.try_reserve_exact(metadata.len() as usize + 1)?;
         // Files of the kernel's have length 0 whatever they hold, and others may grow meanwhile.
         File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
         if bytes.len() as u64 > most {
@@ -66,7 +66,11 @@ impl Limit {
     }
 
     fn exceeded(&self, length: &str) -> io::Error {
-        let Self { of, mib, way_out } = self;
-        io::Error::other(format!("it has {length}, {of} {mib} at most: {way_out}"))
+        let Self {
+            of: kind,
+            mib,
+            way_out,
+        } = self;
+        io::Error::other(format!("it has {length}, {kind} {mib} at most: {way_out}"))
     }
 }

@@ -82,7 +82,7 @@ impl Surfaces {
             let appended = &mut self.materials[material as usize..];
             appended.iter_mut().for_each(Material::lose_coordinates);
         }
-        self.of.extend(other.of.iter().map(|of| material + of));
+        self.of.extend(other.of.iter().map(|own| material + own));
     }
 
     /// Adds surfaces for triangles that were appended to the mesh, which now has `triangles`
@@ -98,27 +98,27 @@ impl Surfaces {
     }
 
     /// Gives `triangles` triangles of the mesh, from the primitive id `first` on, the surfaces of
-    /// `other`, which is of another mesh with that many triangles. `all` is the number of triangles
-    /// of this mesh. The materials and texture coordinates of `other` are appended to the lists. If
-    /// only one of the two meshes has materials, the other counts as plain white; if neither has,
-    /// nothing changes.
+    /// `other`, which is of another mesh with that many triangles. `total` is the number of
+    /// triangles of this mesh. The materials and texture coordinates of `other` are appended to the
+    /// lists. If only one of the two meshes has materials, the other counts as plain white; if
+    /// neither has, nothing changes.
     ///
     /// # Panics
-    /// If `first` and `triangles` together are more than `all`.
-    pub fn put(&mut self, other: &Self, (first, triangles): (usize, usize), all: usize) {
+    /// If `first` and `triangles` together are more than `total`.
+    pub fn put(&mut self, other: &Self, (first, triangles): (usize, usize), total: usize) {
         if self.of.is_empty() && other.of.is_empty() {
             return;
         }
         if self.of.is_empty() {
-            self.append(&Self::default(), all);
+            self.append(&Self::default(), total);
         }
         self.append(other, triangles);
         for triangle in 0..triangles {
-            self.of[first + triangle] = self.of[all + triangle];
-            self.uv_indices[first + triangle] = self.uv_indices[all + triangle];
+            self.of[first + triangle] = self.of[total + triangle];
+            self.uv_indices[first + triangle] = self.uv_indices[total + triangle];
         }
-        self.of.truncate(all);
-        self.uv_indices.truncate(all);
+        self.of.truncate(total);
+        self.uv_indices.truncate(total);
     }
 
     /// Returns the material of triangle `primitive`, or `None` if it has none.
@@ -162,7 +162,7 @@ impl Surfaces {
         let cared = |material: &Material| material.mask.is_some() || material.double_sided;
         let mut used = self.of.iter();
         self.materials.iter().any(cared)
-            && used.any(|of| self.materials.get(*of as usize).is_some_and(cared))
+            && used.any(|index| self.materials.get(*index as usize).is_some_and(cared))
     }
 
     /// Returns the linear base colour of triangle `primitive`, times its texture's nearest texel,
@@ -173,7 +173,7 @@ impl Surfaces {
             return [1.0; 3];
         };
         let texture = material.texture.as_ref();
-        let texels = texture.and_then(|of| Some((of.texels().ok()?, of.wrap)));
+        let texels = texture.and_then(|texture| Some((texture.texels().ok()?, texture.wrap)));
         let Some((texels, wrap)) = texels else {
             return material.base_color;
         };

@@ -78,8 +78,10 @@ impl Mesh {
         for &index in self.triangles.iter().flatten() {
             is_used[index as usize] = true;
         }
-        let all = self.positions.iter().zip(is_used);
-        all.filter(|(_, is_used)| *is_used).map(|(place, _)| *place)
+        let positions = self.positions.iter().zip(is_used);
+        positions
+            .filter(|(_, is_used)| *is_used)
+            .map(|(place, _)| *place)
     }
 
     /// Returns the smallest axis-aligned box, in world space, around all positions that triangles

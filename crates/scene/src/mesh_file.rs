@@ -116,5 +116,5 @@ impl MeshFile {
 
 pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension()
-        .is_some_and(|found| found.eq_ignore_ascii_case(extension))
+        .is_some_and(|suffix| suffix.eq_ignore_ascii_case(extension))
 }

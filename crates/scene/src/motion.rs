@@ -330,18 +330,18 @@ mod tests {
         for at in [2.0, 3.0, 4.0, 9.0] {
             assert!((place(at) - DVec3::X).length() < 1e-12, "{}", place(at));
         }
-        let told = |change: fn(&mut Vec<PoseKey>)| {
+        let refusal = |change: fn(&mut Vec<PoseKey>)| {
             let mut keys = keys.clone();
             change(&mut keys);
             let motion = Motion::Posed { keys };
             let part = part.clone();
             PartMotion { part, motion }.check().unwrap_err()
         };
-        let none = told(Vec::clear);
+        let none = refusal(Vec::clear);
         assert!(none.contains("none of the keys"), "{none}");
-        let late = told(|keys| keys[1].at = 0.5);
+        let late = refusal(|keys| keys[1].at = 0.5);
         assert!(late.contains("expected a later time"), "{late}");
-        let no_turn = told(|keys| keys[1].rotation = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0));
+        let no_turn = refusal(|keys| keys[1].rotation = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0));
         assert!(no_turn.contains("unit quaternion"), "{no_turn}");
     }
 

@@ -181,12 +181,12 @@ impl Movable {
     pub fn joined(meshes: &[&Mesh]) -> Self {
         let mut rest = Mesh::default();
         let has_materials = meshes.iter().any(|mesh| !mesh.surfaces.of.is_empty());
-        let mut known: HashMap<*const Mesh, usize> = HashMap::new();
+        let mut first_parts: HashMap<*const Mesh, usize> = HashMap::new();
         let parts = meshes.iter().enumerate().map(|(part, &mesh)| {
             if has_materials {
                 rest.surfaces.append(&mesh.surfaces, mesh.triangles.len());
             }
-            let copy_of = *known.entry(std::ptr::from_ref(mesh)).or_insert(part);
+            let copy_of = *first_parts.entry(std::ptr::from_ref(mesh)).or_insert(part);
             Part::append(&mut rest, mesh, copy_of)
         });
         let parts = parts.collect();
@@ -269,10 +269,10 @@ impl Movable {
         self.all(|part| self.bent_part(part, |place| map(part, place)))
     }
 
-    fn all(&self, of: impl Fn(usize) -> Result<MovedPart, MoveError>) -> Result<Mesh, MoveError> {
+    fn all(&self, make: impl Fn(usize) -> Result<MovedPart, MoveError>) -> Result<Mesh, MoveError> {
         let mut mesh = self.rest.clone();
         for part in 0..self.parts.len() {
-            let moved = of(part)?;
+            let moved = make(part)?;
             self.put(part, &moved, false, &mut mesh);
         }
         Ok(mesh)

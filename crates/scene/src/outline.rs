@@ -26,28 +26,28 @@ impl Outline {
     }
 
     /// Returns the outline of the points of all parts together; all outlines are of the same light.
-    /// `known` has an entry for each part: its outline, or `None` if the part has moved since. For
-    /// such a part, given its index in `known`, `loose` returns a rough outline that contains the
-    /// part, such as that of its box, and `exact` returns the part's own outline. `exact` is called
-    /// only for a part that may reach the border of the result; its outline is then written into
-    /// `known`.
+    /// `outlines` has an entry for each part: its outline, or `None` if the part has moved since.
+    /// For such a part, given its index in `outlines`, `loose` returns a rough outline that
+    /// contains the part, such as that of its box, and `exact` returns the part's own outline.
+    /// `exact` is called only for a part that may reach the border of the result; its outline is
+    /// then written into `outlines`.
     pub fn joined(
-        known: &mut [Option<Self>],
+        outlines: &mut [Option<Self>],
         mut loose: impl FnMut(usize) -> Self,
         mut exact: impl FnMut(usize) -> Self,
     ) -> Self {
-        let unknown = known
+        let unknown = outlines
             .iter()
             .enumerate()
-            .filter(|(_, known)| known.is_none());
+            .filter(|(_, outline)| outline.is_none());
         let open: Vec<(usize, Self)> = unknown.map(|(part, _)| (part, loose(part))).collect();
-        for part in farthest_of(known, &open) {
-            known[part] = Some(exact(part));
+        for part in farthest_of(outlines, &open) {
+            outlines[part] = Some(exact(part));
         }
-        let within = Within::new(known);
+        let within = Within::new(outlines);
         for (part, loose) in open {
-            if known[part].is_none() && !within.contains(&loose) {
-                known[part] = Some(exact(part));
+            if outlines[part].is_none() && !within.contains(&loose) {
+                outlines[part] = Some(exact(part));
             }
         }
         let mut joined = Self {
@@ -55,7 +55,7 @@ impl Outline {
             nearest: f64::INFINITY,
             farthest: f64::NEG_INFINITY,
         };
-        for outline in known.iter().flatten() {
+        for outline in outlines.iter().flatten() {
             joined.nearest = joined.nearest.min(outline.nearest);
             joined.farthest = joined.farthest.max(outline.farthest);
             if !within.contains(outline) {
@@ -143,12 +143,12 @@ const DIRECTIONS: [DVec2; 8] = [
 ];
 
 /// The unknown parts that may reach farthest in a direction, or along the light.
-fn farthest_of(known: &[Option<Outline>], open: &[(usize, Outline)]) -> Vec<usize> {
-    let known = known.iter().flatten().map(|outline| (None, outline));
+fn farthest_of(outlines: &[Option<Outline>], open: &[(usize, Outline)]) -> Vec<usize> {
+    let settled = outlines.iter().flatten().map(|outline| (None, outline));
     let open = open.iter().map(|(part, loose)| (Some(*part), loose));
     // The part that reaches farthest in each direction, and how far.
     let mut most: [(Option<usize>, f64); 10] = [(None, f64::NEG_INFINITY); 10];
-    for (part, outline) in known.chain(open) {
+    for (part, outline) in settled.chain(open) {
         for (direction, (farthest, reach)) in most.iter_mut().enumerate() {
             let own = match DIRECTIONS.get(direction) {
                 Some(along) => {
@@ -188,7 +188,7 @@ impl Within {
             farthest = farthest.max(outline.farthest);
             for &place in &outline.hull {
                 for (corner, along) in corners.iter_mut().zip(DIRECTIONS) {
-                    if corner.is_none_or(|known| along.dot(known) < along.dot(place)) {
+                    if corner.is_none_or(|former| along.dot(former) < along.dot(place)) {
                         *corner = Some(place);
                     }
                 }

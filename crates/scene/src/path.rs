@@ -127,7 +127,7 @@ impl CameraPath {
     pub fn view(&self, frame: u32) -> View {
         let at = self.at(frame);
         let times = |key: &CameraKey| key.at;
-        let place = |of: fn(&CameraKey) -> DVec3| spline(&self.keys, times, of, at);
+        let place = |vector: fn(&CameraKey) -> DVec3| spline(&self.keys, times, vector, at);
         View {
             eye: place(|key| key.eye),
             direction: place(|key| key.direction.normalize()),
@@ -140,7 +140,7 @@ impl CameraPath {
         if self.light_keys.is_empty() {
             return light.clone();
         }
-        let place = |of: fn(&LightKey) -> DVec3| spline(&self.light_keys, |key| key.at, of, at);
+        let place = |get: fn(&LightKey) -> DVec3| spline(&self.light_keys, |key| key.at, get, at);
         let direction = place(|key| key.direction.unwrap_or_default().normalize_or_zero());
         let position = place(|key| key.position.unwrap_or_default());
         let kind = match light.kind {

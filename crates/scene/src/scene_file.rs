@@ -146,48 +146,48 @@ impl SceneFile {
     /// [`SceneError::SceneFile`] with every mistake and its place in the text: invalid RON, unknown
     /// or missing fields, and views, paths and lights that are not valid.
     pub fn parse(text: &str, file: &str) -> Result<Self, SceneError> {
-        let mut told = Vec::new();
-        let scene = Self::read(&Node::root(&SourceFile::new(file, text)), &mut told);
-        let scene = scene.filter(|_| told.is_empty());
-        scene.ok_or_else(|| SceneError::SceneFile(Diagnostics::new(told)))
+        let mut faults = Vec::new();
+        let scene = Self::read(&Node::root(&SourceFile::new(file, text)), &mut faults);
+        let scene = scene.filter(|_| faults.is_empty());
+        scene.ok_or_else(|| SceneError::SceneFile(Diagnostics::new(faults)))
     }
 
-    fn read(root: &Node, told: &mut Vec<Diagnostic>) -> Option<Self> {
-        let fields = kept(root.fields(), told)?;
+    fn read(root: &Node, faults: &mut Vec<Diagnostic>) -> Option<Self> {
+        let fields = kept(root.fields(), faults)?;
         let field = |name| fields.iter().find(|field| field.name.as_str() == name);
         if let Some(format) = field("format") {
-            let number: u32 = kept(format.node.parse(), told)?;
+            let number: u32 = kept(format.node.parse(), faults)?;
             if number != 1 {
                 // Everything else in it would be a mistake, too.
                 let what = format!("format {number} is unknown; this program reads format 1");
-                told.push(Diagnostic::error(Code::FormatVersion, what).at(&format.node, ""));
+                faults.push(Diagnostic::error(Code::FormatVersion, what).at(&format.node, ""));
                 return None;
             }
         }
         let list = |name| field(name).map(|field| &field.node);
         let lights = match (field("light"), list("lights")) {
             (light, Some(list)) => {
-                told.extend(light.map(|light| {
+                faults.extend(light.map(|light| {
                     let what = "a scene has one `light`, or `lights`, not both";
                     Diagnostic::error(Code::DuplicateName, what).at(&light.name, "")
                 }));
-                named(list, told)
+                named(list, faults)
             }
             (Some(_), None) => Some(Vec::new()),
             (None, None) => {
-                told.push(lacks(root, "a scene needs a `light`, or `lights`"));
+                faults.push(lacks(root, "a scene needs a `light`, or `lights`"));
                 None
             }
         };
-        let views = list("views").map(|list| named(list, told));
+        let views = list("views").map(|list| named(list, faults));
         if views.is_none() {
             let what = "a scene needs at least one view: the field `views` is missing";
-            told.push(lacks(root, what));
+            faults.push(lacks(root, what));
         }
-        let paths = list("paths").map_or(Some(Vec::new()), |list| named(list, told));
+        let paths = list("paths").map_or(Some(Vec::new()), |list| named(list, faults));
         let head = fields.into_iter();
         let head = head.filter(|field| !LISTS.contains(&field.name.as_str()));
-        let scene: Option<Self> = from_all_fields(head.collect(), &root.head(), &LISTS, told);
+        let scene: Option<Self> = from_all_fields(head.collect(), &root.head(), &LISTS, faults);
         let (mut scene, lights) = (scene?, lights?);
         scene.lights.extend(lights);
         (scene.views, scene.paths) = (views??, paths?);
@@ -196,8 +196,8 @@ impl SceneFile {
 }
 
 /// Keeps a value, or tells why there is none.
-fn kept<T>(read: Result<T, Diagnostic>, told: &mut Vec<Diagnostic>) -> Option<T> {
-    read.map_err(|wrong| told.push(wrong)).ok()
+fn kept<T>(read: Result<T, Diagnostic>, faults: &mut Vec<Diagnostic>) -> Option<T> {
+    read.map_err(|wrong| faults.push(wrong)).ok()
 }
 
 fn lacks(root: &Node, what: &str) -> Diagnostic {
@@ -205,18 +205,18 @@ fn lacks(root: &Node, what: &str) -> Diagnostic {
 }
 
 /// The items of a list, which have names, no two the same.
-fn named<T: Item>(list: &Node, told: &mut Vec<Diagnostic>) -> Option<Vec<T>> {
-    let items = kept(list.list(), told)?;
+fn named<T: Item>(list: &Node, faults: &mut Vec<Diagnostic>) -> Option<Vec<T>> {
+    let items = kept(list.list(), faults)?;
     if items.is_empty() && T::NEEDED {
         let what = format!("`{}` is empty; a scene needs one", T::LIST);
-        told.push(Diagnostic::error(Code::MissingField, what).at(list.head(), ""));
+        faults.push(Diagnostic::error(Code::MissingField, what).at(list.head(), ""));
     }
     let (mut names, mut read) = (HashMap::new(), Vec::new());
     let mut complete = true;
     for node in items {
-        let checked = T::read(&node, told).and_then(|item| {
+        let checked = T::read(&node, faults).and_then(|item| {
             let wrong = |why| Diagnostic::error(Code::Syntax, why).at(node.head(), "here");
-            kept(T::CHECK(&item).map_err(wrong), told).map(|()| item)
+            kept(T::CHECK(&item).map_err(wrong), faults).map(|()| item)
         });
         let Some(item) = checked else {
             complete = false;
@@ -226,7 +226,7 @@ fn named<T: Item>(list: &Node, told: &mut Vec<Diagnostic>) -> Option<Vec<T>> {
         if let Some(first) = names.insert(name.to_owned(), node.head()) {
             let what = format!("two {} are called {name:?}", T::LIST);
             let twice = Diagnostic::error(Code::DuplicateName, what);
-            told.push(
+            faults.push(
                 twice
                     .at(node.head(), "the second one")
                     .at(first, "the first one"),
@@ -245,9 +245,9 @@ trait Item: DeserializeOwned {
     const NEEDED: bool;
     const NAME: fn(&Self) -> &str;
     const CHECK: fn(&Self) -> Result<(), String>;
-    fn read(node: &Node, told: &mut Vec<Diagnostic>) -> Option<Self> {
-        let fields = kept(node.fields(), told)?;
-        from_all_fields(fields, &node.head(), &[], told)
+    fn read(node: &Node, faults: &mut Vec<Diagnostic>) -> Option<Self> {
+        let fields = kept(node.fields(), faults)?;
+        from_all_fields(fields, &node.head(), &[], faults)
     }
 }
 
@@ -256,8 +256,8 @@ impl Item for Light {
     const NEEDED: bool = true;
     const NAME: fn(&Self) -> &str = |light| &light.name;
     const CHECK: fn(&Self) -> Result<(), String> = Self::check;
-    fn read(node: &Node, told: &mut Vec<Diagnostic>) -> Option<Self> {
-        kept(node.parse(), told)
+    fn read(node: &Node, faults: &mut Vec<Diagnostic>) -> Option<Self> {
+        kept(node.parse(), faults)
     }
 }
 

@@ -59,8 +59,8 @@ fn number(value: f64) -> String {
     }
 }
 
-fn vector(of: DVec3) -> String {
-    format!("({}, {}, {})", number(of.x), number(of.y), number(of.z))
+fn vector(xyz: DVec3) -> String {
+    format!("({}, {}, {})", number(xyz.x), number(xyz.y), number(xyz.z))
 }
 
 fn mesh(mesh: &MeshSource) -> String {
@@ -102,7 +102,7 @@ fn changed<T: Debug + Default + PartialEq>(name: &str, value: &T) -> Option<Stri
 fn light(light: &Light) -> String {
     let name = &light.name;
     match light.kind {
-        LightKind::Directional(of) => format!("Directional(name: {name:?}, {})", sun(of)),
+        LightKind::Directional(distant) => format!("Directional(name: {name:?}, {})", sun(distant)),
         LightKind::Spot(SpotLight {
             position,
             direction,
@@ -122,9 +122,9 @@ fn light(light: &Light) -> String {
     }
 }
 
-fn sun(of: DirectionalLight) -> String {
-    let angle = not_0("angle_degrees", of.angle_degrees);
-    format!("direction: {}{angle}", vector(of.direction))
+fn sun(light: DirectionalLight) -> String {
+    let angle = not_0("angle_degrees", light.angle_degrees);
+    format!("direction: {}{angle}", vector(light.direction))
 }
 
 /// A field behind others, unless it is 0.
@@ -156,7 +156,7 @@ fn lens(view: &View) -> Result<Vec<String>, String> {
     }
     match view.light.as_ref().map(|light| light.kind) {
         None => {}
-        Some(LightKind::Directional(of)) => fields.push(format!("light: ({})", sun(of))),
+        Some(LightKind::Directional(light)) => fields.push(format!("light: ({})", sun(light))),
         Some(lamp) => {
             return Err(format!(
                 "{:?} has a {} light of its own, and a scene file has such lights for all views \
@@ -205,17 +205,17 @@ fn path(path: &CameraPath, lights: &[Light]) -> Result<String, String> {
 
 fn light_key(key: &LightKey) -> String {
     let mut text = format!("(at: {}", number(key.at));
-    for (field, of) in [("direction", key.direction), ("position", key.position)] {
-        if let Some(of) = of {
-            text += &format!(", {field}: {}", vector(of));
+    for (field, coordinates) in [("direction", key.direction), ("position", key.position)] {
+        if let Some(coordinates) = coordinates {
+            text += &format!(", {field}: {}", vector(coordinates));
         }
     }
     text + ")"
 }
 
-fn moves(of: &PartMotion) -> String {
-    let part = &of.part;
-    match &of.motion {
+fn moves(moved: &PartMotion) -> String {
+    let part = &moved.part;
+    match &moved.motion {
         Motion::Rigid { pivot, axis, keys } => {
             let keys = keys.iter().map(|key| {
                 let (at, shift) = (number(key.at), vector(key.translation));

@@ -21,11 +21,11 @@ impl Sheets {
 
     /// Replaces the sheets among the triangles of a larger mesh from primitive id `first` on by
     /// those of `part`, whose triangles these are; no other triangle shares an edge with them.
-    /// `all` is the number of triangles that the larger mesh has now.
+    /// `total` is the number of triangles that the larger mesh has now.
     ///
     /// # Panics
-    /// If `first` and the triangles of `part` together are more than `all`.
-    pub fn put(&mut self, part: &Mesh, first: usize, all: usize) {
+    /// If `first` and the triangles of `part` together are more than `total`.
+    pub fn put(&mut self, part: &Mesh, first: usize, total: usize) {
         let parts = LazyCell::new(|| Parts::new(part));
         let is_sheet = |id| {
             let is_double_sided = part.surfaces.is_double_sided(id);
@@ -35,7 +35,7 @@ impl Sheets {
         if self.0.is_empty() && !flags.contains(&true) {
             return;
         }
-        self.0.resize(all.div_ceil(32), 0);
+        self.0.resize(total.div_ceil(32), 0);
         for (at, flag) in (first..).zip(flags) {
             let (word, bit) = (&mut self.0[at / 32], at % 32);
             *word = (*word & !(1 << bit)) | u32::from(flag) << bit;

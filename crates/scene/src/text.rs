@@ -140,10 +140,10 @@ mod tests {
     fn every_byte_has_a_character_of_its_own() {
         assert_eq!(line_text("größe".as_bytes()), "größe");
         assert_eq!(line_text(b"gr\xf6\xdfe \x80"), "größe €");
-        let all: Vec<u8> = (0..=255).collect();
-        let characters: std::collections::HashSet<char> = line_text(&all).chars().collect();
+        let bytes: Vec<u8> = (0..=255).collect();
+        let characters: std::collections::HashSet<char> = line_text(&bytes).chars().collect();
         assert_eq!(characters.len(), 256);
-        assert_eq!(windows_1252(&line_text(&all)), Some(all));
+        assert_eq!(windows_1252(&line_text(&bytes)), Some(bytes));
         assert_eq!(windows_1252("größe €").unwrap(), b"gr\xf6\xdfe \x80");
         assert_eq!(windows_1252("Ω"), None);
     }

@@ -30,11 +30,11 @@ impl<V: Copy + Into<[f32; N]>, const N: usize> Welder<V, N> {
 }
 
 impl Welder {
-    /// Replaces the lookup table with `known` and returns the previous table;
+    /// Replaces the lookup table with `table` and returns the previous table;
     /// [`values`](Self::values) stay. A part that moves by itself is welded with a table of its
     /// own, so that it shares no vectors with other parts.
-    pub fn weld_to(&mut self, known: Known) -> Known {
-        Known(std::mem::replace(&mut self.by_bits, known.0))
+    pub fn weld_to(&mut self, table: Known) -> Known {
+        Known(std::mem::replace(&mut self.by_bits, table.0))
     }
 
     /// Returns the index of a vector in [`values`](Self::values), where it is added if it is new.

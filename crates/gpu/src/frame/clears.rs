@@ -9,7 +9,7 @@ use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, ResourceKind, step::
 /// steps before uses.
 pub(super) fn earliest(plan: &Plan) -> Vec<Option<usize>> {
     let passes = &plan.schedule().passes;
-    let mut found: Vec<Option<usize>> = Vec::new();
+    let mut positions: Vec<Option<usize>> = Vec::new();
     for (at, &pass) in passes.iter().enumerate() {
         let earliest = cleared(plan, plan.pass(pass)).map(|cleared| {
             let is_cleared = |id| {
@@ -20,14 +20,14 @@ pub(super) fn earliest(plan: &Plan) -> Vec<Option<usize>> {
                 let mut used = before.accesses.iter();
                 used.any(|access| is_cleared(access.resource))
             };
-            let mut before = passes[..at].iter().zip(&found);
-            let stops = |(&pass, found): (_, &Option<_>)| found.is_none() || uses(plan.pass(pass));
+            let mut before = passes[..at].iter().zip(&positions);
+            let stops = |(&pass, place): (_, &Option<_>)| place.is_none() || uses(plan.pass(pass));
             let last = (!cleared.is_empty()).then(|| before.rposition(stops));
             last.flatten().map_or(0, |last| last + 1)
         });
-        found.push(earliest);
+        positions.push(earliest);
     }
-    found
+    positions
 }
 
 /// Returns the allocations that a pass clears before other steps of it use them; `None` if it has

@@ -109,19 +109,19 @@ impl Contents {
     }
 
     /// Sets `runs` to true for each pass of the schedule that runs. A group runs if one of its
-    /// passes has a reason to, or if `all` is set and its run condition is not false.
-    pub fn running(&self, plan: &Plan, passes: &[GpuPass], all: bool, runs: &mut Vec<bool>) {
+    /// passes has a reason to, or if `forced` is set and its run condition is not false.
+    pub fn running(&self, plan: &Plan, passes: &[GpuPass], forced: bool, runs: &mut Vec<bool>) {
         let conditions = &plan.schedule().conditions;
         let groups = &conditions.group;
         runs.clear();
         runs.resize(passes.len(), false);
         // All is what could run, not what a param forbids.
         for (&group, when) in groups.iter().zip(&conditions.when) {
-            runs[group] |= all && !matches!(when, When::Never | When::Follows);
+            runs[group] |= forced && !matches!(when, When::Never | When::Follows);
         }
         // A pass that runs can be the reason for one before it in its group, so this is repeated
         // until nothing is added.
-        let mut added = !all;
+        let mut added = !forced;
         while added {
             added = false;
             for at in 0..passes.len() {
@@ -161,7 +161,7 @@ impl Contents {
     pub fn ping_pong(&self, plan: &Plan, runs: &[bool], turn: &mut PingPong) {
         let writers = &plan.schedule().conditions.writers;
         // Entries that exist stay in their place: every frame comes here.
-        turn.retain(|id, _| self.latest.iter().any(|(known, _)| known == id));
+        turn.retain(|id, _| self.latest.iter().any(|(resource, _)| resource == id));
         for &(id, (latest, _)) in &self.latest {
             let is_written = writers[id.index()].is_some_and(|group| runs[group]);
             let current = if is_written { 1 - latest } else { latest };
@@ -233,12 +233,12 @@ impl Contents {
         for at in 0..self.host_copies.len() {
             let (pair, copied) = self.host_copies[at];
             let version = self.versions[pair.0.index()];
-            let known = copied.filter(|(known, _)| *known == version);
-            if known.is_none() {
+            let valid = copied.filter(|(seen, _)| *seen == version);
+            if valid.is_none() {
                 self.host_copies[at].1 = Some((version, number));
                 self.touch(pair.1);
             }
-            if known.is_none_or(|(_, first)| first >= pending) {
+            if valid.is_none_or(|(_, first)| first >= pending) {
                 copy(pair);
             }
         }

@@ -51,8 +51,8 @@ impl CpuTurn<'_> {
             let word = read[0].first_chunk().copied().unwrap_or_default();
             Ok(u64::from(u32::from_ne_bytes(word)))
         })?;
-        let all = call.reads.iter().chain([&call.writes]);
-        let room = all.map(|items| {
+        let lists = call.reads.iter().chain([&call.writes]);
+        let room = lists.map(|items| {
             let (_, place) = bytes(&items.buffer)?;
             Ok((place.end - place.start) / items.bytes.max(1))
         });

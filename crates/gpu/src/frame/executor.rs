@@ -572,10 +572,10 @@ impl Executor {
     fn import(&mut self, name: &str, physical: Physical) -> Result<(), ExecuteError> {
         let imports = self.plan().imports();
         let Some(described) = imports.get(name) else {
-            let known: Vec<&str> = imports.keys().map(String::as_str).collect();
+            let names: Vec<&str> = imports.keys().map(String::as_str).collect();
             return Err(ExecuteError::NoSuchImport {
                 name: name.to_owned(),
-                known: list(&known),
+                known: list(&names),
             });
         };
         if let Some(why) = differs(&physical, described) {
@@ -1009,11 +1009,11 @@ impl Executor {
             return Ok(());
         };
         let before = self.plan();
-        let known = self.state.memory.provided().iter();
-        let known = known.map(|(id, version)| (before.resource(*id).name.clone(), version.clone()));
+        let held = self.state.memory.provided().iter();
+        let named = held.map(|(id, version)| (before.resource(*id).name.clone(), version.clone()));
         let mut unchanged = Unchanged {
             plan: before.clone(),
-            versions: known.collect(),
+            versions: named.collect(),
         };
         self.grow_to(plan, &mut unchanged).map(drop)
     }

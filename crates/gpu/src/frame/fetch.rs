@@ -147,11 +147,11 @@ impl Fetch {
         pool: &mut StagingPool,
         device: &wgpu::Device,
     ) -> Result<Self, ExecuteError> {
-        let Some(readable) = readable.iter().find(|known| known.name == name) else {
-            let known: Vec<&str> = readable.iter().map(|known| known.name.as_str()).collect();
+        let Some(readable) = readable.iter().find(|output| output.name == name) else {
+            let names: Vec<&str> = readable.iter().map(|output| output.name.as_str()).collect();
             return Err(ExecuteError::NoSuchOutput {
                 name: name.to_owned(),
-                known: known.join(", "),
+                known: names.join(", "),
             });
         };
         let source = readable.source(plan.resource(readable.target.id), memory, ping_pong)?;

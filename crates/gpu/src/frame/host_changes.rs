@@ -90,9 +90,9 @@ impl HostChanges {
         });
         let now: Option<BTreeMap<String, u64>> = Some(now.collect());
         match (&self.known, &now) {
-            (Some(known), Some(now)) => {
-                let differs = |name: &&String| known.get(*name) != now.get(*name);
-                let names = known.keys().chain(now.keys()).filter(differs);
+            (Some(before), Some(now)) => {
+                let differs = |name: &&String| before.get(*name) != now.get(*name);
+                let names = before.keys().chain(now.keys()).filter(differs);
                 names.for_each(|name| self.changed.note(name));
             }
             _ => self.touch_all(),

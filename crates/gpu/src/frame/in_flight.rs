@@ -349,7 +349,7 @@ impl FramesInFlight {
             frame.fault.get_or_insert(FaultKind::OutOfOrder);
             if frame.is_followed {
                 let least = before.min(frame.follows);
-                doubtful = Some(doubtful.map_or(least, |known| known.min(least)));
+                doubtful = Some(doubtful.map_or(least, |first| first.min(least)));
             }
         }
         doubtful

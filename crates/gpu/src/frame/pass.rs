@@ -87,8 +87,8 @@ impl GpuPass {
     /// it.
     pub fn steps(&self, ping_pong: &PingPong) -> Option<&[Step<Handles>]> {
         let is_state = |(state, _): &&(Vec<Versions>, _)| {
-            let mut known = self.ping_pong.iter().zip(state);
-            known.all(|(id, versions)| ping_pong.get(id) == Some(versions))
+            let mut resources = self.ping_pong.iter().zip(state);
+            resources.all(|(id, versions)| ping_pong.get(id) == Some(versions))
         };
         let (_, steps) = self.variants.iter().find(is_state)?;
         Some(steps)

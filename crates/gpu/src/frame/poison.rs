@@ -96,10 +96,10 @@ impl Poison {
             let versions: Vec<Option<Fill>> = versions.collect::<Result<_, _>>()?;
             fills.push((lifetime.first, id, versions.into_iter().flatten().collect()));
         }
-        let all = fills
+        let each_fill = fills
             .iter()
             .flat_map(|(_, _, fills): &(_, _, Vec<Fill>)| fills);
-        let most = all.map(Fill::bytes).fold(4, u64::max);
+        let most = each_fill.map(Fill::bytes).fold(4, u64::max);
         let pattern = scoped(device, "pattern", || {
             let (bytes, usage) = (vec![byte; most as usize], wgpu::BufferUsages::COPY_SRC);
             let failed = "the pattern could not be uploaded";

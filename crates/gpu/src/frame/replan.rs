@@ -235,8 +235,8 @@ impl<'a> Reused<'a> {
         let former_inputs = self.old.passes[former].inputs.iter();
         let seen = former_inputs.zip(old.seen[former].as_ref()?);
         let seen: BTreeMap<ResourceId, u64> = seen.map(|(id, seen)| (*id, *seen)).collect();
-        let of = |id: &ResourceId| seen.get(self.same.get(id)?).copied();
-        let versions: Vec<u64> = inputs.iter().map(of).collect::<Option<_>>()?;
+        let version = |id: &ResourceId| seen.get(self.same.get(id)?).copied();
+        let versions: Vec<u64> = inputs.iter().map(version).collect::<Option<_>>()?;
         (versions.len() == seen.len()).then_some(versions)
     }
 }

@@ -58,8 +58,8 @@ impl<'a> Frame<'a> {
 
     /// Sets [`all`](Self::all).
     #[must_use]
-    pub const fn with_all(mut self, all: bool) -> Self {
-        self.all = all;
+    pub const fn with_all(mut self, forced: bool) -> Self {
+        self.all = forced;
         self
     }
 

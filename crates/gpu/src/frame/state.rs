@@ -180,7 +180,7 @@ impl State {
 
     /// Decides which passes run in the next frame, and which allocations they use. None runs if
     /// `may_rest` is set and nothing has changed since a frame that is done.
-    pub fn decide(&mut self, all: bool, may_rest: bool, decision: &mut FrameDecision) {
+    pub fn decide(&mut self, forced: bool, may_rest: bool, decision: &mut FrameDecision) {
         // Its content is another one in every frame.
         if let Some(uniform) = self.uniform {
             self.contents.touch(uniform);
@@ -191,7 +191,8 @@ impl State {
             runs.clear();
             runs.resize(self.passes.len(), false);
         } else {
-            self.contents.running(&self.plan, &self.passes, all, runs);
+            self.contents
+                .running(&self.plan, &self.passes, forced, runs);
         }
         let ping_pong = &mut decision.ping_pong;
         self.contents.ping_pong(&self.plan, runs, ping_pong);
@@ -291,7 +292,7 @@ impl State {
                 }
                 (Physical::Texture(from), Physical::Texture(to)) => {
                     for mip_level in 0..from.mip_level_count() {
-                        let of = |texture| wgpu::TexelCopyTextureInfo {
+                        let level = |texture| wgpu::TexelCopyTextureInfo {
                             mip_level,
                             ..wgpu::Texture::as_image_copy(texture)
                         };
@@ -300,7 +301,7 @@ impl State {
                             height: (from.height() >> mip_level).max(1),
                             depth_or_array_layers: from.depth_or_array_layers(),
                         };
-                        encoder.copy_texture_to_texture(of(from), of(to), size);
+                        encoder.copy_texture_to_texture(level(from), level(to), size);
                     }
                 }
                 _ => {}

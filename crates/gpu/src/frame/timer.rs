@@ -128,9 +128,9 @@ impl Stretch {
                 begin: time.start,
                 end: time.end,
             })
-            .reduce(|all, one| Self {
-                begin: all.begin.min(one.begin),
-                end: all.end.max(one.end),
+            .reduce(|span, one| Self {
+                begin: span.begin.min(one.begin),
+                end: span.end.max(one.end),
             })
     }
 

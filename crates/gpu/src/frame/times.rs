@@ -85,13 +85,13 @@ mod tests {
             gpu,
             cpu: Duration::ZERO,
         };
-        let of = |passes: &[_]| FrameTiming {
+        let timing = |passes: &[_]| FrameTiming {
             passes: passes.to_vec(),
         };
-        let overlapping = of(&[pass(ms(0), ms(9)), pass(ms(4), ms(3)), pass(None, None)]);
+        let overlapping = timing(&[pass(ms(0), ms(9)), pass(ms(4), ms(3)), pass(None, None)]);
         assert_eq!(overlapping.gpu(), ms(9));
-        let apart = of(&[pass(ms(0), ms(2)), pass(ms(6), ms(2))]);
+        let apart = timing(&[pass(ms(0), ms(2)), pass(ms(6), ms(2))]);
         assert_eq!(apart.gpu(), ms(8));
-        assert_eq!(of(&[pass(None, None)]).gpu(), None);
+        assert_eq!(timing(&[pass(None, None)]).gpu(), None);
     }
 }

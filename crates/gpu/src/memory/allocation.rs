@@ -27,7 +27,7 @@ impl GpuAllocation {
     pub fn new(
         plan: &Plan,
         aliases: &[ResourceId],
-        known: &mut Known<'_>,
+        old: &mut Known<'_>,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<Self, ExecuteError> {
@@ -39,15 +39,15 @@ impl GpuAllocation {
         let label = names.join(" / ");
         let usage = (lifetime.textures, lifetime.buffers);
         let count = plan.versions(id);
-        let known = known.remove(label.as_str()).filter(|(of, allocation)| {
+        let kept = old.remove(label.as_str()).filter(|(old_plan, allocation)| {
             allocation.usage == usage
                 && allocation.versions.len() == count
-                && (!resource.keep || was(of, resource).is_some_and(|it| it.keep))
+                && (!resource.keep || was(old_plan, resource).is_some_and(|it| it.keep))
         });
-        let reused = known.filter(|(of, allocation)| {
+        let reused = kept.filter(|(old_plan, allocation)| {
             let mut versions = allocation.versions.iter();
             versions.all(|version| is_made(version, resource))
-                && (resource.origin != Origin::Constant || holds_the_same(of, resource))
+                && (resource.origin != Origin::Constant || holds_the_same(old_plan, resource))
         });
         let make = || make(resource, &label, usage, device);
         let (versions, grown_from) = match reused {
@@ -58,7 +58,7 @@ impl GpuAllocation {
                 for version in &versions {
                     fill(version, resource, queue);
                 }
-                let grown = known.and_then(|(of, it)| grown(of, it, resource));
+                let grown = kept.and_then(|(old_plan, it)| grown(old_plan, it, resource));
                 (versions, grown)
             }
         };
@@ -146,23 +146,23 @@ fn fill(version: &Physical, resource: &Resource, queue: &wgpu::Queue) {
 
 /// Returns the smaller allocation of a former plan whose content a larger resource with `keep` and
 /// `grow` continues.
-fn grown(of: &Plan, allocation: &GpuAllocation, resource: &Resource) -> Option<Physical> {
+fn grown(old_plan: &Plan, allocation: &GpuAllocation, resource: &Resource) -> Option<Physical> {
     let goes_on = |it: &Resource| it.keep && it.growth.is_some();
-    let known = was(of, resource).filter(|known| goes_on(known) && goes_on(resource))?;
+    let former = was(old_plan, resource).filter(|former| goes_on(former) && goes_on(resource))?;
     let [made] = allocation.versions.as_slice() else {
         return None;
     };
-    let is_smaller = match (&known.kind, &resource.kind) {
-        (ResourceKind::Buffer(known), ResourceKind::Buffer(wanted)) => {
-            known.stride == wanted.stride && known.bytes < wanted.bytes
+    let is_smaller = match (&former.kind, &resource.kind) {
+        (ResourceKind::Buffer(before), ResourceKind::Buffer(wanted)) => {
+            before.stride == wanted.stride && before.bytes < wanted.bytes
         }
-        (ResourceKind::Texture(known), ResourceKind::Texture(wanted)) => {
+        (ResourceKind::Texture(before), ResourceKind::Texture(wanted)) => {
             let layers = wanted.layers;
             let with_more = Texture {
                 layers,
-                ..known.clone()
+                ..before.clone()
             };
-            with_more == *wanted && known.layers < layers
+            with_more == *wanted && before.layers < layers
         }
         _ => false,
     };
@@ -170,15 +170,15 @@ fn grown(of: &Plan, allocation: &GpuAllocation, resource: &Resource) -> Option<P
 }
 
 /// Returns the resource of the same name in another plan.
-fn was<'p>(of: &'p Plan, resource: &Resource) -> Option<&'p Resource> {
-    let mut resources = of.resources().iter();
-    resources.find(|known| known.name == resource.name)
+fn was<'p>(old_plan: &'p Plan, resource: &Resource) -> Option<&'p Resource> {
+    let mut resources = old_plan.resources().iter();
+    resources.find(|former| former.name == resource.name)
 }
 
 /// Returns true if another plan's resource of the same name holds the same content.
-fn holds_the_same(of: &Plan, resource: &Resource) -> bool {
-    let known = was(of, resource);
-    match known.map(|known| (&known.kind, &resource.kind)) {
+fn holds_the_same(old_plan: &Plan, resource: &Resource) -> bool {
+    let former = was(old_plan, resource);
+    match former.map(|former| (&former.kind, &resource.kind)) {
         Some((ResourceKind::Texture(a), ResourceKind::Texture(b))) => a == b,
         Some((ResourceKind::Buffer(a), ResourceKind::Buffer(b))) => a == b,
         _ => false,

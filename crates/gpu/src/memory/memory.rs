@@ -81,15 +81,15 @@ impl Memory {
             of: plan.schedule().aliases.of.clone(),
             ..Self::default()
         };
-        let mut known = Known::new();
+        let mut reusable = Known::new();
         if let Some((plan, old)) = old {
             let allocations = old.allocations.iter();
-            known.extend(allocations.map(|made| (made.label.as_str(), (plan, made))));
+            reusable.extend(allocations.map(|made| (made.label.as_str(), (plan, made))));
         }
         for allocation in &plan.schedule().aliases.list {
             let aliases = &allocation.aliases;
             let made =
-                GpuAllocation::new(plan, aliases, &mut known, factory.device, factory.queue)?;
+                GpuAllocation::new(plan, aliases, &mut reusable, factory.device, factory.queue)?;
             memory.allocations.push(made);
         }
         let mut lifetimes = plan.schedule().lifetimes.keys();
@@ -169,13 +169,13 @@ impl Memory {
         old: Option<(&Plan, &Memory)>,
         device: &wgpu::Device,
     ) -> Result<(), ExecuteError> {
-        let known = old.and_then(|(plan, memory)| memory.host_by_name(plan, name));
+        let former = old.and_then(|(plan, memory)| memory.host_by_name(plan, name));
         let usage = usage | wgpu::BufferUsages::COPY_DST;
-        let buffer = match known {
-            Some((_, Physical::Buffer(known)))
-                if known.size() == size && known.usage() == usage =>
+        let buffer = match former {
+            Some((_, Physical::Buffer(buffer)))
+                if buffer.size() == size && buffer.usage() == usage =>
             {
-                known.clone()
+                buffer.clone()
             }
             _ => scoped(device, name, || buffer::make(device, name, size, usage))?,
         };
@@ -186,8 +186,8 @@ impl Memory {
     /// Returns the id and memory of the host's resource with this name.
     fn host_by_name(&self, plan: &Plan, name: &str) -> Option<(ResourceId, &Physical)> {
         let mut host = self.host.iter();
-        let known = host.find(|(id, _)| plan.resource(**id).name == name);
-        known.map(|(id, physical)| (*id, physical))
+        let entry = host.find(|(id, _)| plan.resource(**id).name == name);
+        entry.map(|(id, physical)| (*id, physical))
     }
 
     /// Returns the memory of a resource in a frame; `None` for an import that is not there yet.
@@ -303,8 +303,8 @@ impl Memory {
         let is_described = check_bound(resource, provider)?;
         let version = provider.version(&resource.name);
         if let Some((plan, memory)) = old
-            && let Some((known, physical)) = memory.host_by_name(plan, &resource.name)
-            && memory.version(known) == Some(version)
+            && let Some((old_id, physical)) = memory.host_by_name(plan, &resource.name)
+            && memory.version(old_id) == Some(version)
             && is_described
         {
             self.host.insert(id, physical.clone());
@@ -488,12 +488,12 @@ pub(crate) fn bytes(resource: &Resource, part: &SubresourceRange, whole: u64) ->
 }
 
 /// Returns an import that the host set for a former plan, if its description is unchanged.
-fn kept_import(plan: &Plan, name: &str, (of, memory): (&Plan, &Memory)) -> Option<Physical> {
+fn kept_import(plan: &Plan, name: &str, (old, memory): (&Plan, &Memory)) -> Option<Physical> {
     let described = |plan: &Plan| plan.imports().get(name).copied();
-    if described(plan) != described(of) {
+    if described(plan) != described(old) {
         return None;
     }
-    let live = memory.host_by_name(of, name).map(|(_, physical)| physical);
+    let live = memory.host_by_name(old, name).map(|(_, physical)| physical);
     live.or_else(|| memory.spare.get(name)).cloned()
 }
 

@@ -136,8 +136,8 @@ impl Pipelines {
         let Some(key) = PipelineKey::new(step) else {
             return Ok(None);
         };
-        if let Some(known) = self.store().pipeline(&key) {
-            return Ok(Some(known));
+        if let Some(pipeline) = self.store().pipeline(&key) {
+            return Ok(Some(pipeline));
         }
         let device = self.device();
         let module = self.store().modules.get(&key.shader).cloned();

@@ -14,9 +14,9 @@ pub struct Shadows {
 
 impl Shadows {
     /// Creates the shadows of these meshes, for pictures of the given size in pixels.
-    pub fn new(on: (&Device, &Queue), size: [u32; 2], of: &[&Mesh]) -> Result<Self, Failed> {
+    pub fn new(on: (&Device, &Queue), size: [u32; 2], meshes: &[&Mesh]) -> Result<Self, Failed> {
         let light = DirectionalLight::new(DVec3::NEG_Y);
-        let mut provider = SceneProvider::from_parts(Movable::joined(of), light);
+        let mut provider = SceneProvider::from_parts(Movable::joined(meshes), light);
         let graph = Graph::load("pipelines/light_buffer.ron", &registry(), &EmbeddedSources)?;
         let request = PlanRequest::new(size, &provider);
         let plan = graph.plan(&request.with_device(on.0.limits(), on.0.features()))?;

@@ -177,7 +177,7 @@ impl Attribute {
 
     /// The number of its format in place.wgsl.
     pub fn code(self) -> u32 {
-        let at = FORMATS.iter().position(|known| *known == self.format);
+        let at = FORMATS.iter().position(|format| *format == self.format);
         at.map_or(0, |at| at as u32 % 10)
     }
 
@@ -200,8 +200,8 @@ impl Attribute {
     }
 }
 
-fn share(of: impl Into<f32>, most: i16) -> f32 {
-    (of.into() / f32::from(most)).max(-1.0)
+fn share(integer: impl Into<f32>, most: i16) -> f32 {
+    (integer.into() / f32::from(most)).max(-1.0)
 }
 
 fn from_half(bits: u16) -> f32 {

@@ -155,7 +155,7 @@ impl HostMesh {
         vertices: HostVertices,
     ) -> Result<Self, HostMeshError> {
         let identity = checked(device, &vertices)?;
-        let kind = |of: &HostVertices| (of.count, of.has_normals());
+        let kind = |host: &HostVertices| (host.count, host.has_normals());
         let [mesh, given] = [kind(&self.own.vertices), kind(&vertices)];
         if given != mesh {
             return Err(HostMeshError::OtherVertices { mesh, given });
@@ -322,17 +322,17 @@ struct Welded {
 impl Welded {
     fn new(mesh: &Mesh, vertices: &[[f32; 3]], indices: &[u32]) -> Self {
         let key = |at: Vec3| (at + Vec3::ZERO).to_array().map(f32::to_bits);
-        let known = (0u32..).zip(&mesh.positions);
-        let known: HashMap<[u32; 3], u32> = known.map(|(index, &at)| (key(at), index)).collect();
+        let places = (0u32..).zip(&mesh.positions);
+        let by_key: HashMap<[u32; 3], u32> = places.map(|(index, &at)| (key(at), index)).collect();
         // A vertex that no index names may have no position in the mesh.
-        let position = |&at: &[f32; 3]| known.get(&key(at.into())).copied().unwrap_or(NONE);
-        let of: Vec<u32> = vertices.iter().map(position).collect();
+        let position = |&at: &[f32; 3]| by_key.get(&key(at.into())).copied().unwrap_or(NONE);
+        let welded: Vec<u32> = vertices.iter().map(position).collect();
         let mut first = vec![NONE; mesh.positions.len()];
         for &vertex in indices {
-            let first = &mut first[of[vertex as usize] as usize];
+            let first = &mut first[welded[vertex as usize] as usize];
             *first = vertex.min(*first);
         }
-        Self { of, first }
+        Self { of: welded, first }
     }
 
     /// The vertex of each position that a triangle uses.

@@ -19,18 +19,18 @@ pub(super) fn decoded(
     rest: &[u8],
     on: On,
 ) -> Result<[Vec<[f32; 3]>; 2], HostMeshError> {
-    let found = refused(on.device, || submitted(decoder, vertices, rest, on));
-    let found = found.map_err(HostMeshError::Decoding)?;
-    let found = host::read("vertices at rest", found.slice(..), on.device, on.queue);
-    let found = found.map_err(|error| HostMeshError::Decoding(error.to_string()))?;
-    let found: Vec<[[f32; 3]; 2]> = bytemuck::pod_collect_to_vec(&found);
-    let of = |at: usize| found.iter().map(|vertex| vertex[at]).collect();
+    let buffer = refused(on.device, || submitted(decoder, vertices, rest, on));
+    let buffer = buffer.map_err(HostMeshError::Decoding)?;
+    let bytes = host::read("vertices at rest", buffer.slice(..), on.device, on.queue);
+    let bytes = bytes.map_err(|error| HostMeshError::Decoding(error.to_string()))?;
+    let vertices: Vec<[[f32; 3]; 2]> = bytemuck::pod_collect_to_vec(&bytes);
+    let attribute = |at: usize| vertices.iter().map(|vertex| vertex[at]).collect();
     let normals = if decoder.has_normals {
-        of(1)
+        attribute(1)
     } else {
         Vec::new()
     };
-    Ok([of(0), normals])
+    Ok([attribute(0), normals])
 }
 
 /// Submits the kernel that decodes vertices; the buffer that it writes.
@@ -43,14 +43,14 @@ fn submitted(decoder: &HostDecoder, vertices: &HostVertices, rest: &[u8], on: On
         upload(bytemuck::bytes_of(&record), wgpu::BufferUsages::UNIFORM),
         upload(bytes, wgpu::BufferUsages::STORAGE),
     ];
-    let found = device.create_buffer(&wgpu::BufferDescriptor {
+    let decoded = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("decoded vertices"),
         size: 24 * u64::from(vertices.count),
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
     let pipeline = decoder.made.compile("decode_rest", device);
-    let bound = [(0, &inputs[0]), (2, &inputs[1]), (13, &found)];
+    let bound = [(0, &inputs[0]), (2, &inputs[1]), (13, &decoded)];
     let entries = bound.map(|(binding, buffer)| wgpu::BindGroupEntry {
         binding,
         resource: buffer.as_entire_binding(),
@@ -68,5 +68,5 @@ fn submitted(decoder: &HostDecoder, vertices: &HostVertices, rest: &[u8], on: On
         pass.dispatch_workgroups(across_items(vertices.count), 1, 1);
     }
     on.queue.submit([encoder.finish()]);
-    found
+    decoded
 }

@@ -192,10 +192,10 @@ impl Kernels {
         bound.record(&mut encoder);
         let submitted = refused(on.device, || on.queue.submit([encoder.finish()]));
         submitted.map_err(|why| unread(parts, why))?;
-        let found = host::read("bounds check", beyond.slice(..), on.device, on.queue)?;
-        let found: Vec<u32> = bytemuck::pod_collect_to_vec(&found);
-        let mut found = parts.iter().zip(found);
-        match found.find(|(_, vertex)| *vertex != u32::MAX) {
+        let bytes = host::read("bounds check", beyond.slice(..), on.device, on.queue)?;
+        let vertices: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
+        let mut beyond = parts.iter().zip(vertices);
+        match beyond.find(|(_, vertex)| *vertex != u32::MAX) {
             Some((part, vertex)) => Err(Error::Beyond {
                 part: part.id,
                 vertex,
@@ -234,7 +234,7 @@ fn unread(parts: &[HostWrite], why: String) -> Error {
 /// Runs of parts that one dispatch writes, each with the number of its first part.
 fn batches(parts: &[HostWrite]) -> impl Iterator<Item = (usize, &[HostWrite])> {
     let is_alike = |a: &HostWrite, b: &HostWrite| {
-        let levels = |of: &HostWrite| of.nodes.as_ref().map(|nodes| nodes.1.clone());
+        let levels = |write: &HostWrite| write.nodes.as_ref().map(|nodes| nodes.1.clone());
         Arc::ptr_eq(&a.mesh.own, &b.mesh.own) && levels(a) == levels(b)
     };
     let runs = parts.chunk_by(is_alike);
@@ -297,10 +297,10 @@ fn bind(
         (3, mesh.sources.as_entire_binding()),
         (4, mesh.normal_sources.as_entire_binding()),
     ];
-    let (used, others) = written.bindings(&parts[0]);
+    let (used, outputs) = written.bindings(&parts[0]);
     let own = own.into_iter().filter(|(at, _)| used.contains(at));
     let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<wgpu::BindGroupEntry> = own.chain(others).map(entry).collect();
+    let entries: Vec<wgpu::BindGroupEntry> = own.chain(outputs).map(entry).collect();
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some(ENTRIES[written.kernel as usize]),
         layout: &pipeline.get_bind_group_layout(0),

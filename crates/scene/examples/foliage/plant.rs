@@ -100,8 +100,8 @@ pub fn plant() -> Vec<u8> {
     let mut accessors = Vec::new();
     for (view, mesh) in [&leaves, &floor].into_iter().enumerate() {
         let (count, indices) = (mesh.positions.len(), mesh.indices.len());
-        let bound = |of: fn(f32, f32) -> f32, start: f32| -> String {
-            let axis = |axis: usize| mesh.positions.iter().map(|p| p[axis]).fold(start, of);
+        let bound = |extreme: fn(f32, f32) -> f32, start: f32| -> String {
+            let axis = |axis: usize| mesh.positions.iter().map(|p| p[axis]).fold(start, extreme);
             format!("[{:?},{:?},{:?}]", axis(0), axis(1), axis(2))
         };
         let (low, high) = (bound(f32::min, f32::MAX), bound(f32::max, f32::MIN));

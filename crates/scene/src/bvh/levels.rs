@@ -9,9 +9,9 @@ pub(super) fn levels(order: &[u32], node: impl Fn(u32) -> BvhNode) -> Vec<Vec<u3
     let mut heights = vec![0; order.len()];
     let mut levels: Vec<Vec<u32>> = Vec::new();
     for &index in order.iter().rev() {
-        let of = node(index);
-        if of.count == 0 {
-            let first = of.first as usize;
+        let bvh_node = node(index);
+        if bvh_node.count == 0 {
+            let first = bvh_node.first as usize;
             heights[index as usize] = 1 + heights[first].max(heights[first + 1]);
         }
         if index != 0 {

@@ -228,8 +228,8 @@ impl Bounds {
         farthest: DVec3::ZERO,
     };
 
-    fn around(all: impl Iterator<Item = Self>) -> Self {
-        all.reduce(Self::or).unwrap_or(Self::NOTHING)
+    fn around(extents: impl Iterator<Item = Self>) -> Self {
+        extents.reduce(Self::or).unwrap_or(Self::NOTHING)
     }
 
     fn at((seen, up): (DVec2, DVec3)) -> Self {

@@ -37,7 +37,7 @@ pub(super) fn cluster(boxes: &[Aabb]) -> Bvh2 {
         let before = open.len();
         for one in 0..before {
             let other = chosen[one] as usize;
-            let is_free = |of: usize| chosen[of] != MERGED;
+            let is_free = |node: usize| chosen[node] != MERGED;
             if !(is_free(one) && is_free(other)) || !(is_stuck || chosen[other] == one as u32) {
                 continue;
             }
@@ -63,13 +63,13 @@ pub(super) fn cluster(boxes: &[Aabb]) -> Bvh2 {
 
 /// Leaves along a curve on which neighbours are near each other.
 fn in_morton_order(boxes: &[Aabb]) -> Vec<Bvh2Node> {
-    let centre = |of: &Aabb| (of.min.as_dvec3() + of.max.as_dvec3()) * 0.5;
-    let all = boxes.iter().fold(Aabb::empty(), |all, of| all.union(of));
-    let (low, size) = (all.min.as_dvec3(), all.diagonal().as_dvec3());
+    let centre = |aabb: &Aabb| (aabb.min.as_dvec3() + aabb.max.as_dvec3()) * 0.5;
+    let bounds = boxes.iter().fold(Aabb::empty(), |sum, one| sum.union(one));
+    let (low, size) = (bounds.min.as_dvec3(), bounds.diagonal().as_dvec3());
     // Along an axis without extent every code is 0.
     let scale = DVec3::select(size.cmpgt(DVec3::ZERO), size.recip(), DVec3::ZERO);
-    let code = |of: &Aabb| morton_encode_u128_unorm((centre(of) - low) * scale);
-    let codes = boxes.iter().zip(0..).map(|(of, id)| (code(of), id));
+    let code = |aabb: &Aabb| morton_encode_u128_unorm((centre(aabb) - low) * scale);
+    let codes = boxes.iter().zip(0..).map(|(aabb, id)| (code(aabb), id));
     let mut codes: Vec<(u128, u32)> = codes.collect();
     #[cfg(feature = "rayon")]
     codes.par_sort_unstable();

@@ -22,8 +22,8 @@ pub(super) enum Split {
 /// Builds a tree over at least one box, with at most `most` of them in a leaf. Returns its nodes,
 /// and the numbers of the boxes in the order of the leaves.
 pub(super) fn over_boxes(boxes: &[BvhNode], split: Split, most: u32) -> (Vec<BvhNode>, Vec<u32>) {
-    let centres = boxes.iter().map(|of| {
-        let [low, high] = [of.min, of.max].map(|corner| Vec3::from(corner).as_dvec3());
+    let centres = boxes.iter().map(|node| {
+        let [low, high] = [node.min, node.max].map(|corner| Vec3::from(corner).as_dvec3());
         low + high
     });
     let centres: Vec<DVec3> = centres.collect();
@@ -33,7 +33,7 @@ pub(super) fn over_boxes(boxes: &[BvhNode], split: Split, most: u32) -> (Vec<Bvh
     while let Some((slot, range)) = open.pop() {
         let ids = &mut ids[range.clone()];
         let corners = ids.iter().map(|&id| &boxes[id as usize]);
-        let corners = corners.flat_map(|of| [Vec3::from(of.min), Vec3::from(of.max)]);
+        let corners = corners.flat_map(|node| [Vec3::from(node.min), Vec3::from(node.max)]);
         let (min, max) = bounds(corners).unwrap_or_default();
         let mut node = BvhNode {
             min: min.into(),

@@ -68,7 +68,7 @@ impl Bvh {
 
     /// Builds it by PLOC; `None` where that has nothing to compare, or chains its triangles.
     pub(super) fn by_ploc(triangles: &[Triangle]) -> Option<Self> {
-        let corners = triangles.iter().flat_map(|of| [of.v0, of.v1, of.v2]);
+        let corners = triangles.iter().flat_map(|tri| [tri.v0, tri.v1, tri.v2]);
         let is_measurable = measurable(bounds(corners.map(Vec3::from)));
         let tree = is_measurable.then(|| ploc(triangles)).flatten()?;
         let nodes = tree.nodes.iter().map(|node| BvhNode {

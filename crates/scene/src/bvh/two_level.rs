@@ -143,8 +143,8 @@ impl TwoLevelBvh {
             built.append(tree, order, piece.triangles);
         }
         // Those of triangles that are in no piece yet.
-        let all = built.primitives.len().max(mesh.triangles.len());
-        built.primitives.resize(all, 0);
+        let total = built.primitives.len().max(mesh.triangles.len());
+        built.primitives.resize(total, 0);
         let is_moved = !std::ptr::eq(mesh, at_rest);
         for (piece, given) in pieces.iter().enumerate() {
             let cost = if is_moved || given.copy_of != piece {
@@ -590,12 +590,12 @@ impl Subtree {
 fn merged(trees: BTreeMap<usize, Bvh>, pieces: &[Piece<'_>], most: usize) -> BTreeMap<usize, Bvh> {
     let own = |piece: &Piece<'_>| trees.get(&piece.copy_of).map_or(0, |tree| tree.nodes.len());
     let filled = pieces.iter().filter(|piece| !piece.triangles.is_empty());
-    let (count, all) = filled.fold((0, 0), |(count, all), piece| (count + 1, all + own(piece)));
+    let (count, sum) = filled.fold((0, 0), |(count, sum), piece| (count + 1, sum + own(piece)));
     // A piece's root is a leaf of the top level, which has one node less beside its leaves.
-    if all + count <= most.saturating_add(1) {
+    if sum + count <= most.saturating_add(1) {
         return trees;
     }
-    let share = (most + 1).saturating_sub(2 * count) as f64 / (all - count).max(1) as f64;
+    let share = (most + 1).saturating_sub(2 * count) as f64 / (sum - count).max(1) as f64;
     let merged = trees.into_iter().map(|(piece, tree)| {
         let most = match count {
             1 => most,

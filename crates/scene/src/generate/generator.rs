@@ -123,9 +123,9 @@ mod tests {
 
     #[test]
     fn what_is_no_mesh_or_no_size_is_told_what_there_is() {
-        let told = |text: &str| text.parse::<Generator>().unwrap_err();
+        let refusal = |text: &str| text.parse::<Generator>().unwrap_err();
         for text in ["", "parc", "city", "village:10000", "park:10000"] {
-            assert!(told(text).contains("city:TRIANGLES"), "{text}");
+            assert!(refusal(text).contains("city:TRIANGLES"), "{text}");
         }
         for text in [
             "city:9999",
@@ -134,7 +134,7 @@ mod tests {
             "city:-1",
             "city:1e6",
         ] {
-            assert!(told(text).ends_with("from 10000 to 10000000"), "{text}");
+            assert!(refusal(text).ends_with("from 10000 to 10000000"), "{text}");
         }
         assert!(Generator::Park.with_triangles("10000").is_err());
     }

@@ -54,18 +54,19 @@ pub(super) struct Bytes<'a> {
 impl Animations {
     pub fn read(root: &Value) -> Self {
         let list: Vec<Value> = items(root, "animations").cloned().collect();
-        let samplers = list.iter().flat_map(|of| items(of, "samplers"));
-        let named = samplers.flat_map(|of| [index(of.get("input")), index(of.get("output"))]);
+        let samplers = list.iter().flat_map(|clip| items(clip, "samplers"));
+        let named = samplers
+            .flat_map(|sampler| [index(sampler.get("input")), index(sampler.get("output"))]);
         let picked = |list: &str, numbers: Vec<usize>| -> BTreeMap<usize, Value> {
-            let all = root.get(list).and_then(Value::as_array);
-            let item = |number: usize| Some((number, all?.get(number)?.clone()));
+            let entries = root.get(list).and_then(Value::as_array);
+            let item = |number: usize| Some((number, entries?.get(number)?.clone()));
             numbers.into_iter().filter_map(item).collect()
         };
         let accessors = picked("accessors", named.flatten().collect());
         let views = accessors.values();
-        let views = views.filter_map(|of| index(of.get("bufferView")));
+        let views = views.filter_map(|accessor| index(accessor.get("bufferView")));
         let views = picked("bufferViews", views.collect());
-        let buffers = views.values().filter_map(|of| index(of.get("buffer")));
+        let buffers = views.values().filter_map(|view| index(view.get("buffer")));
         let buffers = picked("buffers", buffers.collect());
         Self {
             list,
@@ -77,7 +78,7 @@ impl Animations {
 
     /// Nodes that any of them moves.
     pub fn nodes(&self) -> HashSet<usize> {
-        let channels = self.list.iter().flat_map(|of| items(of, "channels"));
+        let channels = self.list.iter().flat_map(|clip| items(clip, "channels"));
         channels
             .filter_map(|channel| index(channel.pointer("/target/node")))
             .collect()
@@ -217,13 +218,13 @@ impl Animations {
             .get(&view)
             .ok_or("its buffer view is not there")?;
         let packed = view.get("extensions").and_then(Value::as_object);
-        let mut packed = packed.into_iter().flat_map(|of| of.keys());
+        let mut packed = packed.into_iter().flat_map(|extensions| extensions.keys());
         if let Some(name) = packed.find(|name| extensions::kind(name) == Kind::Packed) {
             return Err(extensions::packed(name));
         }
         let buffer = index(view.get("buffer")).ok_or("its buffer view has no buffer")?;
         let data = self.bytes(buffer, bytes)?;
-        let field = |of: &Value, name: &str| index(of.get(name)).unwrap_or(0);
+        let field = |object: &Value, name: &str| index(object.get(name)).unwrap_or(0);
         let item = width * ty.size();
         let stride = Some(field(view, "byteStride")).filter(|&stride| stride >= item);
         let stride = stride.unwrap_or(item);
@@ -247,10 +248,10 @@ impl Animations {
 
     /// The bytes of a buffer: those that the mesh needs are there, others are read.
     fn bytes(&self, buffer: usize, bytes: Bytes<'_>) -> Result<Arc<[u8]>, String> {
-        if let Some(read) = bytes.read.bytes.get(buffer).filter(|of| !of.is_empty()) {
+        if let Some(read) = bytes.read.bytes.get(buffer).filter(|data| !data.is_empty()) {
             return Ok(read.clone());
         }
-        let uri = self.buffers.get(&buffer).and_then(|of| of.get("uri"));
+        let uri = self.buffers.get(&buffer).and_then(|entry| entry.get("uri"));
         let uri = uri.and_then(Value::as_str);
         let uri = uri.ok_or_else(|| format!("buffer {buffer} holds no bytes"))?;
         if let Some(decoded) = data_uri(uri) {

@@ -38,8 +38,12 @@ pub(super) fn each(root: &mut Value, list: &str, mut with: impl FnMut(usize, &mu
 }
 
 /// The items of a list, if it is there.
-pub(super) fn items<'v>(of: &'v Value, list: &str) -> impl Iterator<Item = &'v Value> + use<'v> {
-    of.get(list).and_then(Value::as_array).into_iter().flatten()
+pub(super) fn items<'v>(owner: &'v Value, list: &str) -> impl Iterator<Item = &'v Value> + use<'v> {
+    owner
+        .get(list)
+        .and_then(Value::as_array)
+        .into_iter()
+        .flatten()
 }
 
 pub(super) fn index(value: Option<&Value>) -> Option<usize> {
@@ -47,14 +51,14 @@ pub(super) fn index(value: Option<&Value>) -> Option<usize> {
 }
 
 /// Takes the extensions off an object, and says which are not followed.
-pub(super) fn taken(fields: &mut Fields, of: &str, beside: &mut Beside) -> Fields {
+pub(super) fn taken(fields: &mut Fields, owners: &str, beside: &mut Beside) -> Fields {
     fields.remove("extras");
     let Some(Value::Object(taken)) = fields.remove("extensions") else {
         return Fields::new();
     };
     for name in taken.keys() {
         if extensions::kind(name) == Kind::Unknown {
-            let text = format!("{} of {of} is not followed", beginning(name));
+            let text = format!("{} of {owners} is not followed", beginning(name));
             beside.remarks.insert(text);
         }
     }

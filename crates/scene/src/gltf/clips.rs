@@ -86,7 +86,7 @@ impl Clip {
         for (view, keys) in &cameras {
             for &number in &of_lights {
                 let light = number.and_then(|number| lights.get(number));
-                let moved = self.lights.iter().find(|(of, _)| Some(*of) == number);
+                let moved = self.lights.iter().find(|(index, _)| Some(*index) == number);
                 let mut name = self.name.clone();
                 if several_cameras {
                     name += &format!("_{}", view.name);
@@ -152,15 +152,15 @@ pub(super) fn clips(source: &Source<'_>, placed: &Placed<'_>) -> (Vec<Clip>, Vec
         };
         let fallback = format!("animation_{number}");
         let plain = Names::plain(name.unwrap_or_default(), &fallback);
-        let mut said = Vec::new();
+        let mut notes = Vec::new();
         let clip = animations
             .tracks(animation, source.bytes, &|node| source.place(node))
             .and_then(|(tracks, more)| {
-                said.extend(more);
-                Poses::new(source, &tracks).clip(source, placed, &mut said)
+                notes.extend(more);
+                Poses::new(source, &tracks).clip(source, placed, &mut notes)
             });
-        let said = said.into_iter().map(|text| format!("{place}: {text}"));
-        remarks.extend(said);
+        let notes = notes.into_iter().map(|text| format!("{place}: {text}"));
+        remarks.extend(notes);
         match clip {
             Ok(clip) => {
                 let name = names.unlike(&plain);
@@ -253,7 +253,7 @@ impl<'a> Poses<'a> {
         &self,
         source: &Source<'_>,
         placed: &Placed<'_>,
-        said: &mut Vec<String>,
+        notes: &mut Vec<String>,
     ) -> Result<Clip, String> {
         if self.ways.is_empty() {
             return Err("it moves no node of the scene".to_owned());
@@ -281,7 +281,7 @@ impl<'a> Poses<'a> {
         };
         for (view, &node) in placed.views.iter().enumerate() {
             if let Some(worlds) = self.frames(node, frames) {
-                let (up, keys) = camera_keys(&worlds, &source.place(node), said);
+                let (up, keys) = camera_keys(&worlds, &source.place(node), notes);
                 clip.cameras.push((view, up, keys));
             }
         }
@@ -291,14 +291,14 @@ impl<'a> Poses<'a> {
                 clip.lights.push((light, keys));
             }
         }
-        self.moves(source, frames, &mut clip, said);
+        self.moves(source, frames, &mut clip, notes);
         if clip.cameras.is_empty() && clip.lights.is_empty() && clip.moves.is_empty() {
             return Err("it moves no camera, no light and no mesh".to_owned());
         }
         Ok(clip)
     }
 
-    fn moves(&self, source: &Source<'_>, frames: u32, clip: &mut Clip, said: &mut Vec<String>) {
+    fn moves(&self, source: &Source<'_>, frames: u32, clip: &mut Clip, notes: &mut Vec<String>) {
         let names: Vec<String> = source.nodes.seen.iter().filter_map(part).collect();
         for node in &source.nodes.seen {
             let (number, Some(part)) = (node.index(), part(node)) else {
@@ -308,7 +308,7 @@ impl<'a> Poses<'a> {
             if let Some(skin) = node.skin() {
                 let mut joints = skin.joints().map(|joint| joint.index());
                 if joints.any(|joint| self.ways.contains_key(&joint)) {
-                    said.push(format!(
+                    notes.push(format!(
                         "{place}: its skin moves, which is not followed: it keeps its pose"
                     ));
                 }
@@ -325,14 +325,14 @@ impl<'a> Poses<'a> {
             let from_rest = rest.unwrap_or_default().inverse();
             let maps = worlds.iter().map(|world| *world * from_rest);
             let Some(keys) = maps.enumerate().map(pose_key).collect::<Option<Vec<_>>>() else {
-                said.push(format!(
+                notes.push(format!(
                     "{place}: its size or shape changes, and only rigid motions are followed: it \
                      stands still"
                 ));
                 continue;
             };
             if names.iter().filter(|name| **name == part).count() > 1 {
-                said.push(format!(
+                notes.push(format!(
                     "{place}: another node has that name, so that it cannot move by itself: it \
                      stands still, rename it"
                 ));
@@ -351,7 +351,7 @@ fn pose_key((frame, map): (usize, DMat4)) -> Option<PoseKey> {
     let error = error
         .to_cols_array()
         .into_iter()
-        .fold(0.0, |most: f64, of| most.max(of.abs()));
+        .fold(0.0, |most: f64, entry| most.max(entry.abs()));
     (error < NEARLY_RIGID && linear.determinant() > 0.0).then(|| PoseKey {
         at: at(frame),
         translation: map.w_axis.truncate(),
@@ -364,7 +364,7 @@ fn at(frame: usize) -> f64 {
 }
 
 /// The way of a camera, with the direction up that suits all of it best.
-fn camera_keys(worlds: &[DMat4], place: &str, said: &mut Vec<String>) -> (DVec3, Vec<CameraKey>) {
+fn camera_keys(worlds: &[DMat4], place: &str, notes: &mut Vec<String>) -> (DVec3, Vec<CameraKey>) {
     let keys = worlds.iter().enumerate().map(|(frame, world)| CameraKey {
         at: at(frame),
         eye: world.w_axis.truncate(),
@@ -394,7 +394,7 @@ fn camera_keys(worlds: &[DMat4], place: &str, said: &mut Vec<String>) -> (DVec3,
         first
     };
     if roll(up) > NEARLY_UPRIGHT {
-        said.push(format!(
+        notes.push(format!(
             "{place}: its camera rolls by up to {:.0} degrees, which paths do not: up stays \
              {}",
             roll(up),

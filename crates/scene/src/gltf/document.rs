@@ -46,8 +46,8 @@ pub(super) fn parse(bytes: &[u8], materials: MaterialUse) -> Result<Parsed, Faul
     let beside = prepare(&mut value, materials)?;
     let root: Root = deserialize::from_value(value).map_err(|why| {
         // The text of the file tells the line, where it has the same mistake.
-        let told: Result<Root, _> = deserialize::from_str(&text);
-        in_json(&told.err().unwrap_or(why))
+        let reread: Result<Root, _> = deserialize::from_str(&text);
+        in_json(&reread.err().unwrap_or(why))
     })?;
     check(&root)?;
     let document = caught("gltf", || Document::from_json(root));
@@ -72,13 +72,13 @@ fn in_json(why: &serde_json::Error) -> Fault {
 /// Refuses other versions than 2; in 1.0 lists were objects.
 fn check_version(root: &mut Value) -> Result<(), Fault> {
     let fail = |version: &str| Err(("asset".to_owned(), of_another_version(version)));
-    let said = |field| match root.pointer(field) {
+    let value_at = |field| match root.pointer(field) {
         Some(Value::String(version)) => Some(version.clone()),
         Some(Value::Number(version)) => Some(version.to_string()),
         _ => None,
     };
     let is_two = |version: &String| version == "2" || version.starts_with("2.");
-    match (said("/asset/version"), said("/asset/minVersion")) {
+    match (value_at("/asset/version"), value_at("/asset/minVersion")) {
         (Some(version), _) if !is_two(&version) => return fail(&version),
         (_, Some(least)) if least != "2.0" => return fail(&least),
         (None, _)

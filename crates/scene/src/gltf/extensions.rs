@@ -97,14 +97,14 @@ pub(super) fn is_of_looks(root: &Value, name: &str) -> bool {
         "textures",
     ];
     let mut lists = root.as_object().into_iter().flatten();
-    let (mut found, mut elsewhere) = (false, false);
+    let (mut is_used, mut elsewhere) = (false, false);
     for (list, value) in &mut lists {
         if mentions(value, name) {
-            found = true;
+            is_used = true;
             elsewhere |= !LOOKS.contains(&list.as_str());
         }
     }
-    found && !elsewhere
+    is_used && !elsewhere
 }
 
 /// True if an `extensions` object in it has that name. Nesting is bounded by the parser.

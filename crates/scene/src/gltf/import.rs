@@ -218,9 +218,9 @@ impl<'a> Import<'a> {
             let placing = self.placing(node, &mesh, nodes);
             let placing = placing.map_err(|why| (format!("node {}", node.index()), why))?;
             if nodes.moved.contains(&node.index()) {
-                let others = self.builder.positions.weld_to(Known::default());
+                let shared_table = self.builder.positions.weld_to(Known::default());
                 self.read_mesh(&mesh, &placing)?;
-                self.builder.positions.weld_to(others);
+                self.builder.positions.weld_to(shared_table);
             } else {
                 self.read_mesh(&mesh, &placing)?;
             }
@@ -238,8 +238,8 @@ impl<'a> Import<'a> {
             .skin()
             .map(|skin| pose::joints(&skin, nodes, self.buffers));
         let instances = match self.beside.instances.get(&node.index()) {
-            Some(of) => {
-                let (instances, is_none) = pose::instances(*of, self.document, self.buffers)?;
+            Some(numbers) => {
+                let (instances, is_none) = pose::instances(*numbers, self.document, self.buffers)?;
                 if is_none {
                     let text = format!("node {}: an instance's {NO_TURN}", node.index());
                     self.builder.report.remark(text);
@@ -422,15 +422,17 @@ impl<'a> Import<'a> {
             .ok_or_else(|| "it has no POSITION, so nothing can be drawn of it".to_owned())?;
         let positions = vectors(&positions, self.buffers)?;
         let normals = primitive.get(&Semantic::Normals);
-        let normals = normals.map(|of| vectors(&of, self.buffers)).transpose()?;
+        let normals = normals
+            .map(|accessor| vectors(&accessor, self.buffers))
+            .transpose()?;
         let uvs = primitive.get(&Semantic::TexCoords(material.uv_set));
         let uvs = uvs
-            .map(|of| accessor::floats::<2>(&of, self.buffers))
+            .map(|accessor| accessor::floats::<2>(&accessor, self.buffers))
             .transpose()?;
         let colours = primitive
             .get(&Semantic::Colors(0))
             .filter(|_| material.cut.is_some());
-        let colours = colours.filter(|of| of.dimensions().multiplicity() == 4);
+        let colours = colours.filter(|accessor| accessor.dimensions().multiplicity() == 4);
         let alphas = match colours {
             Some(accessor) => {
                 let colours = accessor::floats::<4>(&accessor, self.buffers)?;
@@ -443,7 +445,7 @@ impl<'a> Import<'a> {
                 .map_err(|why| accessor::named(&accessor, why))?,
             None => (0..positions.len() as u32).collect(),
         };
-        let restart = match primitive.indices().map(|of| of.data_type()) {
+        let restart = match primitive.indices().map(|accessor| accessor.data_type()) {
             Some(DataType::U8) => u8::MAX.into(),
             Some(DataType::U16) => u16::MAX.into(),
             _ => u32::MAX,
@@ -473,7 +475,7 @@ impl<'a> Import<'a> {
             Mode::LineStrip => report.lines += indices.len().saturating_sub(1),
             Mode::Triangles => {
                 let triangles = indices.chunks_exact(3);
-                return triangles.map(|of| [of[0], of[1], of[2]]).collect();
+                return triangles.map(|tri| [tri[0], tri[1], tri[2]]).collect();
             }
             Mode::TriangleStrip => return runs.flat_map(strip).collect(),
             Mode::TriangleFan => return runs.flat_map(fan).collect(),
@@ -485,13 +487,13 @@ impl<'a> Import<'a> {
 /// Every second triangle of a strip is wound the other way.
 fn strip(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let triangles = indices.windows(3).enumerate();
-    triangles.map(|(at, of)| match at % 2 {
-        0 => [of[0], of[1], of[2]],
-        _ => [of[1], of[0], of[2]],
+    triangles.map(|(at, corners)| match at % 2 {
+        0 => [corners[0], corners[1], corners[2]],
+        _ => [corners[1], corners[0], corners[2]],
     })
 }
 
 fn fan(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let rim = indices.get(1..).unwrap_or_default();
-    rim.windows(2).map(|of| [of[0], of[1], indices[0]])
+    rim.windows(2).map(|edge| [edge[0], edge[1], indices[0]])
 }

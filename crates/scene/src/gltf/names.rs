@@ -64,7 +64,7 @@ mod tests {
         }
         assert_eq!(Names::plain(&"x".repeat(99), "").len(), LONGEST);
         let mut names = Names::default();
-        let all = ["a", "b", "a", "a_2", "a"].map(|name| names.unlike(name));
-        assert_eq!(all, ["a", "b", "a_2", "a_2_2", "a_3"]);
+        let distinct = ["a", "b", "a", "a_2", "a"].map(|name| names.unlike(name));
+        assert_eq!(distinct, ["a", "b", "a_2", "a_2_2", "a_3"]);
     }
 }

@@ -46,7 +46,7 @@ impl<'a> Nodes<'a> {
         // A joint may stand outside of the scene.
         let joints = document
             .skins()
-            .flat_map(|skin| skin.joints().map(|of| of.index()));
+            .flat_map(|skin| skin.joints().map(|joint| joint.index()));
         let mut joints = joints.peekable();
         if joints.any(|joint| !nodes.worlds.contains_key(&joint)) {
             let mut has_parent = vec![false; document.nodes().len()];
@@ -112,7 +112,7 @@ pub(super) fn local(node: &Node<'_>) -> DMat4 {
 /// Translation, rotation and scale of a node.
 pub(super) fn parts(node: &Node<'_>) -> (DVec3, DQuat, DVec3) {
     let (shift, turn, scale) = node.transform().decomposed();
-    let [shift, scale] = [shift, scale].map(|of| DVec3::from(of.map(f64::from)));
+    let [shift, scale] = [shift, scale].map(|vector| DVec3::from(vector.map(f64::from)));
     let turn = DQuat::from_array(turn.map(f64::from));
     (shift, unit(turn).unwrap_or_default(), scale)
 }

@@ -59,7 +59,7 @@ impl Placements {
         Self {
             animations: Animations::read(root),
             cameras: items(root, "cameras").cloned().collect(),
-            lights: lights.map_or_else(Vec::new, |of| items(of, "lights").cloned().collect()),
+            lights: lights.map_or_else(Vec::new, |ext| items(ext, "lights").cloned().collect()),
             nodes,
         }
     }

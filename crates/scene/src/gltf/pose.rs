@@ -24,7 +24,7 @@ pub(super) fn vectors(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<
     let read = accessor::floats::<3>(accessor, buffers)?;
     Ok(read
         .into_iter()
-        .map(|of| Vec3::from(of).as_dvec3())
+        .map(|vector| Vec3::from(vector).as_dvec3())
         .collect())
 }
 
@@ -42,7 +42,7 @@ impl Vertices {
         let targets = primitive.morph_targets().zip(weights);
         for (target, &weight) in targets.filter(|(_, weight)| **weight != 0.0) {
             let normals = self.normals.as_mut().zip(target.normals());
-            let positions = target.positions().map(|of| (&mut self.positions, of));
+            let positions = target.positions().map(|morph| (&mut self.positions, morph));
             for (vertices, accessor) in positions.into_iter().chain(normals) {
                 let moved = vectors(&accessor, buffers)?;
                 if moved.len() < vertices.len() {
@@ -86,7 +86,7 @@ impl Vertices {
             let blend = blend(vertex, &sets, joints)?;
             self.positions[vertex] = blend.transform_point3(self.positions[vertex]);
             let linear = DMat3::from_mat4(blend);
-            if let Some(normal) = self.normals.as_mut().and_then(|of| of.get_mut(vertex)) {
+            if let Some(normal) = self.normals.as_mut().and_then(|list| list.get_mut(vertex)) {
                 *normal = of_normals(linear) * *normal;
             }
             self.turned.push(linear.determinant() < 0.0);
@@ -174,7 +174,7 @@ pub(super) fn joints(
 /// # Errors
 /// Their fault.
 pub(super) fn instances(
-    of: Instances,
+    accessors: Instances,
     document: &Document,
     buffers: &Buffers,
 ) -> Result<(Vec<DMat4>, bool), String> {
@@ -186,11 +186,11 @@ pub(super) fn instances(
         let read = number.map(|number| vectors(&there(number)?, buffers));
         read.transpose()
     };
-    let [translation, rotation, scale] = of;
+    let [translation, rotation, scale] = accessors;
     let (translation, scale) = (read(translation)?, read(scale)?);
     let rotation = rotation.map(|number| accessor::floats::<4>(&there(number)?, buffers));
     let unit = |turn: [f32; 4]| unit(DQuat::from_array(turn.map(f64::from)));
-    let turns = |of: Vec<[f32; 4]>| of.into_iter().map(unit).collect::<Vec<_>>();
+    let turns = |rotations: Vec<[f32; 4]>| rotations.into_iter().map(unit).collect::<Vec<_>>();
     let rotation = rotation.transpose()?.map(turns);
     let is_none = rotation.iter().flatten().any(Option::is_none);
     let counts = [
@@ -205,12 +205,12 @@ pub(super) fn instances(
     }
     let at = |item: usize| {
         DMat4::from_scale_rotation_translation(
-            scale.as_ref().map_or(DVec3::ONE, |of| of[item]),
+            scale.as_ref().map_or(DVec3::ONE, |list| list[item]),
             rotation
                 .as_ref()
-                .and_then(|of| of[item])
+                .and_then(|list| list[item])
                 .unwrap_or_default(),
-            translation.as_ref().map_or(DVec3::ZERO, |of| of[item]),
+            translation.as_ref().map_or(DVec3::ZERO, |list| list[item]),
         )
     };
     Ok(((0..count).map(at).collect(), is_none))

@@ -80,7 +80,7 @@ fn required(root: &Value, beside: &mut Beside) -> Result<(), Fault> {
 fn nodes(root: &mut Value, beside: &mut Beside) {
     each(root, "nodes", |number, node| {
         node.remove("camera");
-        let is_none = |turn: &Vec<Value>| turn.iter().all(|of| of.as_f64() == Some(0.0));
+        let is_none = |turn: &Vec<Value>| turn.iter().all(|part| part.as_f64() == Some(0.0));
         let turn = node.get("rotation").and_then(Value::as_array);
         if turn.is_some_and(is_none) {
             let name = node.get("name").and_then(Value::as_str).map(beginning);
@@ -90,13 +90,13 @@ fn nodes(root: &mut Value, beside: &mut Beside) {
                 .insert(format!("node {number}{name}: its {NO_TURN}"));
         }
         let extensions = taken(node, "nodes", beside);
-        let visible = |of: &Value| of.get("visible").and_then(Value::as_bool);
+        let visible = |extension: &Value| extension.get("visible").and_then(Value::as_bool);
         if extensions.get("KHR_node_visibility").and_then(visible) == Some(false) {
             beside.hidden.insert(number);
         }
         let attributes = extensions
             .get("EXT_mesh_gpu_instancing")
-            .and_then(|of| of.get("attributes"));
+            .and_then(|extension| extension.get("attributes"));
         if let Some(attributes) = attributes {
             let accessor = |name| index(attributes.get(name));
             let instances: Instances = ["TRANSLATION", "ROTATION", "SCALE"].map(accessor);
@@ -161,7 +161,7 @@ fn meshes(root: &mut Value, beside: &mut Beside, materials: MaterialUse) -> Resu
                 }
             }
             let attributes = primitive.get("attributes").and_then(Value::as_object);
-            let attributes = attributes.into_iter().flat_map(|of| of.values());
+            let attributes = attributes.into_iter().flat_map(|fields| fields.values());
             let mut accessors = attributes.chain(primitive.get("indices"));
             for name in extensions.keys() {
                 let is_packed = extensions::kind(name) == Kind::Packed;

@@ -20,20 +20,20 @@ pub(super) fn materials(root: &mut Value, beside: &mut Beside) {
             read.contains(&field.as_str())
         });
         let mode = material.get("alphaMode").cloned();
-        if mode.is_some_and(|mode| !["BLEND", "MASK", "OPAQUE"].iter().any(|of| mode == *of)) {
+        if mode.is_some_and(|mode| !["BLEND", "MASK", "OPAQUE"].iter().any(|name| mode == *name)) {
             let mode = material.remove("alphaMode").unwrap_or_default();
             let text = format!("alphaMode {mode} passed over: glTF has no such one; opaque");
             beside.remarks.insert(text);
         }
         let mut base = Fields::new();
-        if let Some(factor) = pbr.get("baseColorFactor").filter(|of| of.is_array()) {
+        if let Some(factor) = pbr.get("baseColorFactor").filter(|rgba| rgba.is_array()) {
             base.insert("baseColorFactor".into(), factor.clone());
         }
         if let Some(Value::Object(texture)) = pbr.get("baseColorTexture") {
             let mut texture = texture.clone();
             texture.remove("extras");
-            if let Some(Value::Object(of)) = texture.get_mut("extensions") {
-                of.retain(|name, _| name == "KHR_texture_transform");
+            if let Some(Value::Object(extensions)) = texture.get_mut("extensions") {
+                extensions.retain(|name, _| name == "KHR_texture_transform");
             }
             base.insert("baseColorTexture".into(), texture.into());
         }
@@ -45,7 +45,7 @@ pub(super) fn materials(root: &mut Value, beside: &mut Beside) {
 fn used_textures(root: &Value) -> HashSet<usize> {
     let texture = "/pbrMetallicRoughness/baseColorTexture/index";
     items(root, "materials")
-        .filter_map(|of| index(of.pointer(texture)))
+        .filter_map(|material| index(material.pointer(texture)))
         .collect()
 }
 

@@ -30,8 +30,8 @@ fn used_accessors(root: &Value, beside: &Beside) -> HashSet<usize> {
     let mut used = HashSet::new();
 
     for primitive in items(root, "meshes").flat_map(|mesh| items(mesh, "primitives")) {
-        let fields = |of: Option<&Value>| -> Vec<usize> {
-            let fields = of.and_then(Value::as_object).into_iter().flatten();
+        let fields = |object: Option<&Value>| -> Vec<usize> {
+            let fields = object.and_then(Value::as_object).into_iter().flatten();
             fields.filter_map(|(_, value)| index(Some(value))).collect()
         };
         used.extend(index(primitive.get("indices")));
@@ -63,8 +63,8 @@ fn accessor_list(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) -
         accessor.insert("max".into(), json!([0, 0, 0]));
         views.extend(index(accessor.get("bufferView")));
         let sparse = accessor.get("sparse");
-        for of in ["/indices/bufferView", "/values/bufferView"] {
-            views.extend(sparse.and_then(|sparse| index(sparse.pointer(of))));
+        for pointer in ["/indices/bufferView", "/values/bufferView"] {
+            views.extend(sparse.and_then(|sparse| index(sparse.pointer(pointer))));
         }
         if sparse.is_none() && !accessor.contains_key("bufferView") {
             needs_nothing = true;
@@ -98,9 +98,11 @@ fn buffer_views(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) ->
     each(root, "buffers", |number, buffer| {
         buffer.remove("extras");
         let has_bytes = buffer.contains_key("uri") || number == 0;
-        let stands_in = buffer.remove("extensions").is_some_and(|of| {
-            let marked = |of: &Value| of.get("fallback") == Some(&true.into());
-            of.as_object().is_some_and(|of| of.values().any(marked))
+        let stands_in = buffer.remove("extensions").is_some_and(|extensions| {
+            let marked = |extension: &Value| extension.get("fallback") == Some(&true.into());
+            extensions
+                .as_object()
+                .is_some_and(|fields| fields.values().any(marked))
         });
         empty.insert(number, stands_in || !has_bytes);
     });
@@ -108,7 +110,9 @@ fn buffer_views(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) ->
     each(root, "bufferViews", |number, view| {
         let extensions = taken(view, "buffer views", beside);
         view.remove("target");
-        if let Some(stride) = index(view.get("byteStride")).filter(|of| !(4..=252).contains(of)) {
+        if let Some(stride) =
+            index(view.get("byteStride")).filter(|stride| !(4..=252).contains(stride))
+        {
             view.remove("byteStride");
             if stride > 0 {
                 beside.strides.insert(number, stride);

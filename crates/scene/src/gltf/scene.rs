@@ -132,16 +132,16 @@ impl Placed<'_> {
     }
 
     /// Its name, else that of the camera or light, else a number.
-    fn name(&self, what: &str, of: &Value) -> String {
-        let own = of.get("name").and_then(Value::as_str);
+    fn name(&self, what: &str, object: &Value) -> String {
+        let own = object.get("name").and_then(Value::as_str);
         let name = self.name.or(own).unwrap_or_default();
         Names::plain(name, &format!("{what}_{}", self.node))
     }
 }
 
 /// A number of the file; `None` if it is not there or is none.
-fn number(of: &Value, field: &str) -> Option<f64> {
-    of.get(field).and_then(Value::as_f64)
+fn number(object: &Value, field: &str) -> Option<f64> {
+    object.get(field).and_then(Value::as_f64)
 }
 
 impl Reader<'_> {
@@ -149,10 +149,10 @@ impl Reader<'_> {
         self.scene.remarks.push(text);
     }
 
-    fn tell_unplaced(&mut self, what: &str, all: &[Value], placed: &[usize]) {
-        for (number, of) in all.iter().enumerate() {
+    fn tell_unplaced(&mut self, what: &str, entries: &[Value], placed: &[usize]) {
+        for (number, entry) in entries.iter().enumerate() {
             if !placed.contains(&number) {
-                let name = of.get("name").and_then(Value::as_str);
+                let name = entry.get("name").and_then(Value::as_str);
                 let name = name.map_or_else(String::new, |name| format!(" {:?}", beginning(name)));
                 self.remark(format!(
                     "{what} {number}{name} is left out: no node of the scene places it"
@@ -194,8 +194,8 @@ impl Reader<'_> {
                     .to_owned());
             }
             other => {
-                let of = other.map_or_else(|| "no type".to_owned(), |of| format!("type {of:?}"));
-                return Err(format!("it has {of}, expected perspective"));
+                let ty = other.map_or_else(|| "no type".to_owned(), |ty| format!("type {ty:?}"));
+                return Err(format!("it has {ty}, expected perspective"));
             }
         }
         let lens = camera.get("perspective").unwrap_or(&Value::Null);
@@ -278,7 +278,7 @@ impl Reader<'_> {
             Some("spot") => {
                 let cone = light
                     .get("spot")
-                    .and_then(|of| number(of, "outerConeAngle"));
+                    .and_then(|spot| number(spot, "outerConeAngle"));
                 let cone = cone.unwrap_or(std::f64::consts::FRAC_PI_4);
                 // A right angle that was rounded to f32 is one.
                 if !(cone > 0.0 && cone < std::f64::consts::FRAC_PI_2 + 1e-6) {
@@ -309,8 +309,8 @@ impl Reader<'_> {
             }
             .into(),
             other => {
-                let of = other.map_or_else(|| "no type".to_owned(), |of| format!("type {of:?}"));
-                return Err(format!("it has {of}, expected directional, spot or point"));
+                let ty = other.map_or_else(|| "no type".to_owned(), |ty| format!("type {ty:?}"));
+                return Err(format!("it has {ty}, expected directional, spot or point"));
             }
         };
         let mend = |why| format!("{why} (mend light {index})");
@@ -346,7 +346,7 @@ fn check_power(light: &Value) -> Result<(), String> {
         )?;
     }
     let channels = light.get("color").and_then(Value::as_array);
-    let is_black = |channels: &Vec<Value>| channels.iter().all(|of| of.as_f64() == Some(0.0));
+    let is_black = |channels: &Vec<Value>| channels.iter().all(|part| part.as_f64() == Some(0.0));
     if channels.is_some_and(is_black) {
         return Err("its color is black, it lights nothing".to_owned());
     }

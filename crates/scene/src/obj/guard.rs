@@ -275,9 +275,9 @@ impl<'a> Guard<'a> {
             "vt" => self.above.uvs += 1,
             "usemtl" if self.with_materials => {
                 let name = rest.trim();
-                let known = self.materials.iter().position(|other| other == name);
-                self.material = known.unwrap_or(self.materials.len()) as u32;
-                if known.is_none() {
+                let index = self.materials.iter().position(|other| other == name);
+                self.material = index.unwrap_or(self.materials.len()) as u32;
+                if index.is_none() {
                     self.materials.push(name.to_owned());
                 }
             }
@@ -395,19 +395,19 @@ impl<'a> Guard<'a> {
         if words.next().is_some() {
             return Err(not_a_corner());
         }
-        let find = |word: &str, of: fn(&Counts) -> usize| {
-            resolve(word, of(&self.above), of(&self.total)).ok_or_else(not_a_corner)
+        let find = |word: &str, count: fn(&Counts) -> usize| {
+            resolve(word, count(&self.above), count(&self.total)).ok_or_else(not_a_corner)
         };
         let written = |word: Option<&'t str>| word.filter(|word| !word.is_empty());
-        let vertex = find(vertex, |of| of.vertices)?
+        let vertex = find(vertex, |counts| counts.vertices)?
             .map_err(|(written, available)| FaceProblem::NoSuchVertex { written, available })?;
-        let normal = written(normal).map(|word| find(word, |of| of.normals));
-        let normal = normal.transpose()?.map(|found| found.map_err(drop));
+        let normal = written(normal).map(|word| find(word, |counts| counts.normals));
+        let normal = normal.transpose()?.map(|index| index.map_err(drop));
         // Without a file of materials nothing is looked up by them.
         let uv = written(uv).filter(|_| self.makes_masks || !self.libraries.is_empty());
-        let uv = uv.map(|word| find(word, |of| of.uvs)).transpose()?;
+        let uv = uv.map(|word| find(word, |counts| counts.uvs)).transpose()?;
         let absent = |(written, available)| FaceProblem::NoSuchUv { written, available };
-        let uv = uv.map(|found| found.map_err(absent));
+        let uv = uv.map(|index| index.map_err(absent));
         Ok(Named { vertex, normal, uv })
     }
 
@@ -441,8 +441,8 @@ fn resolve(written: &str, above: usize, total: usize) -> Option<Result<usize, (S
         Ok(index) => Some(index),
         Err(_) => None,
     };
-    let found = index.filter(|index| (1..=most).contains(index));
-    Some(found.ok_or_else(|| (written.to_owned(), most)))
+    let valid = index.filter(|index| (1..=most).contains(index));
+    Some(valid.ok_or_else(|| (written.to_owned(), most)))
 }
 
 impl Read for Guard<'_> {

@@ -26,12 +26,12 @@ pub(super) fn import(
     options: &ObjOptions,
     path: &Path,
 ) -> Result<(Mesh, ImportReport), SceneError> {
-    let found = mtl::materials(guard, options, path)?;
+    let materials = mtl::materials(guard, options, path)?;
     let mut import = Import {
         guard,
         options,
         path,
-        found,
+        found: materials,
         builder: MeshBuilder::default(),
         uncut: Faults::default(),
     };

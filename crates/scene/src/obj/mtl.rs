@@ -79,14 +79,14 @@ pub(super) fn materials(
         found: Found::default(),
         masks: HashMap::new(),
     };
-    let (known, unread) = reading.libraries(guard);
+    let (by_name, unread) = reading.libraries(guard);
     let mut is_used = vec![false; guard.materials.len()];
     for face in &guard.faces {
         is_used[face.material as usize] = true;
     }
     // The first stands for none.
     let used = guard.materials.iter().zip(is_used).skip(1);
-    let mut unknown = used.filter(|(name, is_used)| *is_used && !known.contains_key(*name));
+    let mut unknown = used.filter(|(name, is_used)| *is_used && !by_name.contains_key(*name));
     match unknown.next() {
         Some((name, _)) if unread.is_empty() => reading.found.remarks.push(format!(
             "material {name:?} is in no .mtl file that the file names: it is white and opaque"
@@ -104,7 +104,7 @@ pub(super) fn materials(
         }
     }
     for name in &guard.materials {
-        let (material, uvs) = match known.get(name) {
+        let (material, uvs) = match by_name.get(name) {
             Some((file, material)) => reading.material(file, material)?,
             None => (plain(name), UvTransform::IDENTITY),
         };
@@ -162,7 +162,7 @@ impl Reading<'_> {
     /// The materials of all files that `mtllib` lines name, and the files that cannot be read, with
     /// the reason.
     fn libraries(&self, guard: &Guard<'_>) -> (Known, Vec<(String, String)>) {
-        let (mut known, mut unread) = (Known::new(), Vec::new());
+        let (mut by_name, mut unread) = (Known::new(), Vec::new());
         for file in guard
             .libraries
             .iter()
@@ -171,12 +171,12 @@ impl Reading<'_> {
             match MTL_FILE.read(&file) {
                 Ok(bytes) => {
                     let materials = mtl_file::parse(&bytes).into_iter();
-                    known.extend(materials.map(|of| (of.name.clone(), (file.clone(), of))));
+                    by_name.extend(materials.map(|mtl| (mtl.name.clone(), (file.clone(), mtl))));
                 }
                 Err(why) => unread.push((file.display().to_string(), why.to_string())),
             }
         }
-        (known, unread)
+        (by_name, unread)
     }
 
     /// The files that a `mtllib` line names: one with spaces in its name, or several.
@@ -308,11 +308,11 @@ impl Reading<'_> {
 
 /// The number of a texel that counts, from 0 to 1.
 fn level(channel: Channel, own: usize, texel: [u8; 4]) -> f32 {
-    let of = |channel: usize| f32::from(texel[channel]) / 255.0;
+    let fraction = |channel: usize| f32::from(texel[channel]) / 255.0;
     match channel {
-        Channel::Own => of(own),
-        Channel::Of(channel) => of(channel),
-        Channel::Luminance => (of(0) + of(1) + of(2)) / 3.0,
+        Channel::Own => fraction(own),
+        Channel::Of(channel) => fraction(channel),
+        Channel::Luminance => (fraction(0) + fraction(1) + fraction(2)) / 3.0,
     }
 }
 

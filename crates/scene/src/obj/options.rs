@@ -60,8 +60,8 @@ pub enum ObjMaterials {
 }
 
 impl From<MaterialUse> for ObjMaterials {
-    fn from(of: MaterialUse) -> Self {
-        match of {
+    fn from(material_use: MaterialUse) -> Self {
+        match material_use {
             MaterialUse::Ignore => Self::Ignore,
             MaterialUse::Color => Self::Color,
             MaterialUse::All | MaterialUse::BlendMask => Self::All,

@@ -27,7 +27,7 @@ pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec
         .map(|p| (*p - flat[0]).abs().max_element())
         .fold(0.0, f64::max);
     let least = -FLAT * extent * extent;
-    if fan.iter().all(|&of| area(&flat, of) >= least) {
+    if fan.iter().all(|&triangle| area(&flat, triangle) >= least) {
         return Some(fan);
     }
     if count > MOST_CORNERS {
@@ -51,13 +51,13 @@ fn partition(points: &[DVec2], outline: &[usize], least: f64) -> Option<Vec<[usi
     let flat: Vec<DVec2> = outline.iter().map(|&corner| points[corner]).collect();
     let triangles = ears(&flat);
     let whole: f64 = (2..flat.len()).map(|at| area(&flat, [0, at - 1, at])).sum();
-    let areas = triangles.iter().map(|&of| area(&flat, of));
+    let areas = triangles.iter().map(|&triangle| area(&flat, triangle));
     let covered: f64 = areas.clone().map(f64::abs).sum();
     let fits = (covered - whole).abs() <= -least * flat.len() as f64;
     (fits && areas.into_iter().all(|area| area >= least)).then(|| {
         triangles
             .into_iter()
-            .map(|of| of.map(|at| outline[at]))
+            .map(|triangle| triangle.map(|at| outline[at]))
             .collect()
     })
 }

@@ -143,7 +143,7 @@ fn first_word(text: &str) -> Option<&str> {
 }
 
 fn is_word_of(option: &str, word: &str) -> bool {
-    let one_of = |words: &[&str]| words.iter().any(|of| of.eq_ignore_ascii_case(word));
+    let one_of = |words: &[&str]| words.iter().any(|choice| choice.eq_ignore_ascii_case(word));
     match option {
         "-imfchan" => one_of(&["r", "g", "b", "m", "l", "z"]),
         // Kinds of maps of reflections and names of spaces have no bounds.
@@ -201,16 +201,16 @@ mod tests {
 
     #[test]
     fn options_are_followed_or_told() {
-        let of =
+        let parsed =
             TextureStatement::parse("-s 2 -o 0.25 0.5 0 -mm 0.1 0.5 -imfchan g -clamp on a.png");
-        assert_eq!(of.uv.scale, Vec2::new(2.0, 1.0));
-        assert_eq!(of.uv.offset, Vec2::new(0.25, 0.5));
-        assert_eq!((of.range, of.channel), ([0.1, 0.5], Channel::Of(1)));
-        assert_eq!((of.wrap, of.passed_over.len()), (Wrap::Clamp, 0));
-        let of = TextureStatement::parse("-t 0.5 0 0 -imfchan z -cc on -turb 0 1 a.png");
-        assert_eq!(of.passed_over, ["-t", "-imfchan", "-turb"]);
-        let of = TextureStatement::parse("-clamp ON -imfchan R a.png");
-        assert_eq!((of.wrap, of.channel), (Wrap::Clamp, Channel::Of(0)));
+        assert_eq!(parsed.uv.scale, Vec2::new(2.0, 1.0));
+        assert_eq!(parsed.uv.offset, Vec2::new(0.25, 0.5));
+        assert_eq!((parsed.range, parsed.channel), ([0.1, 0.5], Channel::Of(1)));
+        assert_eq!((parsed.wrap, parsed.passed_over.len()), (Wrap::Clamp, 0));
+        let parsed = TextureStatement::parse("-t 0.5 0 0 -imfchan z -cc on -turb 0 1 a.png");
+        assert_eq!(parsed.passed_over, ["-t", "-imfchan", "-turb"]);
+        let parsed = TextureStatement::parse("-clamp ON -imfchan R a.png");
+        assert_eq!((parsed.wrap, parsed.channel), (Wrap::Clamp, Channel::Of(0)));
         // v counts from the bottom of a texture in the file, from its top here.
         let uv = UvTransform {
             scale: Vec2::splat(2.0),

@@ -14,6 +14,8 @@ pub struct Built {
     pub how: How,
     /// Wall time on the CPU that the last build took, with its upload to the GPU.
     pub time: Duration,
+    /// Number of bytes that the CPU uploaded to the GPU in the last build.
+    pub uploaded: u64,
     /// Number of times that the provider has built or refitted the resource so far.
     pub times: u32,
 }

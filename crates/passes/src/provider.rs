@@ -217,29 +217,35 @@ impl SceneProvider {
         if let Some(buffer) = self.buffers.get(name, version) {
             return Ok(buffer.clone());
         }
-        let began = Instant::now();
+        let began = self.begin();
         let how = self.upload_named(name, on)?;
         self.note(name, how, began);
         let buffer = self.buffers.get(name, version);
         buffer.cloned().ok_or_else(|| unknown(name))
     }
 
+    /// The time, and the bytes uploaded so far, at which a resource begins to be made.
+    fn begin(&self) -> (Instant, u64) {
+        (Instant::now(), self.buffers.work.uploaded)
+    }
+
     /// Notes what was made; of lights, which list they are of.
-    fn note(&mut self, name: &str, how: How, began: Instant) {
-        let time = began.elapsed();
+    fn note(&mut self, name: &str, how: How, began: (Instant, u64)) {
+        let (time, uploaded) = (began.0.elapsed(), self.buffers.work.uploaded - began.1);
         let listed = || NAMES.iter().copied().find(|own| *own == name);
         let Some(name) = lights::list_of(name).or_else(listed) else {
             return;
         };
         match self.built.iter_mut().find(|built| built.name == name) {
             Some(built) => {
-                (built.how, built.time) = (how, time);
+                (built.how, built.time, built.uploaded) = (how, time, uploaded);
                 built.times += 1;
             }
             None => self.built.push(Built {
                 name,
                 how,
                 time,
+                uploaded,
                 times: 1,
             }),
         }
@@ -1049,7 +1055,7 @@ impl Provider for SceneProvider {
         let indices = self.buffer(INDICES, on).map_err(why)?;
         // It is built of what they hold.
         self.submit_built(device, queue)?;
-        let began = Instant::now();
+        let began = self.begin();
         let tlas = self.structures.get(Source {
             mesh: &self.scene.mesh,
             geometry: &self.geometry,
@@ -1081,7 +1087,7 @@ impl Provider for SceneProvider {
         if let Some(part) = self.geometry.a_host_part() {
             return Err(why(Error::OnDevice(EMBREE, part)));
         }
-        let began = Instant::now();
+        let began = self.begin();
         let embree = Arc::new(crate::embree::Embree::build(&self.scene).map_err(why)?);
         self.embree = Some((embree.clone(), version));
         self.note(EMBREE, How::Made, began);

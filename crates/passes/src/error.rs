@@ -1,5 +1,7 @@
 //! Why a scene cannot be brought to the GPU.
 
+#![expect(clippy::disallowed_names, reason = "a derive binds public fields by name")]
+
 use crate::parts::PartId;
 
 /// Reason why a [`SceneProvider`](crate::SceneProvider) refuses a change of its scene, or cannot

@@ -93,14 +93,14 @@ fn main() {
         MESHES * stone.triangles.len()
     );
     for (preset, engine) in METHODS {
-        let of = (preset, engine);
+        let method = (preset, engine);
         let words = engine.map(|engine| format!("@engine={engine}"));
         let preset = &*format!("{preset}{}", words.unwrap_or_default());
         if engine == Some("ray_query") && !gpu.device.features().contains(RAY_QUERY) {
             println!("{preset} IS NOT MEASURED: this adapter has no EXPERIMENTAL_RAY_QUERY");
             continue;
         }
-        let mut host = Host::new(&gpu, of, &stone);
+        let mut host = Host::new(&gpu, method, &stone);
         // The first frames make what later ones have.
         for turn in 0..3 {
             host.frame(turn, FIVE);
@@ -128,8 +128,9 @@ fn main() {
 
 /// Prints the times of the program of docs/embedding.md.
 fn fifty_lines(gpu: &Gpu, stone: &Mesh, frames: usize) {
-    let (of, on) = (vec![stone; MESHES], (&gpu.device, &gpu.queue));
-    let mut program = shadows::Shadows::new(on, VIEWPORT, &of).expect("the preset runs anywhere");
+    let (meshes, on) = (vec![stone; MESHES], (&gpu.device, &gpu.queue));
+    let mut program =
+        shadows::Shadows::new(on, VIEWPORT, &meshes).expect("the preset runs anywhere");
     let mut places: Vec<DAffine3> = (0..MESHES).map(|index| place(index, 0)).collect();
     let mut frame = |turn: usize, kind: Kind| {
         for (index, map) in places[..kind.moving].iter_mut().enumerate() {
@@ -193,7 +194,7 @@ fn quantiles(times: impl Iterator<Item = f64>) -> String {
 }
 
 fn print(preset: &str, what: &str, times: &[Times]) {
-    let both = |of: fn(&Times) -> f64| quantiles(times.iter().map(of));
+    let both = |time: fn(&Times) -> f64| quantiles(times.iter().map(time));
     println!(
         "{preset}, {what}: {}; set_transforms {}, refresh {}, encode {}; beside it submitted and \
          waited {}",
@@ -207,8 +208,8 @@ fn print(preset: &str, what: &str, times: &[Times]) {
 
 /// Prints the work by counters: the median frame's, and the most of one frame.
 fn print_work(works: &[Work]) {
-    let both = |of: fn(&Work) -> u64| {
-        let mut values: Vec<u64> = works.iter().map(of).collect();
+    let both = |counter: fn(&Work) -> u64| {
+        let mut values: Vec<u64> = works.iter().map(counter).collect();
         values.sort_unstable();
         format!(
             "{} ({})",

@@ -35,8 +35,8 @@ fn main() {
             turns.push(turn);
         }
         let cell = |way: usize| {
-            let of = |part: usize| median(turns.iter().map(|turn| turn[way][part]).collect());
-            format!("{:.0} + {:.0}", of(0), of(1))
+            let time = |part: usize| median(turns.iter().map(|turn| turn[way][part]).collect());
+            format!("{:.0} + {:.0}", time(0), time(1))
         };
         let cells: Vec<String> = (0..4).map(cell).collect();
         println!("{preset} | {} | {bytes}", cells.join(" | "));

@@ -101,12 +101,12 @@ pub fn scene(bytes: &[u8]) -> String {
 /// The fault of a graph. A panic that was caught is naga's, which has some; one of ours is a
 /// finding.
 fn said(errors: &Diagnostics) -> String {
-    for found in errors
+    for error in errors
         .iter()
-        .filter(|found| found.code == Code::LibraryPanic)
+        .filter(|error| error.code == Code::LibraryPanic)
     {
-        let help = found.help.as_deref().unwrap_or_default();
-        assert!(help.contains("(naga-"), "{}: {help}", found.message);
+        let help = error.help.as_deref().unwrap_or_default();
+        assert!(help.contains("(naga-"), "{}: {help}", error.message);
     }
     errors.to_string()
 }
@@ -134,14 +134,14 @@ impl Sources for Files<'_> {
                 Err(_) => Err("it is not UTF-8 text".to_owned()),
             };
         }
-        let known = SHELF.iter().find(|(known, _)| *known == path);
-        Ok(known.map(|(_, text)| (*text).into()))
+        let entry = SHELF.iter().find(|(name, _)| *name == path);
+        Ok(entry.map(|(_, text)| (*text).into()))
     }
 
     fn list(&self, folder: &str) -> Vec<String> {
         let inside = |path: &str| {
-            let (of, name) = path.rsplit_once('/').unwrap_or(("", path));
-            (of == folder).then(|| name.to_owned())
+            let (parent, name) = path.rsplit_once('/').unwrap_or(("", path));
+            (parent == folder).then(|| name.to_owned())
         };
         let paths = SHELF.iter().map(|(path, _)| *path).chain([self.path]);
         paths.filter_map(inside).collect()

@@ -64,14 +64,14 @@ pub fn engines<'a>(gpu: &Gpu, rays: &'a Rays) -> Vec<Engine<'a>> {
             blocked: Vec::new(),
         }
     };
-    let mut all = vec![engine(Word::Hierarchy)];
+    let mut engines = vec![engine(Word::Hierarchy)];
     if rays.set.to_light {
-        all.push(engine(Word::LightSpace));
+        engines.push(engine(Word::LightSpace));
     }
     if gpu.device.features().contains(RAY_QUERY) {
-        all.push(engine(Word::RayQuery));
+        engines.push(engine(Word::RayQuery));
     }
     #[cfg(feature = "embree")]
-    all.push(embree::engine(rays));
-    all
+    engines.push(embree::engine(rays));
+    engines
 }

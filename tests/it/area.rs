@@ -132,10 +132,12 @@ fn samples_converge_to_the_oracles_shares_under_every_kind_of_light() {
         let classes = ground_truth.pixels.classes.iter_mut();
         let shares = ground_truth.area.as_ref().unwrap().shares.iter();
         let pixels = classes.zip(shares.zip(&shown[2].shares));
-        let others = pixels
+        let disputed = pixels
             .filter(|(class, (share, shown))| class.faces_light() && (*share - *shown).abs() > 0.3);
-        let others = others.map(|(class, _)| *class = Class::Background).count();
-        assert!(others * 100 < shown[2].shares.len(), "{others} pixels");
+        let disputed = disputed
+            .map(|(class, _)| *class = Class::Background)
+            .count();
+        assert!(disputed * 100 < shown[2].shares.len(), "{disputed} pixels");
         let rmse = shown
             .each_ref()
             .map(|shown| judged(shown, &ground_truth).rmse);
@@ -200,12 +202,12 @@ fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
         &preset("hybrid_pcf_area", set).replace(", spot, point", ""),
         &scene,
     );
-    let all = shown(&preset("rt_area", r#""samples": 64"#), &scene);
+    let traced = shown(&preset("rt_area", r#""samples": 64"#), &scene);
     assert!(
-        hybrid.rays < all.rays / 2,
+        hybrid.rays < traced.rays / 2,
         "{} of {}",
         hybrid.rays,
-        all.rays
+        traced.rays
     );
     let shares = ground_truth.shares();
     for (status, share) in [(2, 1.0), (3, 0.0)] {
@@ -227,14 +229,14 @@ fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
     let asked = hybrid
         .status
         .iter()
-        .zip(hybrid.shares.iter().zip(&all.shares));
+        .zip(hybrid.shares.iter().zip(&traced.shares));
     assert!(
         asked
             .filter(|(is, _)| **is == 4)
             .all(|(_, (one, other))| one == other)
     );
-    let [hybrid, all] = [&hybrid, &all].map(|shown| judged(shown, &ground_truth).rmse);
-    assert!(hybrid < all + 0.03, "{hybrid} {all}");
+    let [hybrid, traced] = [&hybrid, &traced].map(|shown| judged(shown, &ground_truth).rmse);
+    assert!(hybrid < traced + 0.03, "{hybrid} {traced}");
 }
 
 /// Lists beside rays: shares of every pixel, and the pixels that asked rays.

@@ -96,7 +96,7 @@ fn flickers(scene: &Arc<Scene>, preset: &str, params: Params) -> Shimmer {
         bench.look(view);
         frames.push((view.camera(VIEWPORT), bench.answers(preset, params)));
     }
-    let mut all = Shimmer::default();
+    let mut total = Shimmer::default();
     for pair in frames.windows(2) {
         let [before, now] = [&pair[0], &pair[1]].map(|(camera, answers)| Seen {
             mesh: &scene.mesh,
@@ -112,17 +112,17 @@ fn flickers(scene: &Arc<Scene>, preset: &str, params: Params) -> Shimmer {
             area: None,
         };
         let [then, since] = [&pair[0].1, &pair[1].1];
-        let found = shimmer(
+        let flicker = shimmer(
             &same,
             [&shown(then), &shown(since)],
             [&truth(then), &truth(since)],
         )
         .unwrap();
-        all.compared += found.compared;
-        all.changed += found.changed;
+        total.compared += flicker.compared;
+        total.changed += flicker.changed;
     }
-    println!("{preset} {params:?}: {all:?}");
-    all
+    println!("{preset} {params:?}: {total:?}");
+    total
 }
 
 /// Artefact of maps that follow the eye: their texels crawl, and the edges of shadows with them.

@@ -347,8 +347,8 @@ fn shaders_are_told_what_has_changed_though_no_pass_reads_it() {
     let mut expect = |provider: &mut SceneProvider, flags: [u32; 2], when: &str| {
         executor.refresh(provider).unwrap();
         let report = graphs::frame(&gpu, &mut executor, &["flags"]);
-        let found = report.readbacks[0].content.as_u32().unwrap();
-        assert_eq!(found, flags, "{when}");
+        let words = report.readbacks[0].content.as_u32().unwrap();
+        assert_eq!(words, flags, "{when}");
     };
     expect(&mut provider, [1, 1], "the first frame");
     expect(&mut provider, [0, 0], "nothing changed");

@@ -228,19 +228,19 @@ fn judged(scene: &Arc<Scene>, viewport: [u32; 2], pixels: &mut Pixels) {
     for (method, engine) in methods {
         let params = [("engine", ParamValue::Choice(engine.to_owned()))];
         for seed in [0, 1, 2] {
-            let found = match seed {
+            let answer = match seed {
                 0 => bench.answers(method, &params),
                 seed => bench.answers_with(&altered(seed), method, &params),
             };
-            let wrong = &found.counts.wrong;
+            let wrong = &answer.counts.wrong;
             assert_eq!(
                 wrong.total - wrong.in_band,
                 0,
                 "{} {method} {engine}, altered by {seed}: {:?}",
                 scene.name,
-                found.counts
+                answer.counts
             );
-            answers.push(found);
+            answers.push(answer);
         }
     }
     let truth = &answers[0].truth;
@@ -378,21 +378,21 @@ fn altered_results_are_either_neighbour() {
         ..Arithmetic::PLAIN
     });
     let mut other = [0; 3];
-    for (&[a, b], found) in operands.iter().zip(&results) {
-        let said = format!("{a} {b}: {found:?}");
+    for (&[a, b], result) in operands.iter().zip(&results) {
+        let case = format!("{a} {b}: {result:?}");
         assert!(
-            [down, up].iter().any(|by| by.add(a, b) == found.sum),
-            "{said}"
+            [down, up].iter().any(|by| by.add(a, b) == result.sum),
+            "{case}"
         );
         assert!(
-            [down, up].iter().any(|by| by.mul(a, b) == found.product),
-            "{said}"
+            [down, up].iter().any(|by| by.mul(a, b) == result.product),
+            "{case}"
         );
-        let near = i64::from((a / b).to_bits()) - i64::from(found.quotient.to_bits());
-        assert!(a == 0.0 || b == 0.0 || near.abs() <= 3, "{said}");
-        other[0] += usize::from(found.sum != a + b);
-        other[1] += usize::from(found.product != a * b);
-        other[2] += usize::from(found.quotient != a / b);
+        let near = i64::from((a / b).to_bits()) - i64::from(result.quotient.to_bits());
+        assert!(a == 0.0 || b == 0.0 || near.abs() <= 3, "{case}");
+        other[0] += usize::from(result.sum != a + b);
+        other[1] += usize::from(result.product != a * b);
+        other[2] += usize::from(result.quotient != a / b);
     }
     // About half of those that f32 does not hold.
     assert!(other.iter().all(|&count| count > 4_000), "{other:?}");

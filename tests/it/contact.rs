@@ -74,9 +74,9 @@ impl Case {
             };
             (0..shown.len()).filter(is_wrong).count()
         };
-        let found = [count(Class::Shadow, 1.0), count(Class::Lit, 0.0)];
-        println!("{method} {params:?}: {found:?} wrongly lit, wrongly dark");
-        found
+        let counts = [count(Class::Shadow, 1.0), count(Class::Lit, 0.0)];
+        println!("{method} {params:?}: {counts:?} wrongly lit, wrongly dark");
+        counts
     }
 }
 

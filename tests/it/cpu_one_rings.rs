@@ -112,14 +112,14 @@ fn fans() -> impl Strategy<Value = Mesh> {
         any::<u64>(),
     )
         .prop_map(|(spokes, turns, off, order)| {
-            let all: f64 = spokes.iter().map(|spoke| spoke.0).sum();
+            let total: f64 = spokes.iter().map(|spoke| spoke.0).sum();
             let hub =
                 Vec3::new(off[0] as f32, off[1] as f32, 0.0) / 256.0 + Vec3::new(32.5, 32.5, 0.5);
             let mut angle = 0.0;
             let mut positions: Vec<Vec3> = spokes
                 .iter()
                 .map(|&(share, length)| {
-                    angle += share / all * TAU * f64::from(turns);
+                    angle += share / total * TAU * f64::from(turns);
                     let at = DVec2::from_angle(angle) * length;
                     hub + Vec3::new(at.x as f32, at.y as f32, 0.0)
                 })

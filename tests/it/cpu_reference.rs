@@ -113,21 +113,21 @@ impl<'a> Bench<'a> {
             .unwrap();
 
         let mut counts = Agreement::default();
-        for (index, &found) in values(&report, "status").iter().enumerate() {
+        for (index, &answer) in values(&report, "status").iter().enumerate() {
             let (status, indeterminate) = (expected.status[index], expected.indeterminate[index]);
-            if found >= status::CERTAIN_LIGHT {
+            if answer >= status::CERTAIN_LIGHT {
                 counts.facing_light += 1;
                 counts.indeterminate += usize::from(indeterminate);
             }
-            match found {
+            match answer {
                 status::CERTAIN_LIGHT => counts.light += 1,
                 status::CERTAIN_SHADOW => counts.shadow += 1,
                 status::UNCERTAIN => counts.uncertain += 1,
                 _ => {}
             }
-            if found != status && !indeterminate {
+            if answer != status && !indeterminate {
                 if counts.disagree < 3 {
-                    println!("pixel {index}: {found} instead of {status}");
+                    println!("pixel {index}: {answer} instead of {status}");
                 }
                 counts.disagree += 1;
             }
@@ -255,7 +255,7 @@ fn the_presets_maps_end_where_f32_places_no_receiver() {
             .filter(|corner| space.light_space_error_bound(corner.as_dvec3()).0 <= SLACK)
             .count()
     };
-    let all = scene.mesh.corner_positions().count();
-    assert!(graph.parse_param("map_size", "8192").is_ok() && places(8192) == all);
+    let corners = scene.mesh.corner_positions().count();
+    assert!(graph.parse_param("map_size", "8192").is_ok() && places(8192) == corners);
     assert!(graph.parse_param("map_size", "8193").is_err() && places(16384) == 0);
 }

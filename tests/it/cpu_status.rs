@@ -41,18 +41,24 @@ fn statuses_of_a_square_above_a_floor() {
     for method in METHODS {
         let cpu = cpu_reference(method, 1500);
         let maps = cpu.maps(&mesh, &adjacency, &light).unwrap();
-        let of = maps
+        let classified = maps
             .classify(&camera, &primitives, Progress::default())
             .unwrap();
-        let indeterminate = of.indeterminate.iter().filter(|&&is| is).count();
+        let indeterminate = classified.indeterminate.iter().filter(|&&is| is).count();
         assert!(
-            indeterminate < of.status.len() / 200,
+            indeterminate < classified.status.len() / 200,
             "{method:?}: {indeterminate}"
         );
-        let count = |wanted| of.status.iter().filter(|&&status| status == wanted).count();
-        for (index, &found) in of.status.iter().enumerate() {
+        let count = |wanted| {
+            classified
+                .status
+                .iter()
+                .filter(|&&status| status == wanted)
+                .count()
+        };
+        for (index, &answer) in classified.status.iter().enumerate() {
             let wrong = matches!(
-                (truth.classes[index], found),
+                (truth.classes[index], answer),
                 (Class::Lit, status::CERTAIN_SHADOW) | (Class::Shadow, status::CERTAIN_LIGHT)
             );
             assert!(!wrong || method == Method::HybridPcf, "{method:?} {index}");

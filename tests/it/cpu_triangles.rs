@@ -250,7 +250,7 @@ proptest! {
             );
             let distance = (q - p).perp_dot(centre - p).abs() / (q - p).length().max(1e-9);
             let cell = (distance + short * size).clamp(0.0, 1e3);
-            let all = |t: &TexelTriangle, leeway| {
+            let covers = |t: &TexelTriangle, leeway| {
                 [
                     t.outer_covers(centre, cell, leeway),
                     t.inner_covers(centre, cell, leeway),
@@ -259,9 +259,9 @@ proptest! {
                 ]
             };
             let (surely, truth, perhaps) = (
-                all(&triangle, -size),
-                all(&moved, 0.0),
-                all(&triangle, size),
+                covers(&triangle, -size),
+                covers(&moved, 0.0),
+                covers(&triangle, size),
             );
             for which in 0..4 {
                 prop_assert!(!surely[which] || truth[which], "{which} {centre}");

@@ -108,8 +108,8 @@ fn a_receiver_comes_back_from_the_gbuffers_depth() {
         let [places, positions] = ["place", "position"].map(|name| shares(&report, name));
         let mut seen = 0;
         for (pixel, primitive) in values(&report, "primitive").into_iter().enumerate() {
-            let texel = |of: &[f32]| {
-                let texel = &of[4 * pixel..4 * pixel + 4];
+            let texel = |texels: &[f32]| {
+                let texel = &texels[4 * pixel..4 * pixel + 4];
                 (
                     DVec3::new(texel[0].into(), texel[1].into(), texel[2].into()),
                     texel[3],

@@ -47,8 +47,8 @@ impl Figures {
     ) -> f64 {
         let viewport = format!("{width}x{height}");
         let key = [view, &viewport, &map.to_string(), preset, what].map(str::to_owned);
-        let found = self.0.get(&key);
-        *found.unwrap_or_else(|| panic!("no figure {key:?}"))
+        let figure = self.0.get(&key);
+        *figure.unwrap_or_else(|| panic!("no figure {key:?}"))
     }
 }
 

@@ -65,7 +65,7 @@ fn map_of(scene: &Arc<Scene>, preset: &str, fit: &str, distance: f32) -> (MapFit
     let positions = report
         .readbacks
         .iter()
-        .find(|found| found.name == "position");
+        .find(|readback| readback.name == "position");
     let positions = positions.unwrap().content.as_f32().unwrap();
     let facing = positions.chunks_exact(4).filter(|texel| texel[3] > 0.0);
     let places = facing.map(|texel| map.texel(Vec3::from_slice(texel).as_dvec3()).truncate());

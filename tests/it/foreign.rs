@@ -75,14 +75,14 @@ fn plan(
 fn documents() -> Vec<String> {
     let folders = std::fs::read_dir(FOLDER).expect("the folder is there");
     let names = folders.map(|entry| entry.expect("it can be listed").file_name());
-    let mut found = vec![];
+    let mut paths = vec![];
     for folder in names.map(|name| name.into_string().expect("plain names")) {
         let files = sources().list(&folder);
         let documents = files.iter().filter(|file| file.ends_with(".ron"));
-        found.extend(documents.map(|file| format!("{folder}/{file}")));
+        paths.extend(documents.map(|file| format!("{folder}/{file}")));
     }
-    found.sort();
-    found
+    paths.sort();
+    paths
 }
 
 #[test]
@@ -111,7 +111,10 @@ fn lines(folder: &str, ending: &str) -> usize {
     let files = std::fs::read_dir(Path::new(FOLDER).join(folder)).expect("the folder is there");
     let paths = files.map(|file| file.expect("it can be listed").path());
     paths
-        .filter(|path| path.extension().is_some_and(|found| found == ending))
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == ending)
+        })
         .map(|path| {
             let text = std::fs::read_to_string(path).expect("it can be read");
             text.lines().filter(|line| !line.trim().is_empty()).count()
@@ -205,9 +208,9 @@ fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
         ("volumes/volumes.ron", &[], 0.10),
         ("volumes/stencil.ron", &[], 0.10),
     ] {
-        let found = wrong(path, params, 1, &scene, &truth)[0];
-        println!("{path}: {found:.4} %, {percent} % expected");
-        assert!((found - percent).abs() < 0.05, "{path}: {found} %");
+        let share = wrong(path, params, 1, &scene, &truth)[0];
+        println!("{path}: {share:.4} %, {percent} % expected");
+        assert!((share - percent).abs() < 0.05, "{path}: {share} %");
     }
 }
 
@@ -216,10 +219,10 @@ fn each_method_is_as_wrong_on_park_as_its_author_has_measured() {
 fn temporal_is_right_once_every_pixel_has_had_its_ray() {
     let scene = load("park");
     let truth = truth(&scene, &scene.sun().unwrap());
-    let found = wrong("temporal/temporal.ron", &[], 5, &scene, &truth);
-    println!("{found:?}");
-    for (found, percent) in found.iter().zip([53.8, 35.9, 18.0, 0.003, 0.003]) {
-        assert!((found - percent).abs() < 0.05, "{found} % for {percent} %");
+    let shares = wrong("temporal/temporal.ron", &[], 5, &scene, &truth);
+    println!("{shares:?}");
+    for (share, percent) in shares.iter().zip([53.8, 35.9, 18.0, 0.003, 0.003]) {
+        assert!((share - percent).abs() < 0.05, "{share} % for {percent} %");
     }
 }
 
@@ -362,9 +365,9 @@ fn every_probe_of_the_language_writes_what_it_says() {
 fn holds(probe: &str, part: &Content, expected: Texel) {
     let width = part.size().expect("a texture")[0] as usize;
     let texels = part.as_f32().expect("one float per texel");
-    for (at, found) in texels.into_iter().enumerate() {
+    for (at, texel) in texels.into_iter().enumerate() {
         let expected = expected(at % width, at / width);
-        assert_eq!(found, expected, "{probe}: texel {at}, {width} a row");
+        assert_eq!(texel, expected, "{probe}: texel {at}, {width} a row");
     }
 }
 

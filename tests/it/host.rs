@@ -89,9 +89,9 @@ fn view(time: f64) -> View {
 }
 
 /// Returns the same meshes, but moved by hand.
-fn moved(of: &[&Mesh], places: &[DAffine3]) -> Mesh {
-    let mut all: Option<Mesh> = None;
-    for (mesh, place) in of.iter().zip(places) {
+fn moved(shapes: &[&Mesh], places: &[DAffine3]) -> Mesh {
+    let mut whole: Option<Mesh> = None;
+    for (mesh, place) in shapes.iter().zip(places) {
         let mut mesh = (*mesh).clone();
         for position in &mut mesh.positions {
             *position = place.transform_point3(position.as_dvec3()).as_vec3();
@@ -100,12 +100,12 @@ fn moved(of: &[&Mesh], places: &[DAffine3]) -> Mesh {
             let across = place.matrix3.inverse().transpose();
             *normal = (across * normal.as_dvec3()).normalize().as_vec3();
         }
-        all = Some(match all {
+        whole = Some(match whole {
             Some(first) => meshes::joined(first, &mesh),
             None => mesh,
         });
     }
-    all.unwrap()
+    whole.unwrap()
 }
 
 #[test]
@@ -115,14 +115,14 @@ fn instances_have_the_shadows_of_one_mesh() {
         meshes::box_over_floor(8.0, Vec3::splat(0.5)),
         meshes::potato(3, 0.2, 1),
     );
-    let of = [&floor, &stone, &stone];
-    let parts = Movable::joined(&of);
+    let shapes = [&floor, &stone, &stone];
+    let parts = Movable::joined(&shapes);
     let light = DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3));
     let mut host = SceneProvider::from_parts(parts, light);
     for time in [0.0, 1.0, 2.0] {
         host.set_camera(&view(time).camera(VIEWPORT));
         host.set_transforms(&places(time)).unwrap();
-        let mut scene = SceneProvider::from_mesh(moved(&of, &places(time)), light);
+        let mut scene = SceneProvider::from_mesh(moved(&shapes, &places(time)), light);
         scene.set_camera(&view(time).camera(VIEWPORT));
         for preset in PRESETS {
             let expected = answers(&gpu, preset, &mut scene);
@@ -143,8 +143,8 @@ fn the_program_of_the_document_has_exact_shadows() {
         meshes::box_over_floor(8.0, Vec3::splat(0.5)),
         meshes::potato(3, 0.2, 1),
     );
-    let of = [&floor, &stone, &stone];
-    let mut program = shadows::Shadows::new((&gpu.device, &gpu.queue), VIEWPORT, &of).unwrap();
+    let shapes = [&floor, &stone, &stone];
+    let mut program = shadows::Shadows::new((&gpu.device, &gpu.queue), VIEWPORT, &shapes).unwrap();
     for time in [0.0, 1.0, 2.0] {
         let camera = view(time).camera(VIEWPORT);
         let light = DVec3::new(0.4 + 0.3 * time, -1.0, -0.3);
@@ -154,7 +154,7 @@ fn the_program_of_the_document_has_exact_shadows() {
             .unwrap();
         let seen = texels(&gpu, encoder, seen.texture());
         let light = DirectionalLight::new(light);
-        let mut scene = SceneProvider::from_mesh(moved(&of, &places(time)), light);
+        let mut scene = SceneProvider::from_mesh(moved(&shapes, &places(time)), light);
         scene.set_camera(&camera);
         let expected = answers(&gpu, "rt", &mut scene);
         assert!(expected.contains(&0) && expected.contains(&1));
@@ -410,7 +410,7 @@ pub fn pixel(index: usize) -> [usize; 2] {
 
 /// The place of a primitive that a pixel shows, and the normal there.
 pub fn surface(mesh: &Mesh, primitive: u32, matrix: DMat4, index: usize) -> [DVec3; 2] {
-    let ndc = |at: usize, of: u32| (at as f64 + 0.5) / f64::from(of) * 2.0 - 1.0;
+    let ndc = |at: usize, extent: u32| (at as f64 + 0.5) / f64::from(extent) * 2.0 - 1.0;
     let [x, y] = pixel(index);
     let ndc = [ndc(x, VIEWPORT[0]), -ndc(y, VIEWPORT[1])];
     gbuffer::receiver(mesh, primitive, matrix, ndc)

@@ -265,20 +265,22 @@ pub fn places(turn: usize) -> Vec<(usize, DAffine3)> {
 
 /// A scene of parts of a host's buffers, in room for them, and one of the same parts uploaded.
 pub fn scenes(
-    of: &MegaBuffer,
+    stones: &MegaBuffer,
     places: &[(usize, DAffine3)],
     limits: &wgpu::Limits,
 ) -> [SceneProvider; 2] {
     let mut host = SceneProvider::from_parts(Movable::joined(&[]), sun());
-    let room = places.iter().map(|(mesh, _)| of.hosts[*mesh].room(1));
+    let room = places.iter().map(|(mesh, _)| stones.hosts[*mesh].room(1));
     let room = room.fold(Room::default(), Room::and);
     host.reserve(room, limits).unwrap();
-    let maps = places.iter().map(|(mesh, map)| of.meshes[*mesh].map(map));
+    let maps = places
+        .iter()
+        .map(|(mesh, map)| stones.meshes[*mesh].map(map));
     let maps: Vec<DAffine3> = maps.collect();
     for ((mesh, _), map) in places.iter().zip(&maps) {
-        host.add_host_part(&of.hosts[*mesh], map).unwrap();
+        host.add_host_part(&stones.hosts[*mesh], map).unwrap();
     }
-    let meshes: Vec<Mesh> = of.meshes.iter().map(Quantised::mesh).collect();
+    let meshes: Vec<Mesh> = stones.meshes.iter().map(Quantised::mesh).collect();
     let parts: Vec<&Mesh> = places.iter().map(|(mesh, _)| &meshes[*mesh]).collect();
     let mut uploaded = SceneProvider::from_parts(Movable::joined(&parts), sun());
     uploaded.set_transforms(&maps).unwrap();
@@ -511,12 +513,12 @@ fn frame_around() -> Mesh {
 
 /// The scenes of [`scenes`], with the frame around both.
 fn framed(
-    of: &MegaBuffer,
+    stones: &MegaBuffer,
     places: &[(usize, DAffine3)],
     limits: &wgpu::Limits,
 ) -> [SceneProvider; 2] {
     let frame = frame_around();
-    scenes(of, places, limits).map(|mut scene| {
+    scenes(stones, places, limits).map(|mut scene| {
         scene.reserve(Room::of_copies(&frame, 1), limits).unwrap();
         scene.add_part(&frame, &DAffine3::IDENTITY).unwrap();
         scene
@@ -579,7 +581,7 @@ fn exact_presets_are_right(packing: Packing) {
         let mut executor = Executor::on(&gpu, plan, &mut host).unwrap();
         let names = ["visibility", "status", "primitive"];
         let report = graphs::frame(&gpu, &mut executor, &names);
-        let [seen, told, primitives] = names.map(|name| values(&report, name));
+        let [seen, statuses, primitives] = names.map(|name| values(&report, name));
         let truth = oracle.shade(
             &camera(VIEWPORT),
             sun(),
@@ -587,7 +589,7 @@ fn exact_presets_are_right(packing: Packing) {
             OracleMode::Exact,
             Progress::default(),
         );
-        let counts = Statistics::judged(&seen, &told, &truth.unwrap()).unwrap();
+        let counts = Statistics::judged(&seen, &statuses, &truth.unwrap()).unwrap();
         let what = format!("{packing:?} {preset}: {counts:?}");
         println!("{what}");
         assert!(
@@ -596,18 +598,18 @@ fn exact_presets_are_right(packing: Packing) {
         );
         assert!(counts.indeterminate_share() < 3e-3, "{what}");
         let split = [&counts.split.lit, &counts.split.shadow];
-        let wrong = split.map(|of| of.certain_wrong_outside_band);
+        let wrong = split.map(|class| class.certain_wrong_outside_band);
         assert_eq!(wrong, [0, 0], "{what}");
         let is_certain =
             |word: &u32| [status::CERTAIN_LIGHT, status::CERTAIN_SHADOW].contains(word);
         assert_eq!(counts.wrong.total, counts.wrong.in_band, "{what}");
         if preset == "crsm" {
-            assert!(told.iter().filter(|word| is_certain(word)).count() > 500);
+            assert!(statuses.iter().filter(|word| is_certain(word)).count() > 500);
         }
-        let pixels = seen.iter().zip(&told).zip(&expected);
-        let asked = pixels.filter(|((_, told), _)| preset != "crsm" || is_certain(told));
-        let others = asked.filter(|((seen, _), ray)| seen != ray).count();
-        assert_eq!(others, 0, "{what}");
+        let pixels = seen.iter().zip(&statuses).zip(&expected);
+        let asked = pixels.filter(|((_, word), _)| preset != "crsm" || is_certain(word));
+        let differing = asked.filter(|((seen, _), ray)| seen != ray).count();
+        assert_eq!(differing, 0, "{what}");
     }
 }
 
@@ -676,8 +678,8 @@ fn mistakes_in_a_module_of_the_host_are_named() {
     let made = |wgsl: &str| HostDecoder::of_positions(&gpu.device, wgsl);
     let right = "fn decode_position(first: u32) -> vec3<f32> { return vec3(f32(first)); }";
     assert!(made(right).is_ok());
-    let told = |wgsl: &str| made(wgsl).unwrap_err().to_string();
-    let none = told("");
+    let error = |wgsl: &str| made(wgsl).unwrap_err().to_string();
+    let none = error("");
     assert!(
         none.starts_with(
             "the module that decodes a host's vertices cannot be compiled; it needs \
@@ -685,7 +687,7 @@ fn mistakes_in_a_module_of_the_host_are_named() {
         ) && none.contains("no definition in scope for identifier"),
         "{none}"
     );
-    let line = told("\nfn decode_position(first: u32) -> vec3<f32> { return vertex; }");
+    let line = error("\nfn decode_position(first: u32) -> vec3<f32> { return vertex; }");
     assert!(line.contains("`vertex`") && line.contains(":2:"), "{line}");
     let normals = HostDecoder::of_positions_and_normals(&gpu.device, right);
     let normals = normals.unwrap_err().to_string();
@@ -727,7 +729,7 @@ fn parts_of_a_hosts_buffer_move_without_their_vertices() {
     let [mut host, mut uploaded] = scenes(&stones, &places(0), &gpu.device.limits());
     let presets = ["rt", "light_buffer", "crsm"];
     let mut executors = presets.map(|preset| start(&gpu, preset, &mut host));
-    let mut others = presets.map(|preset| start(&gpu, preset, &mut uploaded));
+    let mut references = presets.map(|preset| start(&gpu, preset, &mut uploaded));
     for turn in 1..6 {
         let maps: Vec<DAffine3> = places(turn).into_iter().map(|(_, map)| map).collect();
         let before = host.work();
@@ -743,7 +745,7 @@ fn parts_of_a_hosts_buffer_move_without_their_vertices() {
             "{work:?}"
         );
         assert!(work.laid <= 2 * 8 * 7, "{work:?}");
-        let pairs = executors.iter_mut().zip(&mut others);
+        let pairs = executors.iter_mut().zip(&mut references);
         for ((executor, other), preset) in pairs.zip(presets) {
             other.refresh(&mut uploaded).unwrap();
             let (seen, expected) = (shown(&gpu, executor), shown(&gpu, other));
@@ -782,7 +784,7 @@ fn parts_of_both_kinds_keep_off_each_other() {
     });
     let presets = ["rt", "light_buffer"];
     let mut executors = presets.map(|preset| start(&gpu, preset, &mut mixed));
-    let mut others = presets.map(|preset| start(&gpu, preset, &mut uploaded));
+    let mut references = presets.map(|preset| start(&gpu, preset, &mut uploaded));
     let mut maps = places_of(&begun);
     for turn in 1..6 {
         for (index, (_, map)) in places(turn).into_iter().enumerate() {
@@ -793,7 +795,7 @@ fn parts_of_both_kinds_keep_off_each_other() {
         let before = mixed.work();
         mixed.set_transforms(&maps).unwrap();
         uploaded.set_transforms(&maps).unwrap();
-        for ((executor, other), preset) in executors.iter_mut().zip(&mut others).zip(presets) {
+        for ((executor, other), preset) in executors.iter_mut().zip(&mut references).zip(presets) {
             executor.refresh(&mut mixed).unwrap();
             other.refresh(&mut uploaded).unwrap();
             let (seen, expected) = (shown(&gpu, executor), shown(&gpu, other));
@@ -825,7 +827,7 @@ const RAISE: &str = "
     }
 ";
 
-fn raise(gpu: &Gpu, of: &MegaBuffer, mesh: usize, amount: u32) {
+fn raise(gpu: &Gpu, stones: &MegaBuffer, mesh: usize, amount: u32) {
     let module = gpu
         .device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -842,9 +844,9 @@ fn raise(gpu: &Gpu, of: &MegaBuffer, mesh: usize, amount: u32) {
             compilation_options: Default::default(),
             cache: None,
         });
-    let before = of.meshes[..mesh].iter().map(|mesh| mesh.vertices.len());
+    let before = stones.meshes[..mesh].iter().map(|mesh| mesh.vertices.len());
     let first = (BEFORE + before.sum::<usize>()) as u32 / 4;
-    let count = of.meshes[mesh].positions.len() as u32;
+    let count = stones.meshes[mesh].positions.len() as u32;
     let range = [first, count, amount, 0];
     let range = gpu
         .device
@@ -859,7 +861,7 @@ fn raise(gpu: &Gpu, of: &MegaBuffer, mesh: usize, amount: u32) {
         entries: &[
             wgpu::BindGroupEntry {
                 binding: 0,
-                resource: of.buffer.as_entire_binding(),
+                resource: stones.buffer.as_entire_binding(),
             },
             wgpu::BindGroupEntry {
                 binding: 1,
@@ -878,18 +880,18 @@ fn raise(gpu: &Gpu, of: &MegaBuffer, mesh: usize, amount: u32) {
 }
 
 /// The same on the CPU.
-fn raised(of: &Quantised, amount: i32) -> Quantised {
-    let raised = of.positions.iter().map(|&[x, y, z]| {
+fn raised(stone: &Quantised, amount: i32) -> Quantised {
+    let raised = stone.positions.iter().map(|&[x, y, z]| {
         let y = (y * 32767.0).round() as i32 + if x > 0.0 { amount } else { 0 };
         // Sums wrap, as in the pass.
         [x, (f32::from(y as i16) / 32767.0).max(-1.0), z]
     });
     Quantised {
-        packing: of.packing,
+        packing: stone.packing,
         vertices: Vec::new(),
         positions: raised.collect(),
-        normals: of.normals.clone(),
-        indices: of.indices.clone(),
+        normals: stone.normals.clone(),
+        indices: stone.indices.clone(),
     }
 }
 
@@ -909,14 +911,14 @@ fn a_part_that_the_host_has_rewritten_is_traced_as_it_is() {
     let presets = ["rt", "light_buffer"];
     let mut executors = presets.map(|preset| start(&gpu, preset, &mut host));
     let at_rest = shown(&gpu, &mut executors[0]);
-    let (mut all, step) = (0, -9000i32);
+    let (mut lift, step) = (0, -9000i32);
     for _ in 0..2 {
-        all += step;
+        lift += step;
         raise(&gpu, &stones, 1, step.cast_unsigned() & 0xffff);
         let bounds = [Vec3::new(-1.0, -1.6, -1.0), Vec3::ONE];
         host.rewrite_part(part, bounds).unwrap();
         host.check_bounds(&gpu.device, &gpu.queue).unwrap();
-        let meshes = [&stones.meshes[0], &raised(&stones.meshes[1], all)].map(Quantised::mesh);
+        let meshes = [&stones.meshes[0], &raised(&stones.meshes[1], lift)].map(Quantised::mesh);
         let parts = Movable::joined(&[&meshes[0], &meshes[1]]);
         let mut uploaded = SceneProvider::from_parts(parts, sun());
         uploaded.set_transforms(&places_of(places)).unwrap();
@@ -939,13 +941,15 @@ fn a_part_that_the_host_has_rewritten_is_traced_as_it_is() {
         "{text}"
     );
     let Error::Beyond {
-        part: told, vertex, ..
+        part: named,
+        vertex,
+        ..
     } = error
     else {
         panic!("{error}");
     };
-    assert_eq!(told, part);
-    let own = Vec3::from(raised(&stones.meshes[1], all).positions[vertex as usize]);
+    assert_eq!(named, part);
+    let own = Vec3::from(raised(&stones.meshes[1], lift).positions[vertex as usize]);
     assert!(
         own.cmpgt(bounds[1]).any() || own.cmplt(bounds[0]).any(),
         "{own}"
@@ -953,7 +957,7 @@ fn a_part_that_the_host_has_rewritten_is_traced_as_it_is() {
     for bounds in [[Vec3::ONE, Vec3::NAN], [Vec3::NEG_INFINITY, Vec3::ONE]] {
         let lie = host.rewrite_part(part, bounds).unwrap_err();
         assert!(
-            matches!(lie, Error::Bounds { part: told, .. } if told == part),
+            matches!(lie, Error::Bounds { part: named, .. } if named == part),
             "{lie}"
         );
     }
@@ -991,7 +995,7 @@ fn a_part_may_be_removed_while_frames_are_under_way() {
     let [mut host, _] = scenes(&stones, &places, &gpu.device.limits());
     let removed = host.parts().last().unwrap();
     let mut executor = start(&gpu, "rt", &mut host);
-    let all = shown(&gpu, &mut executor);
+    let complete = shown(&gpu, &mut executor);
     let read = Frame::new().with_read(&["visibility"]);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     executor.encode(&mut encoder, &read).unwrap();
@@ -1003,14 +1007,14 @@ fn a_part_may_be_removed_while_frames_are_under_way() {
     gpu.queue.submit([encoder.finish()]);
     let under_way = values(&executor.finish().unwrap(), "visibility");
     let after = values(&executor.finish().unwrap(), "visibility");
-    assert!(under_way == all && after != all);
+    assert!(under_way == complete && after != complete);
     let [mut without, _] = scenes(&stones, &places[..places.len() - 1], &gpu.device.limits());
     assert!(after == shown(&gpu, &mut start(&gpu, "rt", &mut without)));
     // Its room is for another one.
     let (mesh, map) = &places[places.len() - 1];
     host.add_host_part(&stones.hosts[*mesh], map).unwrap();
     executor.refresh(&mut host).unwrap();
-    assert!(shown(&gpu, &mut executor) == all);
+    assert!(shown(&gpu, &mut executor) == complete);
 }
 
 #[test]
@@ -1068,27 +1072,30 @@ fn mistakes_in_a_layout_are_named() {
         usage: BufferUsages::VERTEX,
         mapped_at_creation: false,
     });
-    let of = |buffer: &wgpu::Buffer, offset: u64, stride: u64, count: u32| {
+    let vertices = |buffer: &wgpu::Buffer, offset: u64, stride: u64, count: u32| {
         HostVertices::new(buffer, offset, stride, count).with_position(VertexFormat::Snorm16x4, 0)
     };
-    let right = of(&buffer, 0, STRIDE, count);
+    let right = vertices(&buffer, 0, STRIDE, count);
     let cases = [
-        (of(&hidden, 0, STRIDE, count), "usage STORAGE"),
+        (vertices(&hidden, 0, STRIDE, count), "usage STORAGE"),
         (
-            of(&buffer, 2, STRIDE, count),
+            vertices(&buffer, 2, STRIDE, count),
             "offset of the vertices, 2 bytes",
         ),
         (
-            of(&buffer, 0, 14, count),
+            vertices(&buffer, 0, 14, count),
             "stride of the vertices, 14 bytes",
         ),
         (
-            of(&buffer, 12, STRIDE, count),
+            vertices(&buffer, 12, STRIDE, count),
             "reach beyond the end of their buffer",
         ),
-        (of(&buffer, u64::MAX - 3, STRIDE, count), "reach beyond"),
-        (of(&buffer, 0, STRIDE, count + 1), "reach beyond"),
-        (of(&buffer, 0, 16, count), "reach beyond"),
+        (
+            vertices(&buffer, u64::MAX - 3, STRIDE, count),
+            "reach beyond",
+        ),
+        (vertices(&buffer, 0, STRIDE, count + 1), "reach beyond"),
+        (vertices(&buffer, 0, 16, count), "reach beyond"),
         (
             right.clone().with_position(VertexFormat::Snorm16x4, 8),
             "does not fit a vertex of 12",
@@ -1104,7 +1111,7 @@ fn mistakes_in_a_layout_are_named() {
             "Snorm16x2; read are",
         ),
         (
-            of(&buffer, 0, STRIDE, count - 1),
+            vertices(&buffer, 0, STRIDE, count - 1),
             "give those of the mesh alone, from its first vertex to its last",
         ),
     ];
@@ -1120,7 +1127,7 @@ fn mistakes_in_a_layout_are_named() {
     assert!(matches!(short, HostMeshError::Rest { .. }), "{short}");
     let few = own.vertices.len() - STRIDE as usize;
     let few = make(
-        of(&buffer, 0, STRIDE, count - 1),
+        vertices(&buffer, 0, STRIDE, count - 1),
         &own.vertices[..few],
         &own.indices,
     );

@@ -115,11 +115,11 @@ fn clip(matrix: &Mat4, at: Vec3, is_fused: bool) -> Vec4 {
 /// The depth that a rasteriser writes at a place of its picture in pixels, if the triangle is
 /// there, and how slender that is: the square of its longest edge over twice its area.
 fn drawn(clips: [Vec4; 3], (at, size): (DVec2, DVec2), how: Interpolation) -> Option<(f32, f64)> {
-    let ndc = clips.map(|of| of.xyz() / of.w);
-    let on_grid = |of: Vec3| {
+    let ndc = clips.map(|clip| clip.xyz() / clip.w);
+    let on_grid = |corner: Vec3| {
         let pixels = DVec2::new(
-            f64::from((of.x * 0.5 + 0.5) * size.x as f32),
-            f64::from((0.5 - of.y * 0.5) * size.y as f32),
+            f64::from((corner.x * 0.5 + 0.5) * size.x as f32),
+            f64::from((0.5 - corner.y * 0.5) * size.y as f32),
         );
         (pixels * 256.0).round() / 256.0
     };
@@ -134,7 +134,7 @@ fn drawn(clips: [Vec4; 3], (at, size): (DVec2, DVec2), how: Interpolation) -> Op
     if area.abs() < longest / 32.0 || !is_inside {
         return None;
     }
-    let [zero, one, two] = ndc.map(|of| of.z);
+    let [zero, one, two] = ndc.map(|corner| corner.z);
     let [one, two] = [one - zero, two - zero];
     let [a, b] = shares.map(|share| share as f32);
     let inverse = 1.0 / area as f32;
@@ -267,12 +267,12 @@ fn hold(rounds: usize, seed: u64) -> usize {
             if cross.length() < 1e-9
                 || exact
                     .iter()
-                    .any(|of| of.w < 1e-2 || of.z < 0.0 || of.z > of.w)
+                    .any(|clip| clip.w < 1e-2 || clip.z < 0.0 || clip.z > clip.w)
             {
                 continue;
             }
             let f32s = camera.matrix.as_mat4();
-            let centre = exact.map(|of| of.xyz() / of.w);
+            let centre = exact.map(|clip| clip.xyz() / clip.w);
             let centre = (centre[0] + centre[1] + centre[2]) / 3.0;
             let pixel = (DVec2::new(centre.x, -centre.y) * 0.5 + 0.5) * SIZE;
             let pixel = pixel.floor() + 0.5;
@@ -292,10 +292,11 @@ fn hold(rounds: usize, seed: u64) -> usize {
                 continue;
             }
             let at = place(pixel, seen);
-            let of = camera.matrix * at.extend(1.0);
-            let depths = (exact.map(|of| of.z / of.w), slender);
-            let ndc = of.xy() / of.w;
-            let (off, snapping) = bounds(&camera, corners, (ndc, of.w, seen), depths, format);
+            let projected = camera.matrix * at.extend(1.0);
+            let depths = (exact.map(|corner| corner.z / corner.w), slender);
+            let ndc = projected.xy() / projected.w;
+            let (off, snapping) =
+                bounds(&camera, corners, (ndc, projected.w, seen), depths, format);
             // The side that is seen.
             let ray = (place(pixel, seen + 1e-9) - at).normalize();
             let normal = cross.normalize();
@@ -467,7 +468,7 @@ fn no_place_is_behind_its_surface_where_corners_are_moved() {
                 let at = DVec2::from(pixel(index).map(|at| at as f64)) + 0.5;
                 let is_before = clips
                     .iter()
-                    .all(|of| of.w > 0.0 && of.z >= 0.0 && of.z <= of.w);
+                    .all(|clip| clip.w > 0.0 && clip.z >= 0.0 && clip.z <= clip.w);
                 let written = is_before.then(|| drawn(clips, (at, size), how)).flatten();
                 is_drawn.push(written.is_some());
                 written.map_or(far, |(depth, _)| depth)

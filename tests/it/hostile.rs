@@ -77,11 +77,7 @@ fn any_changes() -> impl Strategy<Value = Vec<Change>> {
     )
 }
 
-fn change(
-    bytes: &mut Vec<u8>,
-    others: &[(String, Vec<u8>)],
-    (what, at, reach, with, from): Change,
-) {
+fn change(bytes: &mut Vec<u8>, seeds: &[(String, Vec<u8>)], (what, at, reach, with, from): Change) {
     if bytes.is_empty() {
         bytes.push(b'(');
     }
@@ -97,7 +93,7 @@ fn change(
             bytes.splice(end..end, chunk);
         }
         4 => {
-            let other = &others[with % others.len()].1;
+            let other = &seeds[with % seeds.len()].1;
             let first = (other.len() as f64 * from) as usize;
             let chunk = other[first..(first + reach).min(other.len())].to_vec();
             bytes.splice(start..end, chunk);
@@ -126,8 +122,8 @@ fn mutate(target: &str, cases: u32, run: fn(&[u8]) -> String) {
     let outcome =
         TestRunner::new(config).run(&(0..seeds.len(), any_changes()), |(seed, changes)| {
             let mut bytes = seeds[seed].1.clone();
-            for of in changes {
-                change(&mut bytes, &seeds, of);
+            for edit in changes {
+                change(&mut bytes, &seeds, edit);
             }
             bounded(&String::from_utf8_lossy(&bytes), || run(&bytes));
             Ok(())

@@ -64,11 +64,11 @@ fn layers(preset: &str, scene: &Arc<Scene>, params: &[(&str, ParamValue)]) -> [V
     );
     let report = run(plan, &mut provider, &["outer", "inner"]);
     ["outer", "inner"].map(|layer| {
-        let found = report
+        let readback = report
             .readbacks
             .iter()
             .find(|readback| readback.name == layer);
-        match &found.unwrap().content {
+        match &readback.unwrap().content {
             Content::Texture { bytes, .. } => bytemuck::pod_collect_to_vec(bytes),
             Content::Buffer(_) => panic!("a layer is a texture"),
         }

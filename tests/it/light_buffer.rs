@@ -121,13 +121,13 @@ impl Bench {
         let read = ["visibility", "status", "entry_count", "ray_count"];
         let report = frame(&self.gpu, executor, &read);
         let statuses = values(&report, "status");
-        let of = |wanted: u32| statuses.iter().filter(|status| **status == wanted).count();
+        let count = |wanted: u32| statuses.iter().filter(|status| **status == wanted).count();
         let [lit, shadow, uncertain] = [
             status::CERTAIN_LIGHT,
             status::CERTAIN_SHADOW,
             status::UNCERTAIN,
         ]
-        .map(of);
+        .map(count);
         assert_eq!(values(&report, "ray_count"), [uncertain as u32]);
         Answer {
             visibility: values(&report, "visibility"),
@@ -210,8 +210,8 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> [usize; 3] 
     };
     let mut covered = 0;
     for (texel, list) in lists.iter().enumerate() {
-        let known: BTreeSet<u32> = list.iter().map(|(primitive, _)| *primitive).collect();
-        assert_eq!(known.len(), list.len(), "a caster is in a list twice");
+        let primitives: BTreeSet<u32> = list.iter().map(|(primitive, _)| *primitive).collect();
+        assert_eq!(primitives.len(), list.len(), "a caster is in a list twice");
         assert_eq!(heads[4 * texel + 1] as usize, list.len());
         let place = DVec2::new(
             (texel as u32 % map_size).into(),
@@ -244,7 +244,7 @@ fn check_lists(scene: &Scene, fit: &MapFit, report: &FrameReport) -> [usize; 3] 
     let positions = report
         .readbacks
         .iter()
-        .find(|found| found.name == "position");
+        .find(|readback| readback.name == "position");
     let positions = positions.unwrap().content.as_f32().unwrap();
     let [mut shading, mut border] = [0; 2];
     for (receiver, &own) in positions.chunks_exact(4).zip(&own) {
@@ -387,9 +387,9 @@ fn what_has_no_room_is_a_ray() {
         assert_eq!(lists.entries > most, is_short, "{most} of {needed} entries");
     }
     // Where some have room, some receivers need no ray.
-    let [all, most] = [1, needed / 10 * 9].map(|most| with(&mut bench, most));
+    let [single, most] = [1, needed / 10 * 9].map(|most| with(&mut bench, most));
     assert!(most.visibility == rays);
-    assert!(most.uncertain < all.uncertain, "{}", most.uncertain);
+    assert!(most.uncertain < single.uncertain, "{}", most.uncertain);
 }
 
 /// Nothing covers a texel before another caster, so that their order decides nothing.
@@ -406,13 +406,13 @@ fn an_entry_without_room_leaves_one_texel_to_rays() {
         ];
         bench.by_lists("receivers", &params)
     };
-    let all = with(&mut bench, 65_536);
-    let needed = all.entries;
+    let ample = with(&mut bench, 65_536);
+    let needed = ample.entries;
     assert!(needed < 65_536, "{needed}");
     let short = with(&mut bench, needed - 1);
     assert!(short.visibility == rays);
     assert_eq!(short.entries, needed);
-    let more = short.uncertain - all.uncertain;
+    let more = short.uncertain - ample.uncertain;
     assert!((1..100).contains(&more), "{more}");
 }
 
@@ -590,7 +590,7 @@ fn the_grid_is_laid_over_the_receivers() {
         let positions = report
             .readbacks
             .iter()
-            .find(|found| found.name == "position");
+            .find(|readback| readback.name == "position");
         let positions = positions.unwrap().content.as_f32().unwrap();
         let facing = positions
             .chunks_exact(4)

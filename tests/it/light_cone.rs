@@ -205,9 +205,9 @@ impl Sight {
     /// The point of the disk in the direction of a place relative to the receiver.
     fn point_before(&self, place: DVec3) -> Option<[f64; 2]> {
         let matrix = DMat3::from_cols(place, -self.across[0], -self.across[1]);
-        let found = matrix.inverse() * self.centre;
-        let is_on_disk = found.x > 0.0 && found.y.hypot(found.z) <= 1.0;
-        is_on_disk.then_some([found.y, found.z])
+        let hit = matrix.inverse() * self.centre;
+        let is_on_disk = hit.x > 0.0 && hit.y.hypot(hit.z) <= 1.0;
+        is_on_disk.then_some([hit.y, hit.z])
     }
 
     /// Traces the ray to a point of the disk through a triangle whose corners are relative to the
@@ -403,10 +403,10 @@ fn judge(
     provider.add("light_area", &[emitter.area]);
     provider.add("test.questions", &questions);
     let shader = shader();
-    let mut all = vec![("test.ron", DOCUMENT), ("shaders/judge.wgsl", &*shader)];
-    all.extend(files.iter().map(|(path, text)| (&**path, &**text)));
+    let mut sources = vec![("test.ron", DOCUMENT), ("shaders/judge.wgsl", &*shader)];
+    sources.extend(files.iter().map(|(path, text)| (&**path, &**text)));
     let answers: Vec<Answer> =
-        bytemuck::pod_collect_to_vec(&run_files(&all, &mut provider, "answers"));
+        bytemuck::pod_collect_to_vec(&run_files(&sources, &mut provider, "answers"));
     assert_eq!(answers.len(), questions.len());
     let emitter = Emitter::new(kind, &scene.mesh);
     for (number, (asked, answer)) in questions.iter().zip(&answers).enumerate().skip(1) {
@@ -478,12 +478,12 @@ const NEAR: f32 = 300.0;
 const FAR: f32 = 1e5;
 
 fn judged(count: u32, reach: f32, files: &[(String, String)]) -> Judged {
-    let mut all = Judged::default();
+    let mut total = Judged::default();
     for light in lights() {
-        judge(light, (count, reach), files, &mut all);
+        judge(light, (count, reach), files, &mut total);
     }
-    println!("{all:?}");
-    all
+    println!("{total:?}");
+    total
 }
 
 /// A module with that share of its bound, which follows the words `bound`.
@@ -498,40 +498,45 @@ fn with_bound(path: &str, bound: &str, share: f64) -> Vec<(String, String)> {
 
 #[test]
 fn what_the_planes_are_sure_of_f64_and_the_tracer_find_too() {
-    let found = judged(20_000, FAR, &[]);
-    assert_eq!((found.wrong, found.refuted), (0, 0), "{:?}", found.first);
-    let least = found.hidden.min(found.seen).min(found.asked);
-    assert!(least > 50_000, "{found:?}");
+    let outcome = judged(20_000, FAR, &[]);
+    assert_eq!(
+        (outcome.wrong, outcome.refuted),
+        (0, 0),
+        "{:?}",
+        outcome.first
+    );
+    let least = outcome.hidden.min(outcome.seen).min(outcome.asked);
+    assert!(least > 50_000, "{outcome:?}");
     // A thousandth would be too little, and less than a thousandth no measure.
-    assert!((1e-3..1.0).contains(&found.farthest), "{found:?}");
+    assert!((1e-3..1.0).contains(&outcome.farthest), "{outcome:?}");
 }
 
 #[test]
 fn a_tracer_that_rounds_in_another_way_finds_it_too() {
     for reach in [NEAR, FAR] {
-        let found = judged(5_000, reach, &altered_files(1));
-        let faults = (found.wrong, found.refuted, found.lost);
-        assert_eq!(faults, (0, 0, 0), "{:?}", found.first);
+        let outcome = judged(5_000, reach, &altered_files(1));
+        let faults = (outcome.wrong, outcome.refuted, outcome.lost);
+        assert_eq!(faults, (0, 0, 0), "{:?}", outcome.first);
     }
 }
 
 #[test]
 fn a_sample_that_a_caster_hides_is_in_its_box() {
-    let found = judged(20_000, NEAR, &[]);
-    assert_eq!((found.lost, found.wrong), (0, 0), "{:?}", found.first);
-    assert!(found.outside > 50_000, "{found:?}");
+    let outcome = judged(20_000, NEAR, &[]);
+    assert_eq!((outcome.lost, outcome.wrong), (0, 0), "{:?}", outcome.first);
+    assert!(outcome.outside > 50_000, "{outcome:?}");
 }
 
 #[test]
 fn without_the_bound_boxes_lose_samples() {
     let path = "shaders/shared/caster_box.wgsl";
-    let found = judged(20_000, NEAR, &with_bound(path, "return 32.0 * ", 0.0));
-    assert!(found.lost > 0, "{found:?}");
+    let outcome = judged(20_000, NEAR, &with_bound(path, "return 32.0 * ", 0.0));
+    assert!(outcome.lost > 0, "{outcome:?}");
 }
 
 #[test]
 fn a_thousandth_of_the_bound_is_refuted() {
     let path = "shaders/shared/light_cone.wgsl";
-    let found = judged(20_000, FAR, &with_bound(path, "let error = ", 1e-3));
-    assert!(found.wrong > 0 && found.refuted > 0, "{found:?}");
+    let outcome = judged(20_000, FAR, &with_bound(path, "let error = ", 1e-3));
+    assert!(outcome.wrong > 0 && outcome.refuted > 0, "{outcome:?}");
 }

@@ -117,13 +117,16 @@ fn parallel_rays_hit_the_same() {
             let nearest =
                 |hits: &[Hit]| -> Vec<u32> { hits.iter().map(|hit| hit.t.to_bits()).collect() };
             assert!(nearest(&ours) == nearest(&theirs), "{case} {direction}");
-            let found = |hits: &[Hit]| -> Vec<bool> {
+            let hit_flags = |hits: &[Hit]| -> Vec<bool> {
                 hits.iter().map(|hit| hit.primitive != MISS).collect()
             };
             let [any, any_too] = both("Any", direction, &mesh, &rays, Some(&skip));
-            assert!(found(&any) == found(&ours), "{case} {direction}");
-            assert!(found(&any_too) == found(&ours), "{case} {direction}");
-            blocked += found(&any).iter().filter(|found| **found).count();
+            assert!(hit_flags(&any) == hit_flags(&ours), "{case} {direction}");
+            assert!(
+                hit_flags(&any_too) == hit_flags(&ours),
+                "{case} {direction}"
+            );
+            blocked += hit_flags(&any).iter().filter(|is_hit| **is_hit).count();
         }
     }
     assert!(blocked > 10_000, "{blocked}: too few to mean anything");
@@ -168,10 +171,10 @@ fn it_is_refused_where_nothing_says_that_rays_go_towards_the_light() {
         let engine_param = ParamValue::Choice(engine.to_owned());
         request.params.insert("engine".to_owned(), engine_param);
         let planned = graph.plan(&request);
-        let said = planned.err().map(|errors| errors.to_string());
-        assert_eq!(said.is_some(), is_refused, "{engine}: {said:?}");
-        if let Some(said) = said {
-            assert!(said.contains("direction: Light"), "{said}");
+        let error = planned.err().map(|errors| errors.to_string());
+        assert_eq!(error.is_some(), is_refused, "{engine}: {error:?}");
+        if let Some(error) = error {
+            assert!(error.contains("direction: Light"), "{error}");
         }
     }
 }

@@ -179,9 +179,9 @@ impl<'g> Host<'g> {
             let fault = self.faults.get(index).copied();
             let what = format!("{preset}, frame {index}, {:?}", frame.end);
             if frame.end != Some(End::Submitted) {
-                let told = fault == Some(FaultKind::NeverRan);
+                let is_told = fault == Some(FaultKind::NeverRan);
                 assert!(
-                    told || fault.is_none() && !frame.is_read,
+                    is_told || fault.is_none() && !frame.is_read,
                     "{what}: {fault:?}"
                 );
                 assert!(!reports.contains_key(index), "{what}");

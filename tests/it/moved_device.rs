@@ -186,8 +186,8 @@ impl Stage {
     }
 
     fn put(&mut self, at: usize, map: DAffine3) {
-        let (_, known, part) = &mut self.parts[at];
-        *known = map;
+        let (_, old_map, part) = &mut self.parts[at];
+        *old_map = map;
         self.scene.set_transform(*part, &map).unwrap();
     }
 
@@ -276,7 +276,10 @@ fn after_the_device_is_lost_the_recipe_shows_the_same() {
         let gpu = of_own_instance();
         let mut stage = Stage::changed(&gpu);
         let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut stage.scene));
-        let before: Vec<Vec<u32>> = executors.iter_mut().map(|of| shown(&gpu, of)).collect();
+        let before: Vec<Vec<u32>> = executors
+            .iter_mut()
+            .map(|executor| shown(&gpu, executor))
+            .collect();
         gpu.device.destroy();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         for executor in &mut executors {
@@ -296,7 +299,7 @@ fn after_the_device_is_lost_the_recipe_shows_the_same() {
             text.contains("the provider") && text.contains("SceneProvider::move_to"),
             "{text}"
         );
-        let known = (
+        let original = (
             stage.scene.parts().collect::<Vec<PartId>>(),
             stage.scene.lights().to_vec(),
             stage.scene.light(),
@@ -313,9 +316,9 @@ fn after_the_device_is_lost_the_recipe_shows_the_same() {
         }
         stage.is_as_fresh(&next);
         let scene = &stage.scene;
-        assert!(scene.parts().eq(known.0) && scene.lights() == known.1);
-        assert!(scene.light() == known.2);
-        assert!(scene.scene().mesh.positions == known.3.mesh.positions);
+        assert!(scene.parts().eq(original.0) && scene.lights() == original.1);
+        assert!(scene.light() == original.2);
+        assert!(scene.scene().mesh.positions == original.3.mesh.positions);
         // The old handles move parts on.
         let count = stage.parts.len();
         (0..count).for_each(|at| stage.put(at, place(2.0 + 2.0 * at as f64, 7.0)));
@@ -383,8 +386,8 @@ fn what_is_built_again_is_what_there_was() {
             stage.scene.deform(positions, normals).unwrap();
         }
         let described = |scene: &SceneProvider, name: &String| {
-            let of = scene.describe(name);
-            of.is_some() && of != Some(Provided::ACCELERATION_STRUCTURE)
+            let provided = scene.describe(name);
+            provided.is_some() && provided != Some(Provided::ACCELERATION_STRUCTURE)
         };
         let mut names = stage.scene.names();
         names.retain(|name| described(&stage.scene, name) && name != "scene.embree");
@@ -526,7 +529,7 @@ fn calls_with_another_device_are_named() {
             };
             let error = mesh.read(&gpu.device, &gpu.queue).unwrap_err();
             assert!(
-                matches!(error, GpuMeshError::OtherDevice(of) if of == what),
+                matches!(error, GpuMeshError::OtherDevice(content) if content == what),
                 "{error}"
             );
         }
@@ -715,7 +718,7 @@ fn changing_host(frames: usize, seed: u64) -> usize {
         }
         let refreshed = executors
             .iter_mut()
-            .try_for_each(|of| of.refresh(&mut stage.scene));
+            .try_for_each(|executor| executor.refresh(&mut stage.scene));
         match refreshed {
             Ok(()) => {}
             Err(ExecuteError::OtherThanPlanned { .. }) => executors.clear(),

@@ -275,8 +275,8 @@ fn the_work_follows_the_parts_that_move() {
 fn the_program_of_the_document_pays_for_what_moves() {
     let (gpu, count) = (open(), 100);
     let stone = meshes::potato(2, 0.2, 1);
-    let all = vec![&stone; count];
-    let mut program = Shadows::new((&gpu.device, &gpu.queue), VIEWPORT, &all).unwrap();
+    let copies = vec![&stone; count];
+    let mut program = Shadows::new((&gpu.device, &gpu.queue), VIEWPORT, &copies).unwrap();
     let (camera, mut maps) = (view().camera(VIEWPORT), rows(count));
     let mut light = DirectionalLight::new(DVec3::NEG_Y);
     let mut by_hand = SceneProvider::from_parts(stones(count), light);
@@ -355,13 +355,13 @@ fn exact_frames(count: usize, frames: usize, compared: usize) {
         let expected = shown(&gpu, &mut start(&gpu, "crsm", &mut alone));
         assert!(seen == expected, "{turn}");
     }
-    for of in [
+    for counter in [
         |work: &Work| work.uploaded,
         |work: &Work| work.copied,
         |work: &Work| work.nodes,
         |work: &Work| work.laid,
     ] {
-        let mut values: Vec<u64> = works.iter().map(of).collect();
+        let mut values: Vec<u64> = works.iter().map(counter).collect();
         values.sort_unstable();
         let median = values[frames / 2];
         assert!(values[frames - 1] <= 3 * median, "{median}, {values:?}");
@@ -457,7 +457,9 @@ fn a_light_of_another_kind_is_an_error_of_its_own() {
     else {
         panic!("{error}");
     };
-    let word = |of: &Option<skiagraph_graph::Provided>| of.and_then(|of| of.kind?.word().into());
+    let word = |provided: &Option<skiagraph_graph::Provided>| {
+        provided.and_then(|provided| provided.kind?.word().into())
+    };
     assert_eq!(name, "light");
     assert_eq!(
         [word(planned), word(given)],
@@ -491,14 +493,14 @@ fn parts_that_are_added_and_removed_leave_the_mesh_of_the_others() {
     ];
     let room = Room::of_copies(&kinds[1], 4).and(Room::of_copies(&kinds[0], 1));
     scene.reserve(room, &gpu.device.limits()).unwrap();
-    let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
+    let maps: Vec<DAffine3> = there.iter().map(|part| part.1).collect();
     scene.set_transforms(&maps).unwrap();
     let mut handles: Vec<PartId> = scene.parts().collect();
     let presets = ["rt", "light_buffer", "crsm"];
     let mut executors = presets.map(|preset| start(&gpu, preset, &mut scene));
     let mut turn = |scene: &mut SceneProvider, there: &[(&Mesh, DAffine3)], what: &str| {
-        let meshes: Vec<&Mesh> = there.iter().map(|of| of.0).collect();
-        let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
+        let meshes: Vec<&Mesh> = there.iter().map(|part| part.0).collect();
+        let maps: Vec<DAffine3> = there.iter().map(|part| part.1).collect();
         let mut alone = provider(Movable::joined(&meshes));
         alone.set_transforms(&maps).unwrap();
         let before = scene.work();
@@ -534,7 +536,7 @@ fn parts_that_are_added_and_removed_leave_the_mesh_of_the_others() {
     for (_, map) in &mut there {
         map.translation.x += 0.5;
     }
-    let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
+    let maps: Vec<DAffine3> = there.iter().map(|part| part.1).collect();
     scene.set_transforms(&maps).unwrap();
     turn(&mut scene, &there, "all move");
     // A branch, and a hierarchy that is built when some have come and gone already.
@@ -552,7 +554,7 @@ fn parts_that_are_added_and_removed_leave_the_mesh_of_the_others() {
     whole.set_transforms(&[there[0].1, there[3].1]).unwrap();
     for preset in presets {
         let [seen, expected] =
-            [&mut later, &mut whole].map(|of| shown(&gpu, &mut start(&gpu, preset, of)));
+            [&mut later, &mut whole].map(|scene| shown(&gpu, &mut start(&gpu, preset, scene)));
         assert!(seen == expected, "{preset}");
     }
 }
@@ -657,7 +659,7 @@ fn the_first_masked_part_asks_for_another_plan() {
         assert!(executor.plan().relies_on().is_empty(), "{preset}");
         let seen = shown(&gpu, &mut executor);
         let [masked, solid] =
-            [&mut whole, &mut solid].map(|of| shown(&gpu, &mut start(&gpu, preset, of)));
+            [&mut whole, &mut solid].map(|scene| shown(&gpu, &mut start(&gpu, preset, scene)));
         assert!(seen == masked && seen != solid, "{preset}");
     }
 }
@@ -735,13 +737,13 @@ fn leaves_are_added_to_a_scene_without_and_with_masks() {
     for (mesh, at) in [(&leaves, 4.0), (&floor, 7.0), (&leaves, 9.0)] {
         scene.add_part(mesh, &place(at)).unwrap();
         there.push((mesh, place(at)));
-        let meshes: Vec<&Mesh> = there.iter().map(|of| of.0).collect();
-        let maps: Vec<DAffine3> = there.iter().map(|of| of.1).collect();
+        let meshes: Vec<&Mesh> = there.iter().map(|part| part.0).collect();
+        let maps: Vec<DAffine3> = there.iter().map(|part| part.1).collect();
         let mut whole = provider(Movable::joined(&meshes));
         whole.set_transforms(&maps).unwrap();
         for preset in ["rt", "light_buffer", "crsm"] {
             let [seen, expected] =
-                [&mut scene, &mut whole].map(|of| shown(&gpu, &mut start(&gpu, preset, of)));
+                [&mut scene, &mut whole].map(|scene| shown(&gpu, &mut start(&gpu, preset, scene)));
             assert!(seen == expected, "{preset}, {at}");
         }
     }
@@ -775,7 +777,7 @@ fn materials_are_uploaded_of_the_part_that_is_added() {
         "scene.material_indices",
         "scene.texels",
     ];
-    let all = |provider: &mut SceneProvider| {
+    let uploads = |provider: &mut SceneProvider| {
         let buffers = names.map(|name| provider.build(name, &gpu.device, &gpu.queue).unwrap());
         provider.submit_built(&gpu.device, &gpu.queue).unwrap();
         buffers.map(|buffer| contents(&gpu, &buffer))
@@ -785,23 +787,23 @@ fn materials_are_uploaded_of_the_part_that_is_added() {
     let room = Room::of_copies(&bush, 1);
     provider.reserve(room, &gpu.device.limits()).unwrap();
     provider.set_transforms(&maps[..3]).unwrap();
-    all(&mut provider);
+    uploads(&mut provider);
     let before = provider.work();
     provider.add_part(&bush, &maps[3]).unwrap();
-    let seen = all(&mut provider);
+    let seen = uploads(&mut provider);
     let (surfaces, triangles) = (&bush.surfaces, bush.triangles.len());
     let own =
         8 * surfaces.uvs.len() + 32 * surfaces.materials.len() + (12 + 4) * triangles + 4 * 64;
     assert_eq!(provider.work().since(before).uploaded, own as u64);
     let mut whole = self::provider(Movable::joined(&[&trees, &trees, &trees, &bush]));
     whole.set_transforms(&maps).unwrap();
-    for ((name, seen), expected) in names.iter().zip(seen).zip(all(&mut whole)) {
+    for ((name, seen), expected) in names.iter().zip(seen).zip(uploads(&mut whole)) {
         assert!(seen == expected, "{name}");
     }
     // Another mesh begins anew.
     provider.set_parts(Movable::joined(&[&bush]));
     let mut alone = self::provider(Movable::joined(&[&bush]));
-    assert!(all(&mut provider) == all(&mut alone));
+    assert!(uploads(&mut provider) == uploads(&mut alone));
 }
 
 /// A part that was cut out of a mesh is removed from between the others.

@@ -121,10 +121,10 @@ fn parts_that_move_are_traced_where_all_passes_see_them() {
             let part = 1 + (7 * turn + step * step) % COUNT;
             maps[part] = moved(&rows()[part], turn + step);
         }
-        let known: Vec<DAffine3> = maps.clone();
+        let new_maps: Vec<DAffine3> = maps.clone();
         let [by_device, by_us] = &mut executors;
         let work = work(&mut scene, by_device, |scene| {
-            scene.set_transforms(&known).unwrap();
+            scene.set_transforms(&new_maps).unwrap();
         });
         let most = MOVING * stone.triangles.len();
         assert!(
@@ -133,22 +133,22 @@ fn parts_that_move_are_traced_where_all_passes_see_them() {
         );
         by_us.refresh(&mut scene).unwrap();
         let [theirs, ours] = [shown(&gpu, by_device), shown(&gpu, by_us)];
-        let of = Arc::new(Scene {
+        let at_rest = Arc::new(Scene {
             name: "moving parts".to_owned(),
             mesh: scene.scene().mesh.clone(),
             views: vec![far_view()],
             lights: vec![Light::only(sun())],
         });
         let engine = ParamValue::Choice("ray_query".to_owned());
-        let mut bench = Bench::new(&of, VIEWPORT);
+        let mut bench = Bench::new(&at_rest, VIEWPORT);
         let whole = bench.answers("rt", &[("engine", engine)]);
         assert!(theirs == whole.visibility, "{turn}: others than at rest");
         let wrong = whole.counts.wrong;
         assert_eq!(wrong.total - wrong.in_band, 0, "{turn}: {:?}", whole.counts);
         let counts = whole.counts.pixels;
         assert!(counts.shadow > 100 && counts.lit > 500, "{counts:?}");
-        let others = theirs.iter().zip(&ours).filter(|(a, b)| a != b);
-        differing += others.count();
+        let differences = theirs.iter().zip(&ours).filter(|(a, b)| a != b);
+        differing += differences.count();
         let flags = whole.truth.indeterminate.iter();
         indeterminate += flags.filter(|flag| **flag).count();
         pixels += theirs.len();
@@ -187,7 +187,10 @@ fn structures_are_built_of_what_moved_and_made_compact_once() {
             scene.version(TLAS)
         })
         .collect();
-    assert!(versions.iter().all(|of| *of == versions[0]), "{versions:?}");
+    assert!(
+        versions.iter().all(|version| *version == versions[0]),
+        "{versions:?}"
+    );
     assert_eq!(times(&scene), Some(2));
     for moving in [1, 5] {
         for map in &mut maps[..moving] {
@@ -286,8 +289,8 @@ fn parts_among_the_triangles_of_others_are_one_structure() {
     let mut executor = rt(&gpu, "ray_query", &mut scene);
     let up = DAffine3::from_translation(0.5 * DVec3::Y);
     let handles: Vec<PartId> = scene.parts().collect();
-    let all = first + 2 * count;
-    for (part, most) in [(0, all), (1, all), (2, count)] {
+    let triangles = first + 2 * count;
+    for (part, most) in [(0, triangles), (1, triangles), (2, count)] {
         let work = work(&mut scene, &mut executor, |scene| {
             scene.set_transform(handles[part], &up).unwrap();
         });

@@ -168,19 +168,19 @@ fn the_gpu_answers_as_some_allowed_arithmetic_does() {
                 .flatten()
                 .any(|&arithmetic| holds(arithmetic))
         };
-        let said = format!("{question:?}: {answer:?}");
-        assert!(some(&|a| a.edge_area(p, q) == answer.edge_area), "{said}");
+        let case = format!("{question:?}: {answer:?}");
+        assert!(some(&|a| a.edge_area(p, q) == answer.edge_area), "{case}");
         assert!(
             some(&|a| a.edge_overlaps_texel(p, q, point) == (answer.overlaps == 1)),
-            "{said}"
+            "{case}"
         );
         assert!(
             some(&|a| a.left_of(numbers, [p, q], point) == (answer.left == 1)),
-            "{said}"
+            "{case}"
         );
         assert!(
             some(&|a| a.side_of_edge([p, q], point) == answer.side),
-            "{said}"
+            "{case}"
         );
         let area = numbers[0] as f32 - numbers[1] as f32;
         // Error bound of either, as the shader says.
@@ -190,19 +190,19 @@ fn the_gpu_answers_as_some_allowed_arithmetic_does() {
             let bound = 2.0 * HALF_ULP * (3.0 * away + 8.0 * expected.abs());
             (expected - answer.inward_distance).abs() <= bound
         };
-        assert!(some(&near), "{said}");
+        assert!(some(&near), "{case}");
         let eye = [point[0], point[1], q[1]];
         let own = Arithmetic::PLAIN.receiver_error_bound([p[0], p[1], q[0]], eye);
         assert!(
             (own - answer.receiver_error_bound).abs() <= 1e-5 * own,
-            "{said}"
+            "{case}"
         );
         let around = [
             [p[0] - point[0], p[1] - point[1]],
             [q[0] - point[0], q[1] - point[1]],
             [q[0] - p[0], q[1] - p[1]],
         ];
-        assert_eq!(bbox_contains(around), answer.contains == 1, "{said}");
+        assert_eq!(bbox_contains(around), answer.contains == 1, "{case}");
         sides[(answer.side + 1.0) as usize] += 1;
         lefts[answer.left as usize] += 1;
         met[answer.overlaps as usize] += 1;

@@ -233,7 +233,7 @@ fn pixels_in_turns_get_the_answers_that_they_get_at_once() {
 fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
     // A contour may be off by a texel or so: 12 % of a face of the box at a map of 32 texels' edge.
     let settled = ground_truth(&scene(), 0.12);
-    let all = ground_truth(&scene(), 1e-4);
+    let strict = ground_truth(&scene(), 1e-4);
     let mut wrong = vec![];
     for map_size in [32, 1024] {
         let scene = scene();
@@ -262,7 +262,7 @@ fn nsm_is_wrong_at_contours_only_and_less_so_on_a_finer_map() {
                 "pixel {index}, {ground_truth:?}, map {map_size}"
             );
         }
-        let pixels = all
+        let pixels = strict
             .iter()
             .enumerate()
             .filter(|(_, ground_truth)| ground_truth.is_settled());

@@ -222,12 +222,12 @@ fn a_view_with_its_own_light_is_drawn_as_its_scene_would_be_under_that_light() {
             let report = graphs::frame(&gpu, executor, &["visibility", "status"]);
             report.readbacks
         };
-        let of = |scene: &Arc<Scene>| {
+        let readbacks = |scene: &Arc<Scene>| {
             let mut provider = graphs::provider(scene, &scene.views[3], viewport);
             next(&mut start(&mut provider))
         };
-        let expected = of(&under_it);
-        assert_eq!(of(&scene), expected, "{preset}");
+        let expected = readbacks(&under_it);
+        assert_eq!(readbacks(&scene), expected, "{preset}");
 
         let mut provider = graphs::provider(&scene, &scene.views[0], viewport);
         let mut executor = start(&mut provider);
@@ -260,7 +260,7 @@ fn a_light_that_cannot_be_used_is_told_by_its_name() {
             angle_degrees,
         }),
     };
-    for (angle, told) in [
+    for (angle, fault) in [
         (f64::NAN, "angle_degrees is NaN"),
         (90.0, "angle_degrees is 90"),
         (-1.0, "angle_degrees is -1"),
@@ -274,7 +274,7 @@ fn a_light_that_cannot_be_used_is_told_by_its_name() {
         let mut provider = SceneProvider::new(Arc::new(scene));
         for name in ["light", "light_area", "lights", "light_areas"] {
             let error = build(&mut provider, &gpu, name).unwrap_err();
-            let named = format!("light \"haze\": the light's {told}");
+            let named = format!("light \"haze\": the light's {fault}");
             assert!(error.contains(&named), "{name}: {error}");
             assert!(error.contains("less than 90"), "{name}: {error}");
         }

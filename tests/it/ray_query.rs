@@ -130,9 +130,9 @@ fn random_rays_hit_the_same() {
         .collect();
     let closest = ["Hierarchy", "RayQuery"].map(|by| traced(by, "Closest", &mesh, &rays, None));
     let any = traced("RayQuery", "Any", &mesh, &rays, None);
-    let (mut found, mut differing, mut rounded) = (0, 0, 0);
+    let (mut hits, mut differing, mut rounded) = (0, 0, 0);
     for ((ours, theirs), any) in closest[0].iter().zip(&closest[1]).zip(&any) {
-        found += usize::from(ours.primitive != MISS);
+        hits += usize::from(ours.primitive != MISS);
         let near = |a: f32, b: f32| (a - b).abs() < 1e-3;
         let same = ours.primitive == theirs.primitive
             && near(ours.t, theirs.t)
@@ -143,10 +143,10 @@ fn random_rays_hit_the_same() {
         rounded += usize::from(ours.t.to_bits() != theirs.t.to_bits());
     }
     println!(
-        "{found} of {} rays hit, {differing} differ; {rounded} distances are rounded otherwise",
+        "{hits} of {} rays hit, {differing} differ; {rounded} distances are rounded otherwise",
         rays.len()
     );
-    assert!(found > 10_000, "{found} hits: too few to mean anything");
+    assert!(hits > 10_000, "{hits} hits: too few to mean anything");
     assert!(differing as f64 <= MOST * rays.len() as f64, "{differing}");
     // Past what each hits first, the next.
     let skip: Vec<u32> = closest[0].iter().map(|hit| hit.primitive).collect();
@@ -187,9 +187,9 @@ fn intervals_and_empty_scenes() {
         ray(-1.0, 10.0, Vec3::Z),
     ];
     let hits = traced("RayQuery", "Closest", &mesh, &rays, None);
-    let found: Vec<bool> = hits.iter().map(|hit| hit.primitive == 0).collect();
+    let hit_flags: Vec<bool> = hits.iter().map(|hit| hit.primitive == 0).collect();
     assert_eq!(
-        found,
+        hit_flags,
         [
             true, true, false, true, false, false, false, false, false, false
         ],

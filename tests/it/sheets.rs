@@ -289,7 +289,7 @@ fn see(scene: &Arc<Scene>, preset: &str, params: Params) -> Shown {
     let count = |class: Class, is_counted: &dyn Fn(f32) -> bool| {
         let pixels = truth.classes.iter().zip(&shown);
         pixels
-            .filter(|(of, shown)| **of == class && is_counted(**shown))
+            .filter(|(actual, shown)| **actual == class && is_counted(**shown))
             .count()
     };
     let seen = Shown {
@@ -541,7 +541,7 @@ fn sheets_move_with_their_parts() {
         light: None,
     }
     .camera(VIEWPORT);
-    let of = |parts: &[(&Mesh, DAffine3)]| {
+    let provider_of = |parts: &[(&Mesh, DAffine3)]| {
         let meshes: Vec<&Mesh> = parts.iter().map(|part| part.0).collect();
         let maps: Vec<DAffine3> = parts.iter().map(|part| part.1).collect();
         let mut provider = SceneProvider::from_parts(Movable::joined(&meshes), sun());
@@ -559,13 +559,13 @@ fn sheets_move_with_their_parts() {
         values(&run_on(&gpu, plan, provider, &["visibility"]), "visibility")
     };
     let same = |scene: &mut SceneProvider, parts: &[(&Mesh, DAffine3)]| {
-        let mut whole = of(parts);
+        let mut whole = provider_of(parts);
         for preset in ["nsm", "crsm", "crsma_full"] {
             let (seen, expected) = (shown(scene, preset), shown(&mut whole, preset));
             assert!(seen == expected, "{preset}, {} parts", parts.len());
         }
     };
-    let mut scene = of(&[(&ground, place(6.0))]);
+    let mut scene = provider_of(&[(&ground, place(6.0))]);
     let room = Room::of_copies(&leaves, 1);
     scene.reserve(room, &gpu.device.limits()).unwrap();
     // It fits into that room; then triangles that were sheets are none, and the mesh grows.
@@ -593,5 +593,5 @@ fn sheets_move_with_their_parts() {
         (&stone, place(4.0)),
         (&plain, mirrored),
     ];
-    assert!(shown(&mut scene, "nsm") != shown(&mut of(&parts), "nsm"));
+    assert!(shown(&mut scene, "nsm") != shown(&mut provider_of(&parts), "nsm"));
 }

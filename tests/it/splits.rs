@@ -62,18 +62,18 @@ fn trapezoids_by_hand() {
         [-b, -1.0],
         [b, -1.0],
     ];
-    let found = trapezoid(frustum.map(DVec2::from), 4.0 / 7.0).unwrap();
-    for (found, wanted) in found.into_iter().zip(corners) {
-        assert!(found.distance(wanted) < 1e-12, "{found} {wanted}");
+    let quad = trapezoid(frustum.map(DVec2::from), 4.0 / 7.0).unwrap();
+    for (corner, wanted) in quad.into_iter().zip(corners) {
+        assert!(corner.distance(wanted) < 1e-12, "{corner} {wanted}");
     }
 }
 
 /// But for a factor.
-fn same(found: DMat3, wanted: DMat3) {
-    let factor = found.z_axis.z / wanted.z_axis.z;
+fn same(matrix: DMat3, wanted: DMat3) {
+    let factor = matrix.z_axis.z / wanted.z_axis.z;
     assert!(
-        found.abs_diff_eq(wanted * factor, 1e-12 * factor.abs()),
-        "{found} {wanted}"
+        matrix.abs_diff_eq(wanted * factor, 1e-12 * factor.abs()),
+        "{matrix} {wanted}"
     );
 }
 
@@ -263,16 +263,16 @@ pub(crate) fn distances(scene: &Arc<Scene>, viewport: [u32; 2]) -> Vec<f64> {
 
 /// Returns the share of wrong pixels among those that face the light at such a distance.
 pub(crate) fn wrong_share(answers: &Answers, distances: &[f64], between: [f64; 2]) -> f64 {
-    let (mut wrong, mut all) = (0.0, 0.0);
+    let (mut wrong, mut counted) = (0.0, 0.0);
     for (pixel, class) in answers.truth.classes.iter().enumerate() {
         if class.faces_light() && (between[0]..between[1]).contains(&distances[pixel]) {
-            all += 1.0;
+            counted += 1.0;
             let lit = *class == Class::Lit;
             wrong += f64::from(u8::from(lit != (answers.visibility[pixel] == 1)));
         }
     }
-    assert!(all > 200.0, "{between:?}: {all}");
-    wrong / all
+    assert!(counted > 200.0, "{between:?}: {counted}");
+    wrong / counted
 }
 
 /// Duelling frusta: where the light shines into the eye no trapezoid is better than a rectangle,

@@ -84,8 +84,8 @@ fn layers(scene: &Arc<Scene>) -> [Vec<f32>; 2] {
     });
     let report = run(plan, &mut provider, &names);
     names.map(|layer| {
-        let found = report.readbacks.iter().find(|read| read.name == layer);
-        match &found.unwrap().content {
+        let readback = report.readbacks.iter().find(|read| read.name == layer);
+        match &readback.unwrap().content {
             Content::Texture { bytes, .. } => bytemuck::pod_collect_to_vec(bytes),
             Content::Buffer(_) => panic!("a layer is a texture"),
         }

@@ -105,7 +105,7 @@ fn check(fit: &str, light: impl Into<LightKind>) -> (usize, usize) {
     let footprints = texels::footprints(seen, light, &density, &truth).unwrap();
 
     let [width, height] = VIEWPORT.map(|edge| edge as usize);
-    let (mut checked, mut found) = (0, std::collections::BTreeSet::new());
+    let (mut checked, mut used_layers) = (0, std::collections::BTreeSet::new());
     for (x, y) in (1..width - 1).flat_map(|x| (1..height - 1).map(move |y| (x, y))) {
         let pixel = x + y * width;
         let around = [pixel - 1, pixel + 1, pixel - width, pixel + width];
@@ -122,9 +122,9 @@ fn check(fit: &str, light: impl Into<LightKind>) -> (usize, usize) {
             "{fit}, ({x}, {y}): {per_pixel}, but the map has {area}"
         );
         checked += 1;
-        found.insert(layers[pixel]);
+        used_layers.insert(layers[pixel]);
     }
-    (checked, found.len())
+    (checked, used_layers.len())
 }
 
 #[test]
@@ -192,11 +192,15 @@ fn from_the_lights_own_place_all_pixels_have_the_same_texels() {
         base_colors: Vec::new(),
     };
     let light = &scene.lights[0].kind;
-    let all = texels::footprints(seen, light, &density, &truth).unwrap();
-    let all: Vec<f64> = all.iter().flatten().map(|of| of.texels()).collect();
-    assert!(all.len() > 1000, "{}", all.len());
+    let footprints = texels::footprints(seen, light, &density, &truth).unwrap();
+    let per_pixel: Vec<f64> = footprints
+        .iter()
+        .flatten()
+        .map(|footprint| footprint.texels())
+        .collect();
+    assert!(per_pixel.len() > 1000, "{}", per_pixel.len());
     assert!(
-        all.iter().all(|texels| (texels - 4.0).abs() < 1e-3),
-        "{all:?}"
+        per_pixel.iter().all(|texels| (texels - 4.0).abs() < 1e-3),
+        "{per_pixel:?}"
     );
 }

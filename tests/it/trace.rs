@@ -30,7 +30,7 @@ fn random_rays_through_a_soup() {
         .collect();
     let any = trace_all(&mesh, &rays, "Any");
     let closest = trace_all(&mesh, &rays, "Closest");
-    let mut found = 0;
+    let mut hits = 0;
     for ((ray, any), closest) in rays.iter().zip(&any).zip(&closest) {
         let sure = brute::hits(&mesh, ray, MISS, BORDER);
         let possible = brute::hits(
@@ -66,7 +66,7 @@ fn random_rays_through_a_soup() {
             }
         }
         if let (Some(nearest), true) = (sure.first(), closest.primitive != MISS) {
-            found += 1;
+            hits += 1;
             assert!(
                 f64::from(closest.t) <= nearest.t + 1e-5,
                 "{ray:?}: {closest:?} is not the nearest, {nearest:?} is"
@@ -74,8 +74,8 @@ fn random_rays_through_a_soup() {
         }
     }
     assert!(
-        found > 500,
-        "{found} rays hit something: too few to mean anything"
+        hits > 500,
+        "{hits} rays hit something: too few to mean anything"
     );
 }
 
@@ -171,20 +171,20 @@ fn a_ray_does_not_see_what_it_skips() {
     let any = trace(&mesh, &rays, Some(&skip), rays.len() as u32, "Any");
     let mut further = 0;
     for (index, ray) in rays.iter().enumerate() {
-        let found = [first[index], second[index], any[index]];
+        let hits = [first[index], second[index], any[index]];
         if first[index].primitive == MISS {
             assert!(
-                found.iter().all(|hit| hit.primitive == MISS),
-                "{ray:?}: {found:?}"
+                hits.iter().all(|hit| hit.primitive == MISS),
+                "{ray:?}: {hits:?}"
             );
             continue;
         }
         assert!(second[index].primitive != skip[index] && any[index].primitive != skip[index]);
-        assert!(second[index].t >= first[index].t, "{ray:?}: {found:?}");
+        assert!(second[index].t >= first[index].t, "{ray:?}: {hits:?}");
         assert_eq!(
             second[index].primitive == MISS,
             any[index].primitive == MISS,
-            "{ray:?}: {found:?}"
+            "{ray:?}: {hits:?}"
         );
         further += usize::from(second[index].primitive != MISS);
     }
@@ -250,9 +250,9 @@ fn the_interval_of_a_ray_is_open_below_and_closed_above() {
         away,
     ];
     let hits = trace_all(&mesh, &rays, "Closest");
-    let found: Vec<bool> = hits.iter().map(|hit| hit.primitive == 0).collect();
+    let hit_flags: Vec<bool> = hits.iter().map(|hit| hit.primitive == 0).collect();
     assert_eq!(
-        found,
+        hit_flags,
         [true, true, false, true, false, false, false, false],
         "{hits:?}"
     );
@@ -436,14 +436,14 @@ fn a_way_that_is_broken_off_has_no_answer() {
             r#"mode: Closest, engine: LightSpace, direction: Light"#,
         ] {
             let hits = trace_by(fields, DVec3::NEG_Y, &mesh, &rays, None, rays.len() as u32);
-            let found = [hits[0], hits[1]].map(|hit| hit.primitive);
-            println!("{sheets} sheets, {fields}: {found:?}");
-            for (primitive, right) in found.into_iter().zip([0, sheets + 1]) {
+            let primitives = [hits[0], hits[1]].map(|hit| hit.primitive);
+            println!("{sheets} sheets, {fields}: {primitives:?}");
+            for (primitive, right) in primitives.into_iter().zip([0, sheets + 1]) {
                 let is_any = primitive == sheets + 1 && fields.starts_with("mode: Any");
                 let is_unanswered = primitive == UNANSWERED && sheets > 1_000;
                 assert!(
                     primitive == right || is_any || is_unanswered,
-                    "{fields}: {found:?}"
+                    "{fields}: {primitives:?}"
                 );
                 is_broken_off |= is_unanswered;
             }

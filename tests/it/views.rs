@@ -292,9 +292,9 @@ fn a_light_that_moves_changes_no_other() {
         let skipped = executor.finish().unwrap().skipped;
         let has_map = |number: &usize| {
             let lit = format!("lit[{number}]");
-            let of = |pass: &&String| pass.starts_with(&lit) && pass.contains(".draw");
+            let is_map = |pass: &&String| pass.starts_with(&lit) && pass.contains(".draw");
             let passes = executor.plan().passes();
-            let mut maps = passes.iter().map(|pass| &pass.name).filter(of);
+            let mut maps = passes.iter().map(|pass| &pass.name).filter(is_map);
             let first = maps
                 .next()
                 .unwrap_or_else(|| panic!("{lit} draws: {skipped:?}"));

@@ -43,9 +43,9 @@ fn ray_query_leaks_at_corners_alone() {
     );
     let count = 20_000;
     for solid in solids() {
-        let [corners, others @ ..] = wrong(&solid, "RayQuery", count);
+        let [corners, elsewhere @ ..] = wrong(&solid, "RayQuery", count);
         println!("{}: {corners} of {count} rays at corners leak", solid.name);
-        assert_eq!(others, [0; 3], "{}", solid.name);
+        assert_eq!(elsewhere, [0; 3], "{}", solid.name);
         assert!(corners < count / 10, "{}: {corners}", solid.name);
     }
 }

@@ -34,11 +34,11 @@ pub fn gather(
     let casters = casters.iter().filter(|(.., place)| has_extent(place));
     let mut casters: Vec<_> = casters.collect();
     casters.sort_by_key(|(entity, ..)| *entity);
-    let of: Vec<_> = casters
+    let ids: Vec<_> = casters
         .iter()
         .map(|(entity, mesh, _)| (*entity, mesh.0.id()))
         .collect();
-    if of != gathered.of || gathered.parts.is_none() {
+    if ids != gathered.of || gathered.parts.is_none() {
         let solids = casters.iter().map(|(_, mesh, _)| {
             let mesh = meshes.get(&mesh.0).ok_or("a caster's mesh is not loaded")?;
             solid(mesh)
@@ -46,7 +46,7 @@ pub fn gather(
         let solids: Vec<Solid> = solids.collect::<Result<_>>()?;
         let solids: Vec<&Solid> = solids.iter().collect();
         gathered.parts = Some(Arc::new(Movable::joined(&solids)));
-        gathered.of = of;
+        gathered.of = ids;
     }
     gathered.maps = casters.iter().map(|(.., place)| affine(place)).collect();
     let light = lights.iter().next();

@@ -43,9 +43,9 @@ fn the_readme_says_what_the_tables_say() {
         .collect();
     assert!(rows.len() >= 5, "{rows:?}");
     for row in rows {
-        let others = &row[1..row.len() - 1];
+        let methods = &row[1..row.len() - 1];
         assert!(
-            others.iter().all(|other| row[0] < *other),
+            methods.iter().all(|other| row[0] < *other),
             "rt is not the fastest: {row:?}"
         );
     }
@@ -58,7 +58,7 @@ fn the_readme_says_what_the_tables_say() {
         .split("The other methods on `sponza`, 1024²: ")
         .nth(1)
         .unwrap();
-    let of = |method: &str| {
+    let own_ms = |method: &str| {
         let time = beside.split(&format!("`{method}` ")).nth(1).unwrap();
         let end = time
             .find(|c: char| !c.is_ascii_digit() && c != '.')
@@ -84,13 +84,13 @@ fn the_readme_says_what_the_tables_say() {
         ),
         (
             "hybrid_pcf",
-            of("hybrid_pcf"),
+            own_ms("hybrid_pcf"),
             "sun, spot",
             "rays at the map's contours".to_owned(),
         ),
         (
             "crsm",
-            of("crsm"),
+            own_ms("crsm"),
             "sun, spot",
             "rays where the map proves nothing; wrong where open meshes cast".to_owned(),
         ),

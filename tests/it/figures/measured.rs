@@ -113,18 +113,18 @@ fn results_say_what_their_tables_say() {
     pages.hold(page, "bench", &table(&heads, lines));
 
     // Sponza's and those of all views whose cameras are known.
-    let known = |method: &'static str| {
+    let comparable = |method: &'static str| {
         let rows = sponza_d.of(method).chain(bench_d.of(method));
         rows.filter(|row| row.view != "flowers_side")
     };
     let within = |method: &'static str, share: f64| {
-        let rays =
-            known(method).filter_map(|row| row.figure("rays").filter(|rays| rays.theirs.is_some()));
+        let rays = comparable(method)
+            .filter_map(|row| row.figure("rays").filter(|rays| rays.theirs.is_some()));
         let is_within = |rays: &Figure| rays.off().abs() <= share * rays.theirs.unwrap();
         (rays.clone().count(), rays.filter(is_within).count())
     };
     let (cells, pcf) = within("hybrid_pcf_d", 0.001);
-    let wrong = known("nsm_d")
+    let wrong = comparable("nsm_d")
         .filter_map(|row| row.figure("wrong %").filter(|wrong| wrong.theirs.is_some()));
     let lit = row("crsm_d", 1024).figure("wrong lit").unwrap();
     let text = format!(
@@ -190,7 +190,7 @@ fn results_say_what_their_tables_say() {
 
     let theirs = Faster::of_theirs(appendix, &["crsma"], "crsm");
     let on_sponza = Faster::of_theirs(|view| view == "main", &["crsma"], "crsm");
-    let of = |faster: Faster| format!("{} of {}", faster.by_frames, faster.cells);
+    let tally = |faster: Faster| format!("{} of {}", faster.by_frames, faster.cells);
     let text = format!(
         "`crsma` beats `crsm` in {} of the appendix's {} cells by sums (tables 88, 95, 102) and \
          in {} by frames (89, 96, 103), in {} of Sponza's {}; D's own verdict is that adjacency \
@@ -201,10 +201,10 @@ fn results_say_what_their_tables_say() {
         theirs.by_frames,
         on_sponza.by_steps.max(on_sponza.by_frames),
         on_sponza.cells,
-        of(Faster::than_crsm(&bench_d, "_d")),
-        of(Faster::than_crsm(&sponza_d, "_d")),
-        of(Faster::than_crsm(&bench, "")),
-        of(Faster::than_crsm(&sponza, "")),
+        tally(Faster::than_crsm(&bench_d, "_d")),
+        tally(Faster::than_crsm(&sponza_d, "_d")),
+        tally(Faster::than_crsm(&bench, "")),
+        tally(Faster::than_crsm(&sponza, "")),
     );
     pages.say(page, "adjacency", &text);
 

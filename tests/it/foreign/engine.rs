@@ -29,10 +29,10 @@ struct Bench {
 impl Bench {
     fn new(scene: &str, view: &str, light: &str) -> Self {
         let scene = load(scene);
-        let named = scene.views.iter().find(|found| found.name == view);
+        let named = scene.views.iter().find(|other| other.name == view);
         let view = named.expect("the scene has the view").clone();
         let lights = scene.lights_of(&view);
-        let named = lights.iter().find(|found| found.name == light);
+        let named = lights.iter().find(|other| other.name == light);
         let light = named.unwrap_or(&lights[0]).kind;
         Self { scene, view, light }
     }
@@ -96,9 +96,9 @@ fn are_wrong(bench: &Bench, methods: &[(&str, f64)]) {
         let (visibility, status) = (values(&report, "visibility"), values(&report, "status"));
         let counts = Statistics::judged(&visibility, &status, &ground_truth.pixels)
             .unwrap_or_else(|error| panic!("{path}: {error}"));
-        let found = 100.0 * counts.wrong_share();
-        println!("{path}: {found:.4} %, {percent} % expected");
-        assert!((found - percent).abs() < 0.05, "{path}: {found} %");
+        let share = 100.0 * counts.wrong_share();
+        println!("{path}: {share:.4} %, {percent} % expected");
+        assert!((share - percent).abs() < 0.05, "{path}: {share} %");
     }
 }
 

@@ -45,9 +45,9 @@ pub struct GBuffer {
 /// Corners with their normals, none shared.
 pub fn corners(mesh: &Mesh) -> Vec<[f32; 6]> {
     let corners = mesh.triangles.iter().zip(&mesh.normal_indices);
-    let corners = corners.flat_map(|(of, normals)| {
+    let corners = corners.flat_map(|(triangle, normals)| {
         [0, 1, 2].map(|i| {
-            let place = mesh.positions[of[i] as usize].to_array();
+            let place = mesh.positions[triangle[i] as usize].to_array();
             let normal = mesh.normals[normals[i] as usize].to_array();
             std::array::from_fn(|k| if k < 3 { place[k] } else { normal[k - 3] })
         })

@@ -185,8 +185,11 @@ pub fn values(report: &FrameReport, name: &str) -> Vec<u32> {
 
 /// The numbers of an output, whole or not.
 pub fn shares(report: &FrameReport, name: &str) -> Vec<f32> {
-    let mut found = report.readbacks.iter().filter(|found| found.name == name);
-    let content = &found.next().unwrap().content;
+    let mut readbacks = report
+        .readbacks
+        .iter()
+        .filter(|readback| readback.name == name);
+    let content = &readbacks.next().unwrap().content;
     let whole = || {
         content
             .as_u32()?

@@ -96,7 +96,8 @@ impl Solid {
             } else {
                 column % columns
             };
-            let [down, around] = [[row, rows], [column, columns]].map(|[of, all]| ratio(of, all));
+            let [down, around] =
+                [[row, rows], [column, columns]].map(|[part, whole]| ratio(part, whole));
             let mut point = at(down, around);
             if row == 0 || row == rows {
                 point = DVec3::new(0.0, point.y, 0.0);
@@ -143,9 +144,9 @@ impl Solid {
     /// of unit length.
     pub fn rays(&self, aim: Aim, count: usize, seed: u64) -> Vec<Ray> {
         let mut random = Random::new(seed);
-        let all = self.mesh.triangles.len() as f64;
+        let triangles = self.mesh.triangles.len() as f64;
         let ray = |index: usize| {
-            let primitive = random.range(0.0, all) as u32;
+            let primitive = random.range(0.0, triangles) as u32;
             let [a, b, c] = self.mesh.corners(primitive);
             let (u, v) = (random.range(0.0, 1.0), random.range(0.0, 1.0));
             let target = match aim {
@@ -192,8 +193,8 @@ impl Solid {
     }
 }
 
-fn ratio(of: u32, all: u32) -> f64 {
-    f64::from(of) / f64::from(all)
+fn ratio(part: u32, whole: u32) -> f64 {
+    f64::from(part) / f64::from(whole)
 }
 
 #[cfg(test)]

@@ -269,12 +269,12 @@ mod tests {
                 (|arithmetic, a, b, c| arithmetic.fma(a, b, c), a.mul_add(b, c)),
             ];
             for (index, (operation, nearest)) in operations.into_iter().enumerate() {
-                let of = |rounding| operation(plain(rounding), a, b, c);
-                prop_assert_eq!(of(Rounding::Nearest), nearest, "{}", index);
-                let [down, up, to_zero] = DIRECTED.map(of);
+                let rounded = |rounding| operation(plain(rounding), a, b, c);
+                prop_assert_eq!(rounded(Rounding::Nearest), nearest, "{}", index);
+                let [down, up, to_zero] = DIRECTED.map(rounded);
                 prop_assert!(down == up || down.next_up() == up, "{index}: {down} {up}");
                 prop_assert!([down, up].contains(&nearest), "{index}: {nearest}");
-                prop_assert!([down, up].contains(&of(Rounding::Either(seed))), "{index}");
+                prop_assert!([down, up].contains(&rounded(Rounding::Either(seed))), "{index}");
                 prop_assert_eq!(to_zero.abs(), down.abs().min(up.abs()), "{}", index);
             }
             // Exactly, as f64 has these.

@@ -86,12 +86,12 @@ fn clip(polygon: &[DVec2], side: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
     let mut kept = vec![];
     for (i, &point) in polygon.iter().enumerate() {
         let next = polygon[(i + 1) % polygon.len()];
-        let (here, there) = (side(point), side(next));
-        if here >= 0.0 {
+        let (start, end) = (side(point), side(next));
+        if start >= 0.0 {
             kept.push(point);
         }
-        if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
-            kept.push(point.lerp(next, here / (here - there)));
+        if (start > 0.0 && end < 0.0) || (start < 0.0 && end > 0.0) {
+            kept.push(point.lerp(next, start / (start - end)));
         }
     }
     kept

@@ -161,19 +161,19 @@ impl<'a> Drawing<'a> {
         if !self.casters.casts(primitive, -self.drawn()) {
             return None;
         }
-        let here = || self.covered(primitive, centre, Bound::High);
+        let covered = || self.covered(primitive, centre, Bound::High);
         if !self.by_rasteriser() {
-            return here();
+            return covered();
         }
         match self.place(primitive, centre) {
-            Place::Inside => here(),
+            Place::Inside => covered(),
             Place::OnEdge(edge) => {
                 let neighbour = self.casters.adjacent(primitive, Bound::High)[edge]?;
                 let beyond = match self.place(neighbour, centre) {
                     Place::OnEdge(_) => self.covered(neighbour, centre, Bound::High)?,
                     Place::Inside | Place::Elsewhere => return None,
                 };
-                Some(here()?.max(beyond))
+                Some(covered()?.max(beyond))
             }
             Place::Elsewhere => None,
         }
@@ -228,8 +228,9 @@ impl<'a> Drawing<'a> {
                     Depth::Plane => &patch.members()[..1],
                     Depth::Conservative => patch.members(),
                 };
-                let of = |&p: &u32| self.depth(self.casters.triangle(p), centre, depth, 1.0, bound);
-                Some(members.iter().map(of).fold(0.0, f64::max))
+                let member_depth =
+                    |&p: &u32| self.depth(self.casters.triangle(p), centre, depth, 1.0, bound);
+                Some(members.iter().map(member_depth).fold(0.0, f64::max))
             }
         }
     }

@@ -117,8 +117,11 @@ impl Place {
     /// Texels in which the receiver may lie, or `None` outside the map.
     fn texels(&self, size: usize) -> impl Iterator<Item = Option<[usize; 2]>> {
         let range = |axis: usize| {
-            let of = |error: f64| (self.at[axis] + error).floor();
-            (of(-self.error[axis]) as i64, of(self.error[axis]) as i64)
+            let floored = |error: f64| (self.at[axis] + error).floor();
+            (
+                floored(-self.error[axis]) as i64,
+                floored(self.error[axis]) as i64,
+            )
         };
         let ((left, right), (top, bottom)) = (range(0), range(1));
         let inside = move |x: i64| (0..size as i64).contains(&x).then_some(x as usize);
@@ -234,8 +237,8 @@ impl Maps<'_> {
         }
         // Where the four texels may begin: one of them, but next to a texel's centre.
         let begin = |axis: usize| {
-            let of = |error: f64| (place.at[axis] - 0.5 + error).floor() as i64;
-            of(-place.error[axis])..=of(place.error[axis])
+            let texel = |error: f64| (place.at[axis] - 0.5 + error).floor() as i64;
+            texel(-place.error[axis])..=texel(place.error[axis])
         };
         let inside = |texel: i64| texel.clamp(0, size as i64 - 1) as usize;
         for (top, left) in begin(1).flat_map(|y| begin(0).map(move |x| (y, x))) {

@@ -89,13 +89,14 @@ impl TexelTriangle {
     /// for both where leeway leaves it open: either will do for what may be, both are needed for
     /// what surely is.
     fn holds(&self, point: DVec2, leeway: f64, condition: impl Fn([f64; 3]) -> bool) -> bool {
-        let of = |winding| condition([0, 1, 2].map(|i| self.inward(i, point, winding, leeway)));
+        let holds_for =
+            |winding| condition([0, 1, 2].map(|i| self.inward(i, point, winding, leeway)));
         if !self.winding_is_open(leeway) {
-            of(if self.area() < 0.0 { -1.0 } else { 1.0 })
+            holds_for(if self.area() < 0.0 { -1.0 } else { 1.0 })
         } else if leeway > 0.0 {
-            of(1.0) || of(-1.0)
+            holds_for(1.0) || holds_for(-1.0)
         } else {
-            of(1.0) && of(-1.0)
+            holds_for(1.0) && holds_for(-1.0)
         }
     }
 

@@ -46,10 +46,10 @@ fn rows_are_kept_gone_on_with_and_joined() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
     let line = "--small --out one --only hard,park";
-    let (code, told) = survey(folder.path(), line);
+    let (code, output) = survey(folder.path(), line);
     assert!(
-        code == Some(0) && told.contains("1/2 hard: is") && told.contains("2/2 park: are"),
-        "{told}"
+        code == Some(0) && output.contains("1/2 hard: is") && output.contains("2/2 park: are"),
+        "{output}"
     );
     for file in ["doctor.json", "hard/stress.json", "park/results.json"] {
         let text = fs::read_to_string(place("one").join(file)).unwrap();
@@ -59,10 +59,10 @@ fn rows_are_kept_gone_on_with_and_joined() {
 
     // A row that was killed is run, one that is there is not.
     fs::remove_file(place("one/hard/row.txt")).unwrap();
-    let (_, told) = survey(folder.path(), line);
+    let (_, output) = survey(folder.path(), line);
     assert!(
-        told.contains("1/2 hard: is") && told.contains("2/2 park: kept"),
-        "{told}"
+        output.contains("1/2 hard: is") && output.contains("2/2 park: kept"),
+        "{output}"
     );
 
     // Another adapter's folder is not gone on with, nor one of other files.
@@ -76,19 +76,22 @@ fn rows_are_kept_gone_on_with_and_joined() {
         let text = fs::read_to_string(&file).unwrap();
         fs::write(file, text.replace(driver, "some driver 1.2")).unwrap();
     }
-    let (code, told) = survey(folder.path(), "--small --out two --only hard");
+    let (code, output) = survey(folder.path(), "--small --out two --only hard");
     assert!(
-        code == Some(1) && told.contains("some driver 1.2"),
-        "{told}"
+        code == Some(1) && output.contains("some driver 1.2"),
+        "{output}"
     );
-    let (code, told) = survey(folder.path(), "--small --out one/hard --only hard");
-    assert!(code == Some(1) && told.contains("other files"), "{told}");
+    let (code, output) = survey(folder.path(), "--small --out one/hard --only hard");
+    assert!(
+        code == Some(1) && output.contains("other files"),
+        "{output}"
+    );
 
     let tables = script("adapters.py");
-    let (code, told) = run(folder.path(), "python3", &tables, "one two --out all");
+    let (code, output) = run(folder.path(), "python3", &tables, "one two --out all");
     assert!(
-        code == Some(0) && told.contains("4 cells, 0 faults"),
-        "{told}"
+        code == Some(0) && output.contains("4 cells, 0 faults"),
+        "{output}"
     );
     let page = fs::read_to_string(place("all/adapters.md")).unwrap();
     // A view's pixels beside each of two methods, and every cell as on the first.
@@ -99,10 +102,10 @@ fn rows_are_kept_gone_on_with_and_joined() {
         "\"in_band\": 0",
         "\"in_band\": -9",
     );
-    let (code, told) = run(folder.path(), "python3", &tables, "one two");
+    let (code, output) = run(folder.path(), "python3", &tables, "one two");
     assert!(
-        code == Some(1) && told.contains("9 wrong pixels outside"),
-        "{told}"
+        code == Some(1) && output.contains("9 wrong pixels outside"),
+        "{output}"
     );
 
     let merged = skiagraph(folder.path(), "merge one --out all");
@@ -144,9 +147,9 @@ fn every_end_is_told_from_the_others() {
     let row = folder.path().join("adapter-a-vulkan-c/hard/row.txt");
     let turn = |end: &str| {
         fs::write(folder.path().join("end"), end).unwrap();
-        let (code, told) = run(folder.path(), "sh", &script, "--only hard --again");
-        assert_eq!(code, Some(0), "{told}");
-        (told, fs::read_to_string(&row).unwrap_or_default())
+        let (code, output) = run(folder.path(), "sh", &script, "--only hard --again");
+        assert_eq!(code, Some(0), "{output}");
+        (output, fs::read_to_string(&row).unwrap_or_default())
     };
     for (end, outcome) in [
         ("exit 0", "done\nexit: 0"),
@@ -156,21 +159,21 @@ fn every_end_is_told_from_the_others() {
         ("kill -SEGV $$", "crashed\nexit: 139"),
         ("exec sleep 60", "timed out\nexit: 137"),
     ] {
-        let (told, record) = turn(end);
+        let (output, record) = turn(end);
         assert!(
             record.contains(&format!("outcome: {outcome}\n")),
             "{record}"
         );
         assert_eq!(
-            told.contains("(exit 1): said"),
+            output.contains("(exit 1): said"),
             end.contains("said"),
-            "{told}"
+            "{output}"
         );
     }
     // Not by SIGINT, which a shell's background jobs ignore.
     for end in ["kill -TERM $$", "exit 130"] {
-        let (told, record) = turn(end);
-        assert!(told.contains("not finished: hard;"), "{told}");
+        let (output, record) = turn(end);
+        assert!(output.contains("not finished: hard;"), "{output}");
         assert_eq!(record, "", "it is run again");
     }
 }
@@ -182,8 +185,8 @@ fn rows_that_cannot_run_are_left_out() {
         let script = bundle(folder.path(), backend);
         fs::write(folder.path().join("end"), "exit 1").unwrap();
         let line = format!("--only hard_area,hard_ray_query --out {backend}");
-        let (code, told) = run(folder.path(), "sh", &script, &line);
-        assert_eq!(code, Some(0), "{told}");
+        let (code, output) = run(folder.path(), "sh", &script, &line);
+        assert_eq!(code, Some(0), "{output}");
         let record = folder.path().join(backend).join(row).join("row.txt");
         let record = fs::read_to_string(record).unwrap();
         assert!(
@@ -208,8 +211,11 @@ fn a_survey_is_alone_in_its_folder_and_leaves_it_when_it_ends() {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     let again = || run(folder.path(), "sh", &script, "--only hard_area --out o");
-    let (code, told) = again();
-    assert!(code == Some(1) && told.contains("is at work in"), "{told}");
+    let (code, output) = again();
+    assert!(
+        code == Some(1) && output.contains("is at work in"),
+        "{output}"
+    );
     let id = first.id().to_string();
     let killed = Command::new("kill").arg(id).status().unwrap();
     assert!(killed.success());
@@ -218,8 +224,8 @@ fn a_survey_is_alone_in_its_folder_and_leaves_it_when_it_ends() {
     // A survey that was killed leaves its lock.
     fs::write(folder.path().join("o/adapter.lock"), "99999999\n").unwrap();
     fs::write(&end, "exit 0").unwrap();
-    let (code, told) = again();
-    assert!(code == Some(0) && told.contains("done after"), "{told}");
+    let (code, output) = again();
+    assert!(code == Some(0) && output.contains("done after"), "{output}");
     assert!(!folder.path().join("o/adapter.lock").exists());
 }
 
@@ -232,8 +238,8 @@ fn what_cannot_be_asked_is_told() {
         ("--minutes=0", 2, "1 to 1440"),
         ("--fast", 2, "--fast"),
     ] {
-        let (ended, told) = survey(folder.path(), line);
-        assert_eq!(ended, Some(code), "{line}: {told}");
-        assert!(told.contains(words), "{line}: {told}");
+        let (ended, output) = survey(folder.path(), line);
+        assert_eq!(ended, Some(code), "{line}: {output}");
+        assert!(output.contains(words), "{line}: {output}");
     }
 }

@@ -35,27 +35,29 @@ fn a_backend_that_is_not_there_is_an_error_that_lists_what_is() {
         ("doctor".to_owned(), Some("nonsense")),
     ] {
         let output = doctor(&line, variable);
-        let told = String::from_utf8_lossy(&output.stderr);
+        let stderr = String::from_utf8_lossy(&output.stderr);
         assert_eq!(
             output.status.code(),
             Some(3),
-            "{line}, {variable:?}: {told}"
+            "{line}, {variable:?}: {stderr}"
         );
         let named = variable.filter(|_| line == "doctor").unwrap_or(ABSENT);
         assert!(
-            told.contains(&format!("of the backend `{named}`")),
-            "{told}"
+            stderr.contains(&format!("of the backend `{named}`")),
+            "{stderr}"
         );
-        assert!(told.contains("there are: "), "{told}");
+        assert!(stderr.contains("there are: "), "{stderr}");
     }
 }
 
 #[test]
 fn each_adapter_is_listed_with_its_backend() {
     let output = doctor("doctor", None);
-    let told = String::from_utf8_lossy(&output.stdout);
-    let chosen = told.lines().find_map(|line| line.strip_prefix("Chosen: "));
-    let chosen = chosen.unwrap_or_else(|| panic!("{told}"));
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    let chosen = stdout
+        .lines()
+        .find_map(|line| line.strip_prefix("Chosen: "));
+    let chosen = chosen.unwrap_or_else(|| panic!("{stdout}"));
     let backend = chosen.split(" · ").nth(1).unwrap_or_default();
     assert!(["vulkan", "metal", "dx12"].contains(&backend), "{chosen}");
     // The same, asked for by name and by variable.
@@ -89,9 +91,9 @@ fn each_adapter_is_listed_with_its_backend() {
         let output = output
             .output()
             .expect("the program was built for this test");
-        let told = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
-        assert_eq!(output.status.code(), Some(code), "{asked}: {told}");
-        assert!(told.contains(&words), "{asked}: {told}");
+        let text = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{asked}: {text}");
+        assert!(text.contains(&words), "{asked}: {text}");
     }
 }
 
@@ -106,8 +108,8 @@ fn validation_finds_nothing_but_what_is_known() {
         .args(["light_buffer", "nsm", "--size", "32x32"])
         .output()
         .expect("python3 is installed");
-    let told = [output.stdout, output.stderr].concat();
-    let told = String::from_utf8_lossy(&told);
-    assert!(output.status.success(), "{told}");
-    assert!(told.contains("0 of them not expected"), "{told}");
+    let streams = [output.stdout, output.stderr].concat();
+    let streams = String::from_utf8_lossy(&streams);
+    assert!(output.status.success(), "{streams}");
+    assert!(streams.contains("0 of them not expected"), "{streams}");
 }

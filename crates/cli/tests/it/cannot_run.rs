@@ -46,12 +46,12 @@ fn is_without_figures(table: &str, method: &str) -> bool {
 fn a_document_with_a_mistake_loses_no_other_row_and_ends_with_exit_code_1() {
     let folder = folder();
     let line = format!("compare lit.ron typo.ron rt@engine=embree {SMALL} --images none --out out");
-    let [table, told] = printed(folder.path(), &line, 1);
+    let [table, stderr] = printed(folder.path(), &line, 1);
     assert!(is_without_figures(&table, "typo.ron"), "{table}");
     assert!(is_without_figures(&table, "rt@engine=embree"), "{table}");
     assert!(table.contains("`lit.ron` is the least wrong"), "{table}");
-    assert!(told.contains("typo.ron:"), "the place: {told}");
-    let end = told.lines().last().unwrap();
+    assert!(stderr.contains("typo.ron:"), "the place: {stderr}");
+    let end = stderr.lines().last().unwrap();
     assert!(
         end.starts_with("error: `typo.ron` cannot run: ") && end.contains("satus"),
         "{end}"
@@ -66,22 +66,28 @@ fn a_document_with_a_mistake_loses_no_other_row_and_ends_with_exit_code_1() {
     );
 
     let line = format!("profile lit.ron typo.ron {SMALL}");
-    let [table, told] = printed(folder.path(), &line, 1);
+    let [table, stderr] = printed(folder.path(), &line, 1);
     assert!(table.contains("whole frame"), "{table}");
     assert!(
-        table.contains("n/a: typo.ron, ") && told.contains("satus"),
-        "{table}{told}"
+        table.contains("n/a: typo.ron, ") && stderr.contains("satus"),
+        "{table}{stderr}"
     );
 
     let line = "stress lit.ron typo.ron rt@engine=embree --case torus --size 16x16";
-    let [table, told] = printed(folder.path(), line, 1);
+    let [table, stderr] = printed(folder.path(), line, 1);
     assert!(
         table.contains("lit.ron") && table.contains("typo.ron"),
         "{table}"
     );
-    let end = told.lines().last().unwrap();
-    assert!(end.starts_with("error: `typo.ron` cannot run: "), "{told}");
-    assert!(!told.contains("`rt@engine=embree` cannot run"), "{told}");
+    let end = stderr.lines().last().unwrap();
+    assert!(
+        end.starts_with("error: `typo.ron` cannot run: "),
+        "{stderr}"
+    );
+    assert!(
+        !stderr.contains("`rt@engine=embree` cannot run"),
+        "{stderr}"
+    );
 
     for command in ["compare", "profile", "stress"] {
         let size = if command == "stress" {
@@ -89,10 +95,13 @@ fn a_document_with_a_mistake_loses_no_other_row_and_ends_with_exit_code_1() {
         } else {
             SMALL
         };
-        let [_, told] = printed(folder.path(), &format!("{command} typo.ron {size}"), 1);
-        assert!(told.contains("satus"), "{command}: {told}");
-        let [_, told] = printed(folder.path(), &format!("{command} lit.ron nms {size}"), 1);
-        assert!(told.contains("did you mean `nsm`?"), "{command}: {told}");
+        let [_, stderr] = printed(folder.path(), &format!("{command} typo.ron {size}"), 1);
+        assert!(stderr.contains("satus"), "{command}: {stderr}");
+        let [_, stderr] = printed(folder.path(), &format!("{command} lit.ron nms {size}"), 1);
+        assert!(
+            stderr.contains("did you mean `nsm`?"),
+            "{command}: {stderr}"
+        );
     }
 }
 
@@ -120,26 +129,26 @@ fn a_scene_without_a_method_loses_no_other_scene() {
         "compare esm --map-size 64 --scene night.ron --scene day.ron {SMALL} --images none --out \
          out"
     );
-    let [table, told] = printed(folder.path(), &line, 1);
+    let [table, stderr] = printed(folder.path(), &line, 1);
     assert!(
         table.contains("`pipelines/esm.ron` takes no point light"),
         "{table}"
     );
-    assert!(told.contains("no method can run on night"), "{told}");
+    assert!(stderr.contains("no method can run on night"), "{stderr}");
     let day = fs::read_to_string(folder.path().join("out/day/results.json")).unwrap();
     assert!(day.contains("\"wrong\""), "{day}");
     let tuned = line.replace("--out out", "--tune --out tuned");
-    let [_, told] = printed(folder.path(), &tuned, 1);
-    assert!(told.contains("no method can run on night"), "{told}");
+    let [_, stderr] = printed(folder.path(), &tuned, 1);
+    assert!(stderr.contains("no method can run on night"), "{stderr}");
     let day = fs::read_to_string(folder.path().join("tuned/day/results.json")).unwrap();
     assert!(day.contains("\"wrong\""), "{day}");
     let planned = line.replace("--out out", "--plan plan.json");
-    let [_, told] = printed(folder.path(), &planned, 0);
-    assert!(told.contains("2 cells are in plan.json"), "{told}");
+    let [_, stderr] = printed(folder.path(), &planned, 0);
+    assert!(stderr.contains("2 cells are in plan.json"), "{stderr}");
     let cells = "compare --cells plan.json --out shard";
-    let [_, told] = printed(folder.path(), cells, 0);
-    assert!(told.contains("2 cells are in shard"), "{told}");
-    assert!(told.contains("map 64 cannot run here"), "{told}");
+    let [_, stderr] = printed(folder.path(), cells, 0);
+    assert!(stderr.contains("2 cells are in shard"), "{stderr}");
+    assert!(stderr.contains("map 64 cannot run here"), "{stderr}");
     write(
         "lamp.ron",
         &scene(
@@ -149,18 +158,21 @@ fn a_scene_without_a_method_loses_no_other_scene() {
     );
     // Where all are refused, the reasons of all are told.
     let none = line.replace("day.ron", "lamp.ron");
-    let [_, told] = printed(folder.path(), &none, 1);
+    let [_, stderr] = printed(folder.path(), &none, 1);
     for light in ["spot", "point"] {
-        assert!(told.contains(&format!("takes no {light} light")), "{told}");
+        assert!(
+            stderr.contains(&format!("takes no {light} light")),
+            "{stderr}"
+        );
     }
-    let [_, told] = printed(
+    let [_, stderr] = printed(
         folder.path(),
         &line
             .replace("--scene day.ron", "")
             .replace("--out out", "--out one"),
         1,
     );
-    assert!(told.contains("takes no point light"), "{told}");
+    assert!(stderr.contains("takes no point light"), "{stderr}");
 }
 
 /// Pictures whose names differ in capitals alone are one file on some systems.
@@ -181,9 +193,12 @@ fn views_that_differ_in_capitals_alone_keep_their_pictures() {
     );
     fs::write(folder.path().join("two.ron"), text).unwrap();
     let line = format!("compare lit.ron --scene two.ron {SMALL} --out out");
-    let [_, told] = printed(folder.path(), &format!("{line} --view all"), 1);
-    assert!(told.contains("`Main`") && told.contains("`main`"), "{told}");
-    assert!(told.contains("or differ only in capitals"), "{told}");
+    let [_, stderr] = printed(folder.path(), &format!("{line} --view all"), 1);
+    assert!(
+        stderr.contains("`Main`") && stderr.contains("`main`"),
+        "{stderr}"
+    );
+    assert!(stderr.contains("or differ only in capitals"), "{stderr}");
     let [table, _] = printed(
         folder.path(),
         &format!("{line} --view all --images none"),
@@ -199,13 +214,13 @@ fn a_budget_of_no_memory_is_refused() {
     for option in ["--memory", "--memory-limit"] {
         for value in ["0", "0GiB"] {
             let line = format!("compare lit.ron {option} {value}");
-            let [_, told] = printed(folder.path(), &line, 2);
-            assert!(told.contains("a number of bytes above 0"), "{told}");
-            assert!(told.contains(&format!("'{option} ")), "{told}");
+            let [_, stderr] = printed(folder.path(), &line, 2);
+            assert!(stderr.contains("a number of bytes above 0"), "{stderr}");
+            assert!(stderr.contains(&format!("'{option} ")), "{stderr}");
         }
-        let [_, told] = printed(folder.path(), &format!("compare lit.ron {option}=-1"), 2);
-        assert!(told.contains("a number of bytes above 0"), "{told}");
-        assert!(told.contains(&format!("'{option} ")), "{told}");
+        let [_, stderr] = printed(folder.path(), &format!("compare lit.ron {option}=-1"), 2);
+        assert!(stderr.contains("a number of bytes above 0"), "{stderr}");
+        assert!(stderr.contains(&format!("'{option} ")), "{stderr}");
     }
 }
 
@@ -227,12 +242,12 @@ fn a_document_that_needs_more_than_there_is_is_a_row_and_no_mistake() {
             _ => "--case torus --size 16x16".into(),
         };
         let line = format!("{command} lit.ron two.ron {rest}");
-        let [table, told] = printed(folder.path(), &line, 0);
+        let [table, stderr] = printed(folder.path(), &line, 0);
         assert!(
             table.contains("needs `lights.count >= 2`"),
-            "{line}: {table}{told}"
+            "{line}: {table}{stderr}"
         );
-        assert!(!told.contains("cannot run"), "{line}: {told}");
+        assert!(!stderr.contains("cannot run"), "{line}: {stderr}");
     }
 }
 
@@ -243,11 +258,14 @@ fn a_mistake_is_told_whatever_was_refused_before_it() {
     let spot = spot.replacen("R8Uint)", "R8Uint, size: 5)", 1);
     fs::write(folder.path().join("spot.ron"), spot).unwrap();
     let line = "stress lit.ron spot.ron --case torus --case spot_inside_a_mesh --size 16x16";
-    let [table, told] = printed(folder.path(), line, 1);
+    let [table, stderr] = printed(folder.path(), line, 1);
     assert!(table.contains("lit.ron"), "{table}");
-    let end = told.lines().last().unwrap();
-    assert!(end.starts_with("error: `spot.ron` cannot run: "), "{told}");
-    assert!(!end.contains("takes no"), "{told}");
+    let end = stderr.lines().last().unwrap();
+    assert!(
+        end.starts_with("error: `spot.ron` cannot run: "),
+        "{stderr}"
+    );
+    assert!(!end.contains("takes no"), "{stderr}");
 }
 
 /// The row has all other figures.
@@ -269,16 +287,16 @@ fn a_mistake_in_an_output_that_describes_the_map_ends_with_exit_code_1() {
         );
     fs::write(folder.path().join("density.ron"), text).unwrap();
     let line = format!("compare lit.ron density.ron {SMALL} --images none --out out");
-    let [table, told] = printed(folder.path(), &line, 1);
+    let [table, stderr] = printed(folder.path(), &line, 1);
     assert!(!is_without_figures(&table, "density.ron"), "{table}");
-    let end = told.lines().last().unwrap();
+    let end = stderr.lines().last().unwrap();
     assert!(
         end.starts_with("error: `density.ron`: ") && end.contains("texel_density"),
-        "{told}"
+        "{stderr}"
     );
     let line = "stress lit.ron density.ron --case torus --size 16x16";
-    let [_, told] = printed(folder.path(), line, 1);
-    assert!(told.contains("texel_density"), "{told}");
+    let [_, stderr] = printed(folder.path(), line, 1);
+    assert!(stderr.contains("texel_density"), "{stderr}");
 }
 
 #[test]
@@ -287,12 +305,12 @@ fn a_param_that_no_sound_document_has_is_refused() {
     // Not even the params of this one are known.
     fs::write(folder.path().join("broken.ron"), "(format: 3, oops").unwrap();
     let line = format!("compare nsm broken.ron --set biass=1 {SMALL}");
-    let [_, told] = printed(folder.path(), &line, 1);
+    let [_, stderr] = printed(folder.path(), &line, 1);
     for part in [
         "unknown param `biass`",
         "`broken.ron`",
         "did you mean `bias`",
     ] {
-        assert!(told.contains(part), "{told}");
+        assert!(stderr.contains(part), "{stderr}");
     }
 }

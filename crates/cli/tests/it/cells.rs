@@ -40,9 +40,9 @@ fn told(output: &Output) -> String {
 #[track_caller]
 fn ends(folder: &Path, line: &str, code: i32) -> String {
     let output = skiagraph(folder, line);
-    let told = told(&output);
-    assert_eq!(output.status.code(), Some(code), "{line}: {told}");
-    told
+    let streams = told(&output);
+    assert_eq!(output.status.code(), Some(code), "{line}: {streams}");
+    streams
 }
 
 fn begin(folder: &Path, line: &str) -> Child {
@@ -113,8 +113,8 @@ fn shards_that_are_killed_and_begun_again_equal_one_comparison() {
     );
 
     // The second again and at once by another process, as if it had been requeued too early.
-    let all = [1, 2, 2].map(|number| begin(folder, &shard(number)));
-    for mut child in all {
+    let children = [1, 2, 2].map(|number| begin(folder, &shard(number)));
+    for mut child in children {
         assert!(child.wait().unwrap().success());
     }
     assert_eq!(measured(), runs.len());
@@ -171,9 +171,9 @@ fn plans_that_cannot_be_measured_are_told_with_the_way_out() {
     let good = fs::read_to_string(folder.join("cells.jsonl")).unwrap();
     let measure = |text: &str, code, parts: &[&str]| {
         fs::write(folder.join("cells.jsonl"), text).unwrap();
-        let told = ends(folder, "compare --cells cells.jsonl --out measured", code);
+        let streams = ends(folder, "compare --cells cells.jsonl --out measured", code);
         for part in parts {
-            assert!(told.contains(part), "no {part:?} in {told}");
+            assert!(streams.contains(part), "no {part:?} in {streams}");
         }
     };
     let torn = &good[..good.len() - 20];
@@ -253,30 +253,30 @@ fn plans_that_cannot_be_measured_are_told_with_the_way_out() {
         &format!("{} --plan cells.jsonl", small.replace("16x16", "24x16")),
         0,
     );
-    let told = ends(folder, "compare --cells cells.jsonl --out measured", 1);
+    let streams = ends(folder, "compare --cells cells.jsonl --out measured", 1);
     assert!(
-        told.contains("measured holds the cells of another plan"),
-        "{told}"
+        streams.contains("measured holds the cells of another plan"),
+        "{streams}"
     );
     ends(folder, &format!("{small} --out alone"), 0);
-    let told = ends(folder, "compare --cells cells.jsonl --out alone", 1);
+    let streams = ends(folder, "compare --cells cells.jsonl --out alone", 1);
     assert!(
-        told.contains("alone holds results of a comparison without a plan"),
-        "{told}"
+        streams.contains("alone holds results of a comparison without a plan"),
+        "{streams}"
     );
-    let told = ends(folder, &format!("{small} nsm@bias=0 --plan same.jsonl"), 1);
-    assert!(told.contains("are the same cell"), "{told}");
-    let told = ends(folder, "compare --cells cells.jsonl --shard 4/3", 2);
+    let streams = ends(folder, &format!("{small} nsm@bias=0 --plan same.jsonl"), 1);
+    assert!(streams.contains("are the same cell"), "{streams}");
+    let streams = ends(folder, "compare --cells cells.jsonl --shard 4/3", 2);
     assert!(
-        told.contains("there is no shard 4 of 3; there are 1/3 to 3/3"),
-        "{told}"
+        streams.contains("there is no shard 4 of 3; there are 1/3 to 3/3"),
+        "{streams}"
     );
-    let told = ends(folder, "compare --cells cells.jsonl --frames 3", 2);
-    assert!(told.contains("--frames"), "{told}");
-    let told = ends(folder, "compare --cells nowhere.jsonl", 1);
+    let streams = ends(folder, "compare --cells cells.jsonl --frames 3", 2);
+    assert!(streams.contains("--frames"), "{streams}");
+    let streams = ends(folder, "compare --cells nowhere.jsonl", 1);
     assert!(
-        told.contains("cannot read the plan nowhere.jsonl"),
-        "{told}"
+        streams.contains("cannot read the plan nowhere.jsonl"),
+        "{streams}"
     );
 }
 
@@ -303,9 +303,9 @@ fn cells_of_two_machines_that_disagree_are_not_joined() {
     );
 
     let merge = |parts: &[&str]| {
-        let told = ends(folder, "merge one two --out other", 1);
+        let streams = ends(folder, "merge one two --out other", 1);
         for part in parts {
-            assert!(told.contains(part), "no {part:?} in {told}");
+            assert!(streams.contains(part), "no {part:?} in {streams}");
         }
         assert!(!folder.join("other").exists(), "nothing was written");
     };
@@ -334,14 +334,14 @@ fn cells_of_two_machines_that_disagree_are_not_joined() {
     fs::write(&cell, &good[..good.len() / 2]).unwrap();
     merge(&["is not a results.json", "EOF"]);
     // Torn, it is measured anew.
-    let told = ends(
+    let streams = ends(
         folder,
         "compare --cells cells.jsonl --shard 1/2 --out one",
         0,
     );
     assert!(
-        told.contains("it is measured anew") && told.contains("0 of them from before"),
-        "{told}"
+        streams.contains("it is measured anew") && streams.contains("0 of them from before"),
+        "{streams}"
     );
     // A plan of another version.
     let plan = fs::read_to_string(folder.join("one/cells.jsonl")).unwrap();

@@ -106,8 +106,8 @@ fn a_fault_of_a_stand_in_names_it() {
 
 /// Adds the section to a document that `check` advises, and returns it.
 fn with_advice(folder: &TempDir, name: &str) -> String {
-    let (_, told) = said(folder, &format!("check {name}"));
-    let (_, advice) = told.split_once("`needs: ").expect("advice");
+    let (_, output) = said(folder, &format!("check {name}"));
+    let (_, advice) = output.split_once("`needs: ").expect("advice");
     let (needs, _) = advice.split_once('`').unwrap();
     let path = folder.path().join(name);
     let text = fs::read_to_string(&path).unwrap();
@@ -125,12 +125,12 @@ fn a_faulty_document_in_a_comparison_has_no_faults_of_stand_ins() {
     fs::write(folder.path().join("faulty.ron"), faulty).unwrap();
     let line = "compare rt faulty.ron --scene twolights.ron --size 16x16 --frames 1 --warmup 0 \
                 --images none --out out";
-    let (code, told) = said(&folder, line);
-    assert_eq!(code, 1, "{told}");
-    assert!(told.contains("`imagee`"), "{told}");
+    let (code, output) = said(&folder, line);
+    assert_eq!(code, 1, "{output}");
+    assert!(output.contains("`imagee`"), "{output}");
     assert!(
-        !told.contains("`lights[1]` does not exist") && !told.contains("for one light"),
-        "{told}"
+        !output.contains("`lights[1]` does not exist") && !output.contains("for one light"),
+        "{output}"
     );
 }
 

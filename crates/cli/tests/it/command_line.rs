@@ -492,8 +492,8 @@ fn published_charts_say_what_is_missing() {
         let arguments: Vec<&str> = ["chart"].into_iter().chain(arguments.split(' ')).collect();
         let output = skiagraph(folder, &arguments);
         assert_exit(&output, code);
-        let told = stderr(&output);
-        assert!(told.contains(message), "{arguments:?}: {told}");
+        let errors = stderr(&output);
+        assert!(errors.contains(message), "{arguments:?}: {errors}");
         assert!(!folder.join("charts").exists(), "{arguments:?}");
     }
     // A file is no folder; nothing is drawn before that is known.
@@ -558,8 +558,8 @@ fn chart_says_what_is_missing() {
             "there is no folder nowhere",
         ),
     ] {
-        let told = refused(arguments);
-        assert!(told.contains(message), "{arguments:?}: {told}");
+        let error = refused(arguments);
+        assert!(error.contains(message), "{arguments:?}: {error}");
     }
 }
 
@@ -569,15 +569,15 @@ fn a_document_is_planned_under_the_lights_that_it_takes() {
     let folder = folder.path();
     assert_exit(&skiagraph(folder, &["new", "mine"]), 0);
     let document = fs::read_to_string(folder.join("mine.ron")).unwrap();
-    let all = "lights: [directional, spot, point]";
-    assert!(document.contains(all), "{document}");
+    let field = "lights: [directional, spot, point]";
+    assert!(document.contains(field), "{document}");
     fs::create_dir(folder.join("pipelines")).unwrap();
     fs::copy(folder.join("mine.wgsl"), folder.join("pipelines/mine.wgsl")).unwrap();
     for (lights, refused) in [
         ("point", "takes no directional or spot light"),
         ("spot, point", "takes no directional light"),
     ] {
-        let document = document.replace(all, &format!("lights: [{lights}]"));
+        let document = document.replace(field, &format!("lights: [{lights}]"));
         fs::write(folder.join("mine.ron"), &document).unwrap();
         let checked = skiagraph(folder, &["check", "mine.ron"]);
         assert_exit(&checked, 0);
@@ -598,13 +598,13 @@ fn a_document_is_planned_under_the_lights_that_it_takes() {
         fs::write(folder.join("mine.ron"), broken).unwrap();
         let checked = skiagraph(folder, &["check", "mine.ron"]);
         assert_exit(&checked, 1);
-        let told = stderr(&checked);
+        let errors = stderr(&checked);
         assert!(
-            told.contains("`nothing`") && !told.contains("takes no"),
-            "{told}"
+            errors.contains("`nothing`") && !errors.contains("takes no"),
+            "{errors}"
         );
     }
-    let strange = document.replace(all, "lights: [sun]");
+    let strange = document.replace(field, "lights: [sun]");
     fs::write(folder.join("mine.ron"), strange).unwrap();
     let checked = skiagraph(folder, &["check", "mine.ron"]);
     assert_exit(&checked, 1);
@@ -619,7 +619,7 @@ fn a_broken_scene_file_is_shown_in_its_lines() {
     fs::write(folder.path().join("a.ron"), scene).unwrap();
     let output = skiagraph(folder.path(), &["compare", "nsm", "--scene", "a.ron"]);
     assert_eq!(output.status.code(), Some(1));
-    let told = String::from_utf8_lossy(&output.stderr);
+    let errors = String::from_utf8_lossy(&output.stderr);
     for part in [
         "╭─[a.ron:4:11]",
         "4 │     mesh: Genrated(\"park\"),",
@@ -627,6 +627,6 @@ fn a_broken_scene_file_is_shown_in_its_lines() {
         "a scene needs at least one view",
         "cannot load the scene `a.ron`",
     ] {
-        assert!(told.contains(part), "{told}");
+        assert!(errors.contains(part), "{errors}");
     }
 }

@@ -109,11 +109,11 @@ fn said(make: impl Fn(&std::path::Path)) -> Vec<String> {
 
 #[test]
 fn a_file_of_four_gibibytes_is_refused_unread() {
-    let said = said(|file| fs::File::create(file).unwrap().set_len(4 << 30).unwrap());
-    for (said, (line, _, _, [of, mib, way_out])) in said.iter().zip(&COMMANDS) {
+    let messages = said(|file| fs::File::create(file).unwrap().set_len(4 << 30).unwrap());
+    for (message, (line, _, _, [kind, mib, way_out])) in messages.iter().zip(&COMMANDS) {
         assert_eq!(
-            *said,
-            format!("it has 4096 MiB, {of} {mib} at most: {way_out}"),
+            *message,
+            format!("it has 4096 MiB, {kind} {mib} at most: {way_out}"),
             "{line}"
         );
     }
@@ -121,22 +121,24 @@ fn a_file_of_four_gibibytes_is_refused_unread() {
 
 #[test]
 fn a_device_is_refused_unopened() {
-    for said in said(|file| symlink("/dev/zero", file).unwrap()) {
+    for message in said(|file| symlink("/dev/zero", file).unwrap()) {
         assert!(
-            said.starts_with("it is a device, a pipe or a socket")
-                && said.contains("copy its content into a file"),
-            "{said}"
+            message.starts_with("it is a device, a pipe or a socket")
+                && message.contains("copy its content into a file"),
+            "{message}"
         );
     }
 }
 
 #[test]
 fn a_pipe_is_refused_unopened() {
-    for said in said(|file| assert!(Command::new("mkfifo").arg(file).status().unwrap().success())) {
+    for message in
+        said(|file| assert!(Command::new("mkfifo").arg(file).status().unwrap().success()))
+    {
         assert!(
-            said.starts_with("it is a device, a pipe or a socket")
-                && said.contains("copy its content into a file"),
-            "{said}"
+            message.starts_with("it is a device, a pipe or a socket")
+                && message.contains("copy its content into a file"),
+            "{message}"
         );
     }
 }

@@ -86,12 +86,12 @@ fn interrupted(folder: &Path, line: &str, at: &str, after: Duration) -> (i32, St
         .spawn()
         .unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
-    let mut told = String::new();
+    let mut text = String::new();
     loop {
-        let begin = told.len();
-        let read = stderr.read_line(&mut told).unwrap();
-        assert!(read > 0, "{line} ended before it said `{at}`:\n{told}");
-        if told[begin..].starts_with(at) {
+        let begin = text.len();
+        let read = stderr.read_line(&mut text).unwrap();
+        assert!(read > 0, "{line} ended before it said `{at}`:\n{text}");
+        if text[begin..].starts_with(at) {
             break;
         }
     }
@@ -100,9 +100,9 @@ fn interrupted(folder: &Path, line: &str, at: &str, after: Duration) -> (i32, St
         .args(["-INT", &child.id().to_string()])
         .status();
     assert!(signal.unwrap().success());
-    stderr.read_to_string(&mut told).unwrap();
+    stderr.read_to_string(&mut text).unwrap();
     let status = child.wait().unwrap();
-    (status.code().unwrap_or(-1), told)
+    (status.code().unwrap_or(-1), text)
 }
 
 fn runs(folder: &Path) -> Vec<Value> {
@@ -240,9 +240,12 @@ fn ctrl_c_in_a_frame_that_never_ends_keeps_finished_runs_and_resume_goes_on() {
     assert!(kept[0].get("turns").is_none());
     let (code, _, stderr) = run(folder.path(), &format!("{line} --resume"));
     assert_eq!(code, 0, "{stderr}");
-    let all = runs(&out);
-    assert_eq!((all.len(), &all[0]["wrong"]), (2, &kept[0]["wrong"]));
-    assert_eq!(all[1]["preset"], "endless.ron");
+    let resumed = runs(&out);
+    assert_eq!(
+        (resumed.len(), &resumed[0]["wrong"]),
+        (2, &kept[0]["wrong"])
+    );
+    assert_eq!(resumed[1]["preset"], "endless.ron");
     let (_, _, stderr) = run(folder.path(), &format!("{line} --resume"));
     assert!(stderr.contains("2 of 2 runs are kept"), "{stderr}");
     assert!(!stderr.contains("starting"), "{stderr}");
@@ -292,7 +295,7 @@ fn ctrl_c_ends_the_program_in_the_middle_of_work_that_takes_no_notice() {
     let loading = format!("compare rt --map-size 64 --frames 1 {city}");
     let hierarchy = format!("compare light.ron --frames 1 {city}");
     let lost = "what was under way is lost";
-    for (line, at, told) in [
+    for (line, at, outcome) in [
         (loading, "--map-size has no effect", lost),
         (
             hierarchy,
@@ -304,7 +307,7 @@ fn ctrl_c_ends_the_program_in_the_middle_of_work_that_takes_no_notice() {
         let (code, stderr) = interrupted(folder.path(), &line, at, Duration::ZERO);
         assert_eq!(code, 130, "{line}: {stderr}");
         assert!(
-            stderr.contains(&format!("stopped by Ctrl-C; {told}")),
+            stderr.contains(&format!("stopped by Ctrl-C; {outcome}")),
             "{line}: {stderr}"
         );
         assert!(!folder.path().join("o/results.json").exists(), "{line}");
@@ -359,9 +362,9 @@ fn an_argument_that_is_not_utf_8_is_named_with_the_way_out() {
         .unwrap();
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{stderr}");
-    let told = r#"error: the argument "bl\xE4tter.obj" is not UTF-8"#;
+    let message = r#"error: the argument "bl\xE4tter.obj" is not UTF-8"#;
     assert!(
-        stderr.starts_with(told) && stderr.contains("rename the file"),
+        stderr.starts_with(message) && stderr.contains("rename the file"),
         "{stderr}"
     );
 }

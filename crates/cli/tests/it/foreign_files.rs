@@ -12,9 +12,9 @@ fn faults() -> &'static Path {
 }
 
 /// A folder with the files of one of `crates/scene/tests/faults/`.
-fn folder(of: &str) -> TempDir {
+fn folder(fault: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    for file in fs::read_dir(faults().join(of)).unwrap() {
+    for file in fs::read_dir(faults().join(fault)).unwrap() {
         let file = file.unwrap();
         fs::copy(file.path(), folder.path().join(file.file_name())).unwrap();
     }
@@ -33,20 +33,23 @@ fn a_bare_mesh_that_is_refused_has_an_option_that_loads_it() {
         ("bow_tie.obj", "--concave fan"),
     ] {
         let output = skiagraph(folder.path(), &format!("{run} {scene}"));
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(1), "{told}");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{stderr}");
         assert!(
-            told.contains(option.split_whitespace().next().unwrap()),
-            "{told}"
+            stderr.contains(option.split_whitespace().next().unwrap()),
+            "{stderr}"
         );
         let output = skiagraph(folder.path(), &format!("{run} {scene} {option}"));
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{told}");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{stderr}");
     }
     let output = skiagraph(folder.path(), "run rt --scene park --materials ignore");
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{told}");
-    assert!(told.contains("leave them out with --scene park"), "{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(
+        stderr.contains("leave them out with --scene park"),
+        "{stderr}"
+    );
 }
 
 #[test]
@@ -56,11 +59,14 @@ fn a_light_from_below_says_so() {
         folder.path(),
         &format!("{COMPARE} control.gltf --light 0,1,0"),
     );
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
-    assert!(told.contains("shines from below"), "{told}");
-    assert!(told.contains("--light 0,-1,0 shines from above"), "{told}");
-    assert!(told.contains("has nothing in light"), "{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
+    assert!(stderr.contains("shines from below"), "{stderr}");
+    assert!(
+        stderr.contains("--light 0,-1,0 shines from above"),
+        "{stderr}"
+    );
+    assert!(stderr.contains("has nothing in light"), "{stderr}");
 }
 
 /// In a folder whose `pipelines/` or `scenes/` holds another text under a built-in name.
@@ -68,15 +74,15 @@ fn a_light_from_below_says_so() {
 fn files_that_stand_in_for_built_in_ones_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let show = skiagraph(folder.path(), "show rt --flat");
-    let told = String::from_utf8_lossy(&show.stderr);
+    let stderr = String::from_utf8_lossy(&show.stderr);
     assert!(
-        show.status.success() && !told.contains("stands in"),
-        "{told}"
+        show.status.success() && !stderr.contains("stands in"),
+        "{stderr}"
     );
     fs::create_dir(folder.path().join("pipelines")).unwrap();
     fs::write(folder.path().join("pipelines/rt.ron"), &show.stdout).unwrap();
     let output = skiagraph(folder.path(), "show rt");
-    let told = String::from_utf8_lossy(&output.stderr);
+    let stderr = String::from_utf8_lossy(&output.stderr);
     let expected = "./pipelines stands in for built-in presets, which differ: rt";
-    assert!(told.contains(expected), "{told}");
+    assert!(stderr.contains(expected), "{stderr}");
 }

@@ -7,17 +7,17 @@ use std::{fs, path::Path, process::Command};
 /// The output of a command that succeeds.
 fn said(folder: &Path, line: &str) -> String {
     let output = skiagraph(folder, line);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{line}: {told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {stderr}");
     String::from_utf8(output.stdout).unwrap()
 }
 
 /// The message of a command that ends with this exit code.
 fn refused(folder: &Path, line: &str, code: i32) -> String {
     let output = skiagraph(folder, line);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{line}: {told}");
-    told
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{line}: {stderr}");
+    stderr
 }
 
 #[test]
@@ -56,8 +56,8 @@ fn a_saved_picture_is_judged_with_the_truth_of_another_command() {
     assert_eq!(printed["pictures"][1]["wrong"]["total"], 0);
     assert_eq!(printed["unattributable"], 0);
     for field in ["lit", "shadow", "total", "in_band"] {
-        let of = |record: &Value| record["pictures"][0]["wrong"][field].clone();
-        assert_eq!(of(&kept), of(&printed), "{field}");
+        let wrong = |record: &Value| record["pictures"][0]["wrong"][field].clone();
+        assert_eq!(wrong(&kept), wrong(&printed), "{field}");
     }
     let gate = |condition: &str, code: i32| {
         let output = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
@@ -72,14 +72,14 @@ fn a_saved_picture_is_judged_with_the_truth_of_another_command() {
             .current_dir(folder)
             .output()
             .unwrap();
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(code), "{condition}: {told}");
-        told
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{condition}: {stderr}");
+        stderr
     };
-    let told = gate("nsm: wrong > 0.01%", 4);
+    let stderr = gate("nsm: wrong > 0.01%", 4);
     assert!(
-        told.contains("`nsm.png`: wrong ") && told.contains("is more than 0.0100 %"),
-        "{told}"
+        stderr.contains("`nsm.png`: wrong ") && stderr.contains("is more than 0.0100 %"),
+        "{stderr}"
     );
     gate("nsm.png: wrong > 60%", 0);
     assert!(gate("nsn: wrong > 1%", 1).contains("did you mean"));
@@ -116,8 +116,8 @@ fn mistakes_of_the_command_line_are_told() {
         ("judge", 2, "PICTURE"),
         ("truth --scene park", 2, "--out"),
     ] {
-        let told = refused(folder, line, code);
-        assert!(told.contains(expected), "{line}: {told}");
+        let message = refused(folder, line, code);
+        assert!(message.contains(expected), "{line}: {message}");
     }
 }
 
@@ -131,12 +131,12 @@ fn a_picture_without_numbers_holds_no_answer() {
     }
     let line = "judge allnan.exr --scene plain.gltf --eye 6,6,6 --look -1,-0.9,-1 --fov 50 \
                 --light -0.6,-1,-0.2";
-    let told = said(folder.path(), line);
-    assert!(told.contains("the picture holds no answer"), "{told}");
-    assert!(told.contains("1,080"), "{told}");
+    let stdout = said(folder.path(), line);
+    assert!(stdout.contains("the picture holds no answer"), "{stdout}");
+    assert!(stdout.contains("1,080"), "{stdout}");
     assert!(
-        !told.contains("--view") && !told.contains("another camera"),
-        "{told}"
+        !stdout.contains("--view") && !stdout.contains("another camera"),
+        "{stdout}"
     );
     for figure in ["wrong > 0.1%", "rmse > 0.1", "flip > 0.1"] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_skiagraph"));
@@ -145,8 +145,8 @@ fn a_picture_without_numbers_holds_no_answer() {
             .current_dir(folder.path());
         let gate = format!("allnan: {figure}");
         let output = command.args(["--fail-if", &gate]).output().unwrap();
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(4), "{told}");
-        assert!(told.contains("no finite number at 100.000 %"), "{told}");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(4), "{stderr}");
+        assert!(stderr.contains("no finite number at 100.000 %"), "{stderr}");
     }
 }

@@ -11,8 +11,8 @@ fn told(folder: &Path, line: &str) -> String {
 
 fn works(folder: &Path, line: &str) -> String {
     let output = skiagraph(folder, line);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{line}: {told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {stderr}");
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
@@ -51,8 +51,11 @@ fn nothing_is_overwritten_and_bad_names_say_what_is_good() {
 #[test]
 fn a_new_method_is_compared_with_the_reference() {
     let folder = tempfile::tempdir().unwrap();
-    let said = works(folder.path(), "new mine");
-    assert!(said.starts_with("wrote mine.ron and mine.wgsl\n"), "{said}");
+    let stdout = works(folder.path(), "new mine");
+    assert!(
+        stdout.starts_with("wrote mine.ron and mine.wgsl\n"),
+        "{stdout}"
+    );
     works(folder.path(), "check mine.ron");
     let line = "compare rt mine.ron --scene park --size 64x64 --map-size 256 --frames 1 \
                 --warmup 0 --images none --out out";

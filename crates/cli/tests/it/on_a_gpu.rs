@@ -100,8 +100,11 @@ fn a_bare_stress_takes_the_presets_that_presets_lists() {
         .unwrap();
     let file = fs::read(folder.path().join("out/stress.json")).unwrap();
     assert!(output.stdout == file, "--format json prints the file");
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(!told.contains("box_on_floor"), "quiet in a pipe: {told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        !stderr.contains("box_on_floor"),
+        "quiet in a pipe: {stderr}"
+    );
     let report: Value = serde_json::from_slice(&file).unwrap();
     assert_eq!(preset_names(&report["methods"]), listed);
     let cells = report["cases"][0]["cells"].as_array().unwrap();
@@ -341,18 +344,18 @@ fn the_dissertations_charts_stand_beside_ours() {
         folder.path(),
         "chart with side --beside D:d.csv --out charts",
     );
-    let told = String::from_utf8_lossy(&output.stderr);
+    let stderr = String::from_utf8_lossy(&output.stderr);
     for line in [
         "not drawn, of our park: preset crsm_depth: D has no figures",
         "not drawn: D's sponza: no results of it",
         "not in ms-trace-rays-by-map: park bench_side: no two map sizes",
         "27 charts in charts",
     ] {
-        assert!(told.contains(line), "no {line:?} in\n{told}");
+        assert!(stderr.contains(line), "no {line:?} in\n{stderr}");
     }
     let lacking = "view bench_against, flowers_against, flowers_side, flowers_with, trees_against, \
         trees_side, trees_with; viewport 32x18; map 2048², 4096²; preset crsma: no results";
-    assert!(told.contains(lacking), "{told}");
+    assert!(stderr.contains(lacking), "{stderr}");
     let files = fs::read_dir(folder.path().join("charts")).unwrap();
     let mut names: Vec<String> = files
         .map(|file| file.unwrap().file_name().into_string().unwrap())
@@ -403,9 +406,9 @@ fn the_dissertations_charts_stand_beside_ours() {
     // D has its shares of one map there.
     let one = "chart with --beside D:d.csv --size 16x16 --out one";
     let output = skiagraph(folder.path(), one);
-    let told = String::from_utf8_lossy(&output.stderr);
+    let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(
-        told.contains("not drawn: uncertain_percent: no two map sizes or viewports"),
-        "{told}"
+        stderr.contains("not drawn: uncertain_percent: no two map sizes or viewports"),
+        "{stderr}"
     );
 }

@@ -111,15 +111,15 @@ fn a_town_is_compared_from_a_street_and_from_outside() {
         let [lit, shadow] = ["lit", "shadow"].map(|class| pixels[class].as_f64().unwrap());
         assert!(lit.min(shadow) > 0.03 * (lit + shadow), "{pixels}");
     }
-    let told = said(&folder, "town.obj");
+    let stderr = said(&folder, "town.obj");
     assert!(
-        told.contains("`street`, in a street, 1.7 units above the floor"),
-        "{told}"
+        stderr.contains("`street`, in a street, 1.7 units above the floor"),
+        "{stderr}"
     );
-    assert!(!told.contains("no floor"), "{told}");
+    assert!(!stderr.contains("no floor"), "{stderr}");
     assert!(
-        told.contains("; `compare` takes all of them, --view one"),
-        "{told}"
+        stderr.contains("; `compare` takes all of them, --view one"),
+        "{stderr}"
     );
     let (runs, _) = results(
         folder.path(),

@@ -205,8 +205,11 @@ fn several_stand_beside_each_other() {
     let line = "profile rt nsm@cull=none --view all --size 16x16,24x16 --map-size 16 --frames 2 \
                 --warmup 0 --csv all.csv";
     let output = skiagraph(folder.path(), line, 0);
-    let (shown, told) = (text(&output.stdout), text(&output.stderr));
-    assert!(told.contains("--map-size has no effect on rt"), "{told}");
+    let (shown, stderr) = (text(&output.stdout), text(&output.stderr));
+    assert!(
+        stderr.contains("--map-size has no effect on rt"),
+        "{stderr}"
+    );
     for part in [
         "rt",
         "nsm@cull=none",

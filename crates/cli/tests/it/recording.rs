@@ -5,8 +5,8 @@ use std::{fs, path::Path};
 
 fn run(folder: &Path, line: &str) -> String {
     let output = skiagraph(folder, line);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{line}: {told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {stderr}");
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
@@ -15,10 +15,10 @@ fn a_path_is_saved_frame_by_frame() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| fs::read(folder.path().join(name)).unwrap();
     let line = "run rt --size 48x32 --path walk --save visibility=v.bin --frames 3";
-    let told = run(folder.path(), line);
+    let stdout = run(folder.path(), line);
     assert!(
-        told.contains("saved visibility: v.0000.bin to v.0002.bin"),
-        "{told}"
+        stdout.contains("saved visibility: v.0000.bin to v.0002.bin"),
+        "{stdout}"
     );
     let frames = [0, 1, 2].map(|index| file(&format!("v.000{index}.bin")));
     assert!(frames[0] != frames[1] && frames[1] != frames[2]);
@@ -77,9 +77,9 @@ fn ctrl_c_keeps_the_whole_pictures_of_the_frames_before() {
         .status();
     assert!(status.unwrap().success());
     let output = child.wait_with_output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("the pictures of"), "{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{stderr}");
+    assert!(stderr.contains("the pictures of"), "{stderr}");
     let entries = fs::read_dir(folder.path()).unwrap();
     let sizes = entries.map(|entry| entry.unwrap().metadata().unwrap().len());
     assert!(sizes.into_iter().all(|size| size == 16 * 16 * 4));
@@ -119,7 +119,7 @@ fn shaders_know_number_time_jitter_and_the_frame_before() {
     )"#;
     fs::write(folder.path().join("tell.ron"), document).unwrap();
     fs::write(folder.path().join("tell.wgsl"), TOLD).unwrap();
-    let told = |flags: &str| -> Vec<Vec<f32>> {
+    let recorded = |flags: &str| -> Vec<Vec<f32>> {
         run(
             folder.path(),
             &format!("run tell.ron --size 16x16 --save told=t.bin {flags}"),
@@ -136,7 +136,7 @@ fn shaders_know_number_time_jitter_and_the_frame_before() {
     // Index and seconds, padding, and eight words each of this frame and of the one before.
     let (now, before) = (4..12, 12..20);
     for (flags, rate) in [("--path walk", 10.0), ("--path sunrise", 10.0), ("", 30.0)] {
-        let frames = told(&format!("{flags} --frames 5 --jitter 3"));
+        let frames = recorded(&format!("{flags} --frames 5 --jitter 3"));
         for (index, frame) in frames.iter().enumerate() {
             assert_eq!(frame[0], index as f32);
             assert!(
@@ -158,6 +158,6 @@ fn shaders_know_number_time_jitter_and_the_frame_before() {
         assert_eq!(moves(4..7), flags.contains("walk"));
         assert_eq!(moves(8..11), flags.contains("sunrise"));
     }
-    let still = told("--frames 5");
+    let still = recorded("--frames 5");
     assert_eq!([still[1][7], still[1][11]], [0.0; 2]);
 }

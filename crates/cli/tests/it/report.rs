@@ -61,8 +61,8 @@ fn browsed(folder: &Path, page: &str, width: u32, is_dark: bool, script: &str) -
     let dom = String::from_utf8_lossy(&output.stdout);
     let (begin, end) = ("<pre id=\"outcome\">", "</pre>");
     let at = dom.find(begin).unwrap_or_else(|| {
-        let told = String::from_utf8_lossy(&output.stderr);
-        panic!("the page came to no end: {told}")
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        panic!("the page came to no end: {stderr}")
     });
     let text = &dom[at + begin.len()..];
     let text = text[..text.find(end).unwrap()]
@@ -102,8 +102,8 @@ fn write_pages(folder: &Path) {
          --out lights"
     );
     let output = skiagraph(folder, &line);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
     // Times that a busy machine does not change: what is on the front follows from them.
     let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
     let mut far: Value = serde_json::from_str(&text).unwrap();
@@ -139,10 +139,10 @@ fn write_pages(folder: &Path) {
     fs::create_dir(folder.join("bad")).unwrap();
     fs::write(folder.join("bad/stress.json"), matrix.to_string()).unwrap();
     let output = skiagraph(folder, "report out far hard bad --out all.html");
-    let told = String::from_utf8_lossy(&output.stderr);
+    let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(
-        output.status.success() && told.contains("all.html"),
-        "{told}"
+        output.status.success() && stderr.contains("all.html"),
+        "{stderr}"
     );
 }
 
@@ -157,14 +157,14 @@ fn set_times(run: &mut Value) {
     let ms = (method + 1) as f64 * width / 64.0 + map / 1e3;
     for (frame, share) in [("/frame", 1.0), ("/cached/frame", 0.5)] {
         for clock in ["gpu_frames", "wall_frames"] {
-            if let Some(of) = run.pointer_mut(&format!("{frame}/{clock}")) {
-                *of = vec![share * ms; 8].into(); // as many as tell times apart
+            if let Some(times) = run.pointer_mut(&format!("{frame}/{clock}")) {
+                *times = vec![share * ms; 8].into(); // as many as tell times apart
             }
         }
         for clock in ["gpu_ms", "wall_ms"] {
             for (figure, by) in [("median", 1.0), ("q1", 0.9), ("q3", 1.2)] {
-                if let Some(of) = run.pointer_mut(&format!("{frame}/{clock}/{figure}")) {
-                    *of = (by * share * ms).into();
+                if let Some(time) = run.pointer_mut(&format!("{frame}/{clock}/{figure}")) {
+                    *time = (by * share * ms).into();
                 }
             }
         }
@@ -223,12 +223,12 @@ fn axe_core_finds_nothing_serious_on_the_pages() {
     let axe = fs::read_to_string(axe).unwrap();
     fs::write(folder.join("axe.min.js"), axe).unwrap();
     let script = include_str!("report/axe.js");
-    let mut found = Vec::new();
-    let all = [(1280, false), (390, true), (1280, true), (390, false)];
+    let mut violations = Vec::new();
+    let layouts = [(1280, false), (390, true), (1280, true), (390, false)];
     let pages = [
-        ("out/report.html", &all[..]),
-        ("all.html", &all[..2]),
-        ("lights/report.html", &all[..2]),
+        ("out/report.html", &layouts[..]),
+        ("all.html", &layouts[..2]),
+        ("lights/report.html", &layouts[..2]),
     ];
     for (page, windows) in pages {
         for &(width, is_dark) in windows {
@@ -237,10 +237,12 @@ fn axe_core_finds_nothing_serious_on_the_pages() {
             assert!(outcome["passed"].as_u64() > Some(10), "{page}: {outcome}");
             let findings = outcome["failed"].as_array().unwrap().iter();
             let theme = if is_dark { "dark" } else { "light" };
-            found.extend(findings.map(|of| format!("{page}, {width} pixels, {theme}: {of}")));
+            violations.extend(
+                findings.map(|finding| format!("{page}, {width} pixels, {theme}: {finding}")),
+            );
         }
     }
-    assert!(found.is_empty(), "{}", found.join("\n"));
+    assert!(violations.is_empty(), "{}", violations.join("\n"));
 }
 
 #[test]
@@ -249,7 +251,10 @@ fn a_page_of_nothing_says_what_is_missing() {
     fs::create_dir(folder.path().join("empty")).unwrap();
     let output = skiagraph(folder.path(), "report empty");
     assert_eq!(output.status.code(), Some(1));
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(told.contains("there is no results.json in empty"), "{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        stderr.contains("there is no results.json in empty"),
+        "{stderr}"
+    );
     assert!(!folder.path().join("empty/report.html").exists());
 }

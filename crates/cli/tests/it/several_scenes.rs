@@ -39,8 +39,8 @@ fn printed(folder: &TempDir, line: &str) -> (String, String, Option<i32>) {
 fn each_scene_has_a_folder_and_all_stand_in_one_overview() {
     let folder = folder();
     let out = folder.path().join("out");
-    let (table, told, code) = printed(&folder, &format!("{COMPARE} {SCENES}"));
-    assert_eq!(code, Some(0), "{told}");
+    let (table, stderr, code) = printed(&folder, &format!("{COMPARE} {SCENES}"));
+    assert_eq!(code, Some(0), "{stderr}");
     let overview = &table[table.find("Overview, 64x64: ").unwrap()..];
     let heads = overview
         .lines()
@@ -59,7 +59,7 @@ fn each_scene_has_a_folder_and_all_stand_in_one_overview() {
         "{overview}"
     );
     for scene in ["room", "objects"] {
-        assert!(told.contains(&format!("are in out/{scene}")), "{told}");
+        assert!(stderr.contains(&format!("are in out/{scene}")), "{stderr}");
         for file in ["results.json", "results.csv", "report.html"] {
             assert!(out.join(scene).join(file).is_file(), "{scene}/{file}");
         }
@@ -71,23 +71,23 @@ fn each_scene_has_a_folder_and_all_stand_in_one_overview() {
     let page = fs::read_to_string(out.join("room/report.html")).unwrap();
     assert!(!page.contains("data-choose=\""));
     // Nothing is measured anew.
-    let (json, told, _) = printed(
+    let (json, stderr, _) = printed(
         &folder,
         &format!("{COMPARE} {SCENES} --resume --format json"),
     );
     for scene in ["room", "objects"] {
         let kept = format!("2 of 2 runs are kept from out/{scene}/results.json");
-        assert!(told.contains(&kept), "no {kept:?} in {told}");
+        assert!(stderr.contains(&kept), "no {kept:?} in {stderr}");
     }
-    let all: Vec<Value> = serde_json::from_str(&json).unwrap();
-    let names: Vec<&str> = all
+    let results: Vec<Value> = serde_json::from_str(&json).unwrap();
+    let names: Vec<&str> = results
         .iter()
-        .map(|of| of["scene"]["name"].as_str().unwrap())
+        .map(|record| record["scene"]["name"].as_str().unwrap())
         .collect();
     assert_eq!(names, ["room", "objects"]);
     // The folder of all stands for those in it.
-    let (_, told, code) = printed(&folder, "report out --out all.html");
-    assert_eq!(code, Some(0), "{told}");
+    let (_, stderr, code) = printed(&folder, "report out --out all.html");
+    assert_eq!(code, Some(0), "{stderr}");
     let page = fs::read_to_string(folder.path().join("all.html")).unwrap();
     assert!(page.contains("data-choose=\"1\""));
 }
@@ -118,15 +118,15 @@ fn what_a_scene_lacks_is_told_with_its_name_before_any_is_measured() {
             "--write-scene is of one scene, and 2 are",
         ),
     ] {
-        let (table, told, found) = printed(&folder, &format!("{COMPARE} {SCENES} {rest}"));
-        assert_eq!(found, Some(code), "{rest}: {told}");
-        assert!(told.contains(expected), "no {expected:?} in {told}");
+        let (table, stderr, exit) = printed(&folder, &format!("{COMPARE} {SCENES} {rest}"));
+        assert_eq!(exit, Some(code), "{rest}: {stderr}");
+        assert!(stderr.contains(expected), "no {expected:?} in {stderr}");
         assert_eq!(table, "", "{rest}");
         assert!(!folder.path().join("out/room/results.json").exists());
     }
-    let (_, told, code) = printed(&folder, &format!("run rt {SCENES}"));
-    assert_eq!(code, Some(2), "{told}");
-    assert!(told.contains("cannot be used multiple times"), "{told}");
+    let (_, stderr, code) = printed(&folder, &format!("run rt {SCENES}"));
+    assert_eq!(code, Some(2), "{stderr}");
+    assert!(stderr.contains("cannot be used multiple times"), "{stderr}");
 }
 
 #[test]
@@ -139,11 +139,11 @@ fn a_gate_holds_on_every_scene() {
         .current_dir(folder.path())
         .output()
         .unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(4), "{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(4), "{stderr}");
     for scene in ["room", "objects"] {
         let line = format!("{scene}: `nsm 64` at 64x64: memory ");
-        assert!(told.contains(&line), "no {line:?} in {told}");
+        assert!(stderr.contains(&line), "no {line:?} in {stderr}");
     }
     let document = String::from_utf8_lossy(&output.stdout);
     assert!(document.contains("## Overview, 64x64\n"), "{document}");
@@ -162,21 +162,21 @@ fn ctrl_c_keeps_the_scenes_that_are_finished() {
         .spawn()
         .unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
-    let mut told = String::new();
-    while !told.ends_with("objects, scene 2 of 2\n") {
-        assert!(stderr.read_line(&mut told).unwrap() > 0, "{told}");
+    let mut text = String::new();
+    while !text.ends_with("objects, scene 2 of 2\n") {
+        assert!(stderr.read_line(&mut text).unwrap() > 0, "{text}");
     }
     let signal = Command::new("kill")
         .args(["-INT", &child.id().to_string()])
         .status();
     assert!(signal.unwrap().success());
-    stderr.read_to_string(&mut told).unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(130), "{told}");
+    stderr.read_to_string(&mut text).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{text}");
     for part in [
         "stopped by Ctrl-C; scenes finished: 1 of 2; objects: ",
         "the same command with --resume goes on from there",
     ] {
-        assert!(told.contains(part), "no {part:?} in {told}");
+        assert!(text.contains(part), "no {part:?} in {text}");
     }
     let out = folder.path().join("out");
     assert!(out.join("room/results.json").exists() && out.join("report.html").exists());

@@ -176,12 +176,12 @@ fn an_interrupt_keeps_the_cases_that_are_done() {
         .status();
     assert!(sent.unwrap().success());
     let (_, errors) = ends(child.wait_with_output().unwrap(), 130);
-    let all = cases().len();
+    let total = cases().len();
     assert!(
-        errors.contains(&format!("of {all} cases are kept in ./stress.json")),
+        errors.contains(&format!("of {total} cases are kept in ./stress.json")),
         "{errors}"
     );
     let report: Value = serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap();
     let done = report["cases"].as_array().unwrap().len();
-    assert!(errors.contains(&format!("{done} of {all}")), "{errors}");
+    assert!(errors.contains(&format!("{done} of {total}")), "{errors}");
 }

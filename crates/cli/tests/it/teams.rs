@@ -28,12 +28,12 @@ fn a_baseline_is_held_and_growth_has_an_exit_code_of_its_own() {
             [&output.stdout, &output.stderr].map(|it| String::from_utf8_lossy(it));
         (output.status.code(), format!("{stdout}{stderr}"))
     };
-    let (code, told) = against("out", "");
-    assert_eq!(code, Some(0), "{told}");
-    assert!(told.contains("0 worse, 0 better, 2 the same"), "{told}");
+    let (code, output) = against("out", "");
+    assert_eq!(code, Some(0), "{output}");
+    assert!(output.contains("0 worse, 0 better, 2 the same"), "{output}");
     assert!(
-        told.contains("times are not compared: "),
-        "two frames are too few: {told}"
+        output.contains("times are not compared: "),
+        "two frames are too few: {output}"
     );
 
     // One that had a wrong pixel less, and one of another scene.
@@ -41,24 +41,24 @@ fn a_baseline_is_held_and_growth_has_an_exit_code_of_its_own() {
     let wrong = &mut old["runs"][0]["wrong"]["total"];
     *wrong = (wrong.as_u64().unwrap() - 1).into();
     fs::write(folder.join("old.json"), old.to_string()).unwrap();
-    let (code, told) = against("old.json", "");
-    assert_eq!(code, Some(5), "{told}");
+    let (code, output) = against("old.json", "");
+    assert_eq!(code, Some(5), "{output}");
     assert!(
-        told.contains("`nsm 32` on bench_side 48x48 is more wrong: wrong "),
-        "{told}"
+        output.contains("`nsm 32` on bench_side 48x48 is more wrong: wrong "),
+        "{output}"
     );
-    let (code, told) = against("old.json", "--oracle offset:0.1");
-    assert_eq!(code, Some(1), "{told}");
+    let (code, output) = against("old.json", "--oracle offset:0.1");
+    assert_eq!(code, Some(1), "{output}");
     assert!(
-        told.contains("oracle: there exact, here offset:0.1"),
-        "{told}"
+        output.contains("oracle: there exact, here offset:0.1"),
+        "{output}"
     );
     for (missing, why) in [
         ("nowhere", "there is no folder"),
         ("no.json", "there is no file"),
     ] {
-        let (code, told) = against(missing, "");
-        assert!(code == Some(1) && told.contains(why), "{told}");
+        let (code, output) = against(missing, "");
+        assert!(code == Some(1) && output.contains(why), "{output}");
     }
 }
 
@@ -74,21 +74,24 @@ fn results_of_machines_are_merged_and_bad_ones_are_told() {
     }
     fs::write(folder.join("far.json"), far.to_string()).unwrap();
     let output = skiagraph(folder, "merge out far.json --out all");
-    let told = String::from_utf8_lossy(&output.stderr);
+    let stderr = String::from_utf8_lossy(&output.stderr);
     assert!(
-        output.status.success() && told.contains("2 groups of results"),
-        "{told}"
+        output.status.success() && stderr.contains("2 groups of results"),
+        "{stderr}"
     );
-    let all = read(&folder.join("all/results.json"));
-    assert_eq!(all["others"][0]["machine"]["host"], "far");
-    assert_eq!(all["runs"].as_array().unwrap().len(), 2);
+    let merged = read(&folder.join("all/results.json"));
+    assert_eq!(merged["others"][0]["machine"]["host"], "far");
+    assert_eq!(merged["runs"].as_array().unwrap().len(), 2);
     let csv = fs::read_to_string(folder.join("all/results.csv")).unwrap();
     assert_eq!(csv.lines().count(), 5);
     assert!(folder.join("all/report.html").is_file());
     // It cannot be compared into, and can be read.
     let output = skiagraph(folder, &format!("{COMPARE} --out all"));
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(told.contains("joined results: there 1, here 0"), "{told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        stderr.contains("joined results: there 1, here 0"),
+        "{stderr}"
+    );
     assert!(skiagraph(folder, "report all").status.success());
 
     fs::write(folder.join("foreign.json"), "{}").unwrap();
@@ -100,10 +103,10 @@ fn results_of_machines_are_merged_and_bad_ones_are_told() {
         ),
     ] {
         let output = skiagraph(folder, line);
-        let told = String::from_utf8_lossy(&output.stderr);
+        let stderr = String::from_utf8_lossy(&output.stderr);
         assert!(
-            output.status.code() == Some(1) && told.contains(why),
-            "{told}"
+            output.status.code() == Some(1) && stderr.contains(why),
+            "{stderr}"
         );
     }
     assert!(!folder.join("x").exists());

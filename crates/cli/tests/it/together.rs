@@ -27,8 +27,8 @@ fn two_comparisons_into_one_folder_keep_the_runs_of_both() {
     let both = lines.map(|line| begin(folder.path(), &line));
     for child in both {
         let output = child.wait_with_output().unwrap();
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{told}");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{stderr}");
     }
     let out = folder.path().join("out");
     let text = fs::read_to_string(out.join("results.json")).unwrap();
@@ -63,9 +63,9 @@ fn a_matrix_that_another_command_writes_is_not_overwritten() {
     let lock = File::create(folder.path().join("out/.skiagraph-stress.lock")).unwrap();
     lock.lock().unwrap();
     let refused = skiagraph(folder.path(), line);
-    let told = String::from_utf8_lossy(&refused.stderr);
-    assert_eq!(refused.status.code(), Some(1), "{told}");
-    assert!(told.contains("another `skiagraph stress`"), "{told}");
+    let stderr = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("another `skiagraph stress`"), "{stderr}");
     assert!(!folder.path().join("out/stress.json").exists());
     drop(lock);
     assert_eq!(skiagraph(folder.path(), line).status.code(), Some(0));

@@ -39,8 +39,8 @@ fn the_tutorial_can_be_typed() {
             for line in body.lines() {
                 let line = line.strip_prefix("skiagraph ").expect("a command of ours");
                 let output = skiagraph(folder, line);
-                let told = String::from_utf8_lossy(&output.stderr);
-                assert!(output.status.success(), "{line}: {told}");
+                let stderr = String::from_utf8_lossy(&output.stderr);
+                assert!(output.status.success(), "{line}: {stderr}");
                 commands += 1;
             }
         } else {
@@ -129,14 +129,14 @@ fn the_options_that_pages_name_are_there() {
                 assert!(!is_told, "{}: there is no `{command}`", page.display());
                 continue;
             }
-            let known: Vec<&str> = help
+            let help_words: Vec<&str> = help
                 .split([' ', '\n', ',', '[', ']', '=', '`', '.', ':', ';'])
                 .collect();
             for option in words.filter(|word| word.starts_with("--") && word.len() > 2) {
                 let option = option.split('=').next().unwrap();
                 let option = option.trim_end_matches([',', '.', ')', ';', ':', '…']);
                 assert!(
-                    known.contains(&option),
+                    help_words.contains(&option),
                     "{}: `{command}` has no {option}",
                     page.display()
                 );

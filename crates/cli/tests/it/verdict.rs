@@ -51,8 +51,8 @@ fn a_doubled_tree_has_no_exact_method_and_no_winner_without_its_condition() {
     let line = "compare nsm light_buffer rt --scene tree.obj --size 96x96 --map-size 256 \
                 --frames 8 --warmup 0 --images none --out out";
     let output = skiagraph(folder.path(), line);
-    let told = String::from_utf8_lossy(&output.stdout);
-    let (_, answer) = told.rsplit_once("\n\n").unwrap();
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    let (_, answer) = stdout.rsplit_once("\n\n").unwrap();
     assert!(!answer.contains("exact"), "{answer}");
     let sentences: Vec<&str> = answer.trim().lines().take(2).collect();
     assert!(sentences[0].starts_with("Of the "), "{answer}");
@@ -78,18 +78,18 @@ fn budgets_and_gates_are_held() {
         )
     };
     let output = skiagraph(folder.path(), &line("--below 0.001% --under 1000000ms"));
-    let told = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{told}");
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{stdout}");
     let within = "Within at most 1000000 ms a frame and less than 0.001 % wrong: 1 of 2 methods.";
     assert!(
-        told.contains(within) && told.contains("Take `light_buffer 32` (exact here"),
-        "{told}"
+        stdout.contains(within) && stdout.contains("Take `light_buffer 32` (exact here"),
+        "{stdout}"
     );
     let output = skiagraph(folder.path(), &line("--memory 1KiB"));
-    let told = String::from_utf8_lossy(&output.stdout);
+    let stdout = String::from_utf8_lossy(&output.stdout);
     assert!(
-        told.contains("No method keeps to at most 1.0 KiB; the smallest is `nsm 32`"),
-        "{told}"
+        stdout.contains("No method keeps to at most 1.0 KiB; the smallest is `nsm 32`"),
+        "{stdout}"
     );
 
     let gated = |gate: &str| {
@@ -104,16 +104,18 @@ fn budgets_and_gates_are_held() {
             String::from_utf8_lossy(&output.stderr).into_owned(),
         )
     };
-    let (code, told) = gated("nsm: wrong > 0.1%");
-    assert_eq!(code, Some(4), "{told}");
-    assert!(told.contains("`nsm 32` at 48x48: wrong ") && told.contains("is more than 0.1000 %"));
+    let (code, stderr) = gated("nsm: wrong > 0.1%");
+    assert_eq!(code, Some(4), "{stderr}");
+    assert!(
+        stderr.contains("`nsm 32` at 48x48: wrong ") && stderr.contains("is more than 0.1000 %")
+    );
     assert_eq!(gated("light_buffer: wrong > 0.1%").0, Some(0));
-    let (code, told) = gated("nms: wrong > 0.1%");
+    let (code, stderr) = gated("nms: wrong > 0.1%");
     assert_eq!(code, Some(1));
     let parts = [
         "--fail-if: `nms` is not compared",
         "did you mean `nsm`?",
         "methods: nsm",
     ];
-    assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+    assert!(parts.iter().all(|part| stderr.contains(part)), "{stderr}");
 }

@@ -22,7 +22,7 @@ fn a_mistake_and_its_mending_are_told_as_they_are_saved() {
         .spawn()
         .unwrap();
     let mut out = BufReader::new(child.stdout.take().unwrap()).lines();
-    let mut told = BufReader::new(child.stderr.take().unwrap());
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
     let mut fine = || {
         let line = out.next().unwrap().unwrap();
         assert!(line.starts_with("mine.ron: fine, "), "{line}");
@@ -36,7 +36,7 @@ fn a_mistake_and_its_mending_are_told_as_they_are_saved() {
     while !seen.contains("baas") {
         let mut line = String::new();
         assert_ne!(
-            told.read_line(&mut line).unwrap(),
+            stderr.read_line(&mut line).unwrap(),
             0,
             "it has ended: {seen}"
         );
@@ -54,6 +54,6 @@ fn a_mistake_and_its_mending_are_told_as_they_are_saved() {
             .success()
     );
     let mut rest = String::new();
-    told.read_to_string(&mut rest).unwrap();
+    stderr.read_to_string(&mut rest).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(0), "{rest}");
 }

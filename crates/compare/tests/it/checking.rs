@@ -17,14 +17,15 @@ use std::{fs, path::Path};
 /// The report on documents of a folder.
 fn report(folder: &Path, paths: &[&str]) -> Value {
     let sources = sources(folder);
-    let of = |path: &&str| match planning::check(path, &registry(), &sources, &Trial::default()) {
-        Ok(Checked { graph, plan, .. }) => {
-            let warnings = graph.warnings().iter().chain(plan.warnings());
-            FileReport::new(path, Some(plan.passes().len()), warnings)
-        }
-        Err(wrong) => FileReport::new(path, None, wrong.iter()),
-    };
-    let report = CheckReport::new(paths.iter().map(of).collect());
+    let file_report =
+        |path: &&str| match planning::check(path, &registry(), &sources, &Trial::default()) {
+            Ok(Checked { graph, plan, .. }) => {
+                let warnings = graph.warnings().iter().chain(plan.warnings());
+                FileReport::new(path, Some(plan.passes().len()), warnings)
+            }
+            Err(wrong) => FileReport::new(path, None, wrong.iter()),
+        };
+    let report = CheckReport::new(paths.iter().map(file_report).collect());
     serde_json::to_value(report).unwrap()
 }
 

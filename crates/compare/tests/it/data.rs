@@ -33,16 +33,16 @@ fn the_arrays_of_a_run_hold_its_counts() {
     comparison.protocol.pictures = true;
     let (_, results) = keep(&comparison, &out, Kept::Others).unwrap();
     let run = &results["runs"][0];
-    let of = |name: &str| out.join(format!("{name}.npy"));
+    let array_path = |name: &str| out.join(format!("{name}.npy"));
     let (own, reference) = (
         format!("nsm-bench_side-{SIDE}x{SIDE}-map128"),
         format!("reference-bench_side-{SIDE}x{SIDE}"),
     );
-    let visibility = shares(&npy(&of(&format!("{own}-visibility")), "<f4"));
-    let status = npy(&of(&format!("{own}-status")), "|u1");
-    let truth = shares(&npy(&of(&format!("{reference}-visibility")), "<f4"));
-    let truth_status = npy(&of(&format!("{reference}-status")), "|u1");
-    let band = npy(&of(&format!("{reference}-indeterminate")), "|b1");
+    let visibility = shares(&npy(&array_path(&format!("{own}-visibility")), "<f4"));
+    let status = npy(&array_path(&format!("{own}-status")), "|u1");
+    let truth = shares(&npy(&array_path(&format!("{reference}-visibility")), "<f4"));
+    let truth_status = npy(&array_path(&format!("{reference}-status")), "|u1");
+    let band = npy(&array_path(&format!("{reference}-indeterminate")), "|b1");
     let count = |is: &dyn Fn(usize) -> bool| (0..SIDE * SIDE).filter(|at| is(*at)).count() as u64;
     let faces = |at: usize| truth_status[at] >= 2;
     assert_eq!(run["pixels"]["facing_light"], count(&faces));

@@ -414,10 +414,10 @@ fn other_views_of_a_room_are_inside_and_those_of_a_table_around_it() {
     let sun = DirectionalLight::new(DVec3::new(-0.3, -1.0, -0.4)).into();
     let own = load(&walls(false).and(table()), PLAIN, false).0;
     let (room, like) = (&own.scene.mesh, &own.scene.views[0]);
-    let others = more_views(room, &sun, like, 3);
-    assert_eq!(others.len(), 3);
-    assert_eq!(others, more_views(room, &sun, like, 3), "the same again");
-    for other in &others {
+    let views = more_views(room, &sun, like, 3);
+    assert_eq!(views.len(), 3);
+    assert_eq!(views, more_views(room, &sun, like, 3), "the same again");
+    for other in &views {
         other.check().unwrap();
         assert!(
             other.eye.x.abs() < 4.0 && other.eye.z.abs() < 3.0,

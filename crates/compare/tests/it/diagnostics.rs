@@ -42,21 +42,27 @@ fn texels_per_pixel_of_a_floor_are_those_worked_by_hand() {
     let mut comparison = comparison(scene, &["nsm"], NOWHERE.as_ref(), &[256]);
     comparison.viewports = vec![[64, 64]];
     let run = &runs(&comparison)[0];
-    let of = &run["texels"];
-    assert_eq!(count(&of["pixels"]), 64 * 64, "{of}");
+    let texels = &run["texels"];
+    assert_eq!(count(&texels["pixels"]), 64 * 64, "{texels}");
     assert_eq!(
-        (&of["under_one"], &of["outside_map"]),
+        (&texels["under_one"], &texels["outside_map"]),
         (&0.into(), &0.into()),
-        "{of}"
+        "{texels}"
     );
     let is_near =
         |value: &Value, expected: f64| (value.as_f64().unwrap() / expected - 1.0).abs() < 0.02;
     for quantile in ["p5", "median", "p95"] {
-        assert!(is_near(&of["texels"][quantile], 4.0), "{of}");
+        assert!(is_near(&texels["texels"][quantile], 4.0), "{texels}");
     }
     // At the edges the eye leans and the light does not: fewer texels on what faces both.
-    assert!(of["projection"]["p95"].as_f64().unwrap() > 1.2, "{of}");
-    assert!(of["perspective"]["p5"].as_f64().unwrap() < 3.4, "{of}");
+    assert!(
+        texels["projection"]["p95"].as_f64().unwrap() > 1.2,
+        "{texels}"
+    );
+    assert!(
+        texels["perspective"]["p5"].as_f64().unwrap() < 3.4,
+        "{texels}"
+    );
     assert_eq!(run["layer_jump"], Value::Null);
 }
 
@@ -136,12 +142,12 @@ fn diagnostics_of_another_format_are_told_and_left_out() {
     let comparison = park_comparison(&["odd.ron"], folder.path(), 16);
     let heard = Heard::default();
     comparison.check(Session::new(gpu(), &heard)).unwrap();
-    let told = heard.notes();
+    let notes = heard.notes();
     for part in [
         "`odd.ron`: the output `texel_density` is R8Uint of 16x16",
         "expected R32Float",
     ] {
-        assert!(told.contains(part), "{told}");
+        assert!(notes.contains(part), "{notes}");
     }
     // It is measured, and behind the results an error.
     let error = series::run(&comparison, Session::new(gpu(), &heard)).unwrap_err();

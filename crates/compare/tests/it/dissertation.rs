@@ -51,8 +51,8 @@ impl Figures {
                 value: record[6].parse().unwrap(),
                 note: record[8].to_owned(),
             };
-            let known = figures.insert((cell, record[5].to_owned()), figure);
-            assert!(known.is_none(), "twice: {record:?}");
+            let previous = figures.insert((cell, record[5].to_owned()), figure);
+            assert!(previous.is_none(), "twice: {record:?}");
         }
         Self(figures)
     }
@@ -75,7 +75,7 @@ impl Figures {
 
     /// Cells that have a quantity.
     fn cells<'a>(&'a self, quantity: &'a str) -> impl Iterator<Item = &'a Cell> {
-        let keys = self.0.keys().filter(move |(_, known)| known == quantity);
+        let keys = self.0.keys().filter(move |(_, name)| name == quantity);
         keys.map(|(cell, _)| cell)
     }
 
@@ -108,10 +108,10 @@ impl Figures {
 }
 
 #[track_caller]
-fn near(here: f64, there: f64, off: f64, what: &Cell) {
+fn near(computed: f64, stated: f64, off: f64, what: &Cell) {
     assert!(
-        (here - there).abs() <= off,
-        "{here} and {there} of {what:?}"
+        (computed - stated).abs() <= off,
+        "{computed} and {stated} of {what:?}"
     );
 }
 
@@ -156,12 +156,12 @@ fn wrong_pixels_make_the_methods_picture_out_of_the_references() {
             ROUNDED,
             cell,
         );
-        let all = 100.0 * (wrong_lit + wrong_shadow) / (lit + shadow);
+        let wrong_percent = 100.0 * (wrong_lit + wrong_shadow) / (lit + shadow);
         if cell.3 == "nsm" {
-            near(all, get("wrong_percent"), ROUNDED, cell);
+            near(wrong_percent, get("wrong_percent"), ROUNDED, cell);
             continue;
         }
-        near(all, get("certain_wrong_percent"), ROUNDED, cell);
+        near(wrong_percent, get("certain_wrong_percent"), ROUNDED, cell);
         near(
             get("certain_lit") + get("lit_uncertain"),
             lit,

@@ -31,7 +31,7 @@ fn shadow(file: &str) -> (u64, u64) {
     comparison.views = vec![ViewOrPath::Still(view)];
     comparison.viewports = vec![[128, 128]];
     let run = runs(&comparison).remove(0);
-    let count = |of: &str| count(run.pointer(of).unwrap());
+    let count = |pointer: &str| count(run.pointer(pointer).unwrap());
     (count("/pixels/shadow"), count("/wrong/certain"))
 }
 

@@ -104,7 +104,7 @@ fn judged(scene: &Arc<Scene>, judging: &Judging) -> Result<JudgedPictures, Strin
     let (scene, view) = ((**scene).clone(), scene.views[0].clone());
     let judged = judge(judging, scene, &view, &GpuRequest::default(), &Silent);
     judged
-        .map(|of| of.record)
+        .map(|judged| judged.record)
         .map_err(|error| error.to_string())
 }
 
@@ -112,7 +112,7 @@ fn judged(scene: &Arc<Scene>, judging: &Judging) -> Result<JudgedPictures, Strin
 fn check_judged_back(scene: &Arc<Scene>, methods: &[Shown]) {
     let folder = tempfile::tempdir().unwrap();
     for extension in ["png", "npy", "exr"] {
-        let file = |of: &Shown| write(&folder, &format!("{}.{extension}", of.name), &of.shares);
+        let file = |own: &Shown| write(&folder, &format!("{}.{extension}", own.name), &own.shares);
         let files = methods.iter().map(file).collect();
         let record = judged(scene, &judging(files)).unwrap();
         for (picture, own) in record.pictures.iter().zip(methods) {
@@ -146,7 +146,7 @@ fn the_default_presets_are_judged_back_to_the_pixel() {
     assert_eq!(methods.len(), SHIPPED.len());
     let graded = methods
         .iter()
-        .filter(|of| of.measured.answer == Answer::Graded);
+        .filter(|method| method.measured.answer == Answer::Graded);
     assert!(graded.count() >= 2, "pcf and vsm");
     check_judged_back(&scene, &methods);
 }
@@ -183,9 +183,9 @@ fn what_is_written_as_truth_judges_pictures() {
             );
             Raster::read(&out.join(file)).unwrap()
         };
-        let count = |name: &str, of: f64| {
+        let count = |name: &str, wanted: f64| {
             let values = read(name).values;
-            values.into_iter().filter(|value| *value == of).count() as u64
+            values.into_iter().filter(|value| *value == wanted).count() as u64
         };
         assert_eq!(count("status", 2.0), open.pixels.lit);
         assert_eq!(count("status", 3.0), open.pixels.shadow);
@@ -193,7 +193,9 @@ fn what_is_written_as_truth_judges_pictures() {
         assert_eq!(count("unattributable", 1.0), open.unattributable);
         // Pixels in shadow have a blocker, and no others.
         let (status, blockers) = (read("status").values, read("blockers").values);
-        let is_blocked = blockers.iter().map(|of| *of != f64::from(u32::MAX));
+        let is_blocked = blockers
+            .iter()
+            .map(|blocker| *blocker != f64::from(u32::MAX));
         let pairs = is_blocked.zip(&status);
         assert!(
             pairs
@@ -212,7 +214,7 @@ fn what_is_written_as_truth_judges_pictures() {
         assert_eq!(by_ids.pictures[0].wrong.total, 0);
         assert_eq!(by_ids.pictures[0].rank, Some(1));
         let (one, other) = (by_ids.pictures[1].wrong, open.pictures[0].wrong);
-        let counts = |of: WrongCounts| [of.lit, of.shadow, of.total, of.in_band];
+        let counts = |wrong: WrongCounts| [wrong.lit, wrong.shadow, wrong.total, wrong.in_band];
         assert_eq!(counts(one), counts(other));
         let by_depth = Judging {
             surfaces: Surfaces::Depth(out.join(format!("depth.{}", format.extension()))),
@@ -252,17 +254,17 @@ fn ids_of_another_camera_are_told() {
     let array = Array::of_pixels(SIZE, Values::U32(turned));
     let turned = folder.path().join("turned.npy");
     fs::write(&turned, array.encode(DataFormat::Npy).unwrap()).unwrap();
-    let told = judged(
+    let outcome = judged(
         &scene,
         &Judging {
             surfaces: Surfaces::Ids(turned),
             ..judging(vec![out.join("visibility.npy")])
         },
     );
-    let told = told.unwrap_err();
+    let error = outcome.unwrap_err();
     assert!(
-        told.contains("a surface that the camera does not see there"),
-        "{told}"
+        error.contains("a surface that the camera does not see there"),
+        "{error}"
     );
 }
 
@@ -314,11 +316,11 @@ fn a_picture_that_is_read_wrongly_is_told_with_the_way_out() {
         ("ambient.exr", &dim, "ambient light"),
         ("bytes.npy", &bytes, "its numbers reach 255"),
     ] {
-        let told = warned(&scene, name, shares);
-        assert!(told.contains(expected), "{name}: {told}");
+        let warnings = warned(&scene, name, shares);
+        assert!(warnings.contains(expected), "{name}: {warnings}");
     }
-    let told = warned(&soft, "encoded.png", &encoded);
-    assert!(told.contains("--read-as srgb"), "{told}");
+    let warnings = warned(&soft, "encoded.png", &encoded);
+    assert!(warnings.contains("--read-as srgb"), "{warnings}");
     assert_eq!(warned(&soft, "linear.png", &rt_area.shares), "");
     assert_eq!(warned(&scene, "rt.png", &rt.shares), "");
     // The way out is one.
@@ -373,10 +375,10 @@ fn bits_alpha_quotients_and_numbers_that_are_none() {
     let outside = bits.wrong.total - bits.wrong.in_band;
     assert_eq!(outside, rt.measured.wrong_outside_band());
     assert!(bits.warnings.is_empty(), "{:?}", bits.warnings);
-    let told = &alpha.warnings[0];
+    let warning = &alpha.warnings[0];
     assert!(
-        told.contains("alpha is not read, and 8 pixels are not opaque"),
-        "{told}"
+        warning.contains("alpha is not read, and 8 pixels are not opaque"),
+        "{warning}"
     );
     assert_eq!((none.graded.invalid.nan, none.answer), (5, Answer::Graded));
     assert!(none.wrong.shadow >= 5, "{:?}", none.wrong);
@@ -393,7 +395,7 @@ fn bits_alpha_quotients_and_numbers_that_are_none() {
         .shares
         .iter()
         .zip(&colour)
-        .map(|(one, of)| one * of)
+        .map(|(one, colour)| one * colour)
         .collect();
     let quotient = Judging {
         unshadowed: Some(write(&folder, "whole.exr", &colour)),
@@ -402,10 +404,10 @@ fn bits_alpha_quotients_and_numbers_that_are_none() {
     let record = judged(&scene, &quotient).unwrap();
     let picture = &record.pictures[0];
     assert_eq!(picture.wrong.shadow, bits.wrong.shadow + 1);
-    let told = &picture.warnings[0];
+    let warning = &picture.warnings[0];
     assert!(
-        told.contains("1 pixel facing the light, black in the picture"),
-        "{told}"
+        warning.contains("1 pixel facing the light, black in the picture"),
+        "{warning}"
     );
 }
 
@@ -420,15 +422,18 @@ fn a_picture_of_another_camera_is_told_and_has_no_rank() {
     let right = scene.views.last().unwrap().name.clone();
     let other = judged(&Arc::new(scene), &judging(vec![file])).unwrap();
     assert_eq!(own.pictures[0].warnings, Vec::<String>::new());
-    let told = &other.pictures[0].warnings[0];
-    assert!(told.contains("it hardly agrees with the truth"), "{told}");
+    let warning = &other.pictures[0].warnings[0];
     assert!(
-        told.contains("--view") && told.contains("skiagraph truth"),
-        "{told}"
+        warning.contains("it hardly agrees with the truth"),
+        "{warning}"
+    );
+    assert!(
+        warning.contains("--view") && warning.contains("skiagraph truth"),
+        "{warning}"
     );
     assert_eq!(other.pictures[0].rank, None);
-    let found = &other.pictures[0].warnings[1];
-    assert!(found.contains(&format!("--view {right}")), "{found}");
+    let hint = &other.pictures[0].warnings[1];
+    assert!(hint.contains(&format!("--view {right}")), "{hint}");
 }
 
 /// Numbers that are none are told and not judged, and what is right stays right.
@@ -445,7 +450,7 @@ fn pixels_without_a_number_are_told_and_the_rest_is_judged() {
             .map(|(at, share)| if at % step == 3 { with } else { *share })
             .collect()
     };
-    let all = rt.shares.len();
+    let count = rt.shares.len();
     for (name, with, counted) in [
         ("nan", f32::NAN, true),
         ("inf", f32::INFINITY, true),
@@ -457,11 +462,11 @@ fn pixels_without_a_number_are_told_and_the_rest_is_judged() {
             write(&folder, &format!("{name}-{method}.exr"), &few)
         });
         let record = judged(&scene, &judging(files.to_vec())).unwrap();
-        let own = [&rt, &nsm].map(|of| of.measured.wrong_outside_band());
+        let own = [&rt, &nsm].map(|shown| shown.measured.wrong_outside_band());
         for (picture, own) in record.pictures.iter().zip(own) {
             let invalid = picture.graded.invalid;
             assert!(
-                invalid.total() > 10 && invalid.total() < all as u64 / 100,
+                invalid.total() > 10 && invalid.total() < count as u64 / 100,
                 "{name}"
             );
             assert_eq!(picture.without_answer > 0, counted, "{name}");
@@ -487,7 +492,7 @@ fn pixels_without_a_number_are_told_and_the_rest_is_judged() {
     ] {
         // One number, or the file would have none.
         let mut shares = match step {
-            1 => vec![f32::NAN; all],
+            1 => vec![f32::NAN; count],
             _ => rt
                 .shares
                 .iter()
@@ -499,18 +504,21 @@ fn pixels_without_a_number_are_told_and_the_rest_is_judged() {
         let file = write(&folder, &format!("{name}.exr"), &shares);
         let record = judged(&scene, &judging(vec![file])).unwrap();
         let picture = &record.pictures[0];
-        let told = picture.warnings.join("\n");
-        assert!(told.contains(expected), "{name}: {told}");
+        let warnings = picture.warnings.join("\n");
+        assert!(warnings.contains(expected), "{name}: {warnings}");
         assert!(
-            !told.contains("another") && !told.contains("--view"),
-            "{name}: {told}"
+            !warnings.contains("another") && !warnings.contains("--view"),
+            "{name}: {warnings}"
         );
         assert_eq!(picture.rank, None, "{name}");
     }
     // One number everywhere is no picture of another view, however light that is.
     for (name, share) in [("light", 1.0), ("dark", 0.0), ("grey", 0.7)] {
-        let told = warned(&scene, &format!("{name}.exr"), &vec![share; all]);
-        assert!(!told.contains("agrees with another view"), "{name}: {told}");
+        let warnings = warned(&scene, &format!("{name}.exr"), &vec![share; count]);
+        assert!(
+            !warnings.contains("agrees with another view"),
+            "{name}: {warnings}"
+        );
     }
 }
 
@@ -562,21 +570,33 @@ fn bad_shadows_of_the_right_camera_have_a_rank_and_acne_is_named() {
             },
         )
         .unwrap();
-        let told = |index: usize| record.pictures[index].warnings.join("\n");
+        let warnings = |index: usize| record.pictures[index].warnings.join("\n");
         for index in [1, 2] {
-            assert!(told(index).contains("acne"), "{index}: {}", told(index));
-            assert!(!told(index).contains("--view"), "{index}: {}", told(index));
+            assert!(
+                warnings(index).contains("acne"),
+                "{index}: {}",
+                warnings(index)
+            );
+            assert!(
+                !warnings(index).contains("--view"),
+                "{index}: {}",
+                warnings(index)
+            );
         }
-        let ranks: Vec<bool> = record.pictures.iter().map(|of| of.rank.is_some()).collect();
+        let ranks: Vec<bool> = record
+            .pictures
+            .iter()
+            .map(|picture| picture.rank.is_some())
+            .collect();
         let is_open = !record.is_attributable();
         assert_eq!(
             ranks,
             [is_known && !is_open, !is_open, !is_open],
             "{}",
-            told(0)
+            warnings(0)
         );
-        assert!(told(0).contains("hardly agrees"), "{}", told(0));
-        assert_eq!(told(0).contains("--view"), !is_known, "{}", told(0));
+        assert!(warnings(0).contains("hardly agrees"), "{}", warnings(0));
+        assert_eq!(warnings(0).contains("--view"), !is_known, "{}", warnings(0));
     }
 }
 
@@ -600,8 +620,8 @@ fn a_wide_filter_is_not_taken_for_ambient_light() {
         (0..rt.shares.len()).map(share).collect()
     };
     for radius in [1, 2, 3] {
-        let told = warned(&scene, "blurred.exr", &blurred(radius));
-        assert!(!told.contains("ambient"), "{radius}: {told}");
+        let warnings = warned(&scene, "blurred.exr", &blurred(radius));
+        assert!(!warnings.contains("ambient"), "{radius}: {warnings}");
     }
     let lifted: Vec<f32> = blurred(1).iter().map(|share| 0.2 + 0.8 * share).collect();
     assert!(warned(&scene, "lifted.exr", &lifted).contains("ambient"));
@@ -625,7 +645,7 @@ fn files_that_are_no_factor_of_this_size_are_told() {
     let window = exr.windows(10).position(|at| at == b"dataWindow").unwrap();
     exr[window + 10 + 1 + 5 + 1 + 4 + 8..][..4].copy_from_slice(&2_000_000_000i32.to_le_bytes());
     fs::write(at("absurd.exr"), &exr).unwrap();
-    let told = |judging: Judging| judged(&scene, &judging).unwrap_err();
+    let error = |judging: Judging| judged(&scene, &judging).unwrap_err();
     for (name, expected) in [
         ("colours.png", "--unshadowed"),
         ("text.png", "its first bytes are not those of a picture"),
@@ -634,15 +654,15 @@ fn files_that_are_no_factor_of_this_size_are_told() {
         ("absurd.exr", "absurd.exr: "),
         ("missing.npy", "missing.npy: "),
     ] {
-        let told = told(judging(vec![at(name)]));
-        assert!(told.contains(expected), "{name}: {told}");
+        let message = error(judging(vec![at(name)]));
+        assert!(message.contains(expected), "{name}: {message}");
     }
-    let both = told(judging(vec![factor.clone(), at("small.png")]));
+    let both = error(judging(vec![factor.clone(), at("small.png")]));
     assert!(
         both.contains("has 80x64 pixels, and") && both.contains("has 8x8"),
         "{both}"
     );
-    let unshadowed = told(Judging {
+    let unshadowed = error(Judging {
         unshadowed: Some(at("small.png")),
         ..judging(vec![factor.clone()])
     });
@@ -650,7 +670,7 @@ fn files_that_are_no_factor_of_this_size_are_told() {
         unshadowed.contains("render both in one size"),
         "{unshadowed}"
     );
-    let ids = told(Judging {
+    let ids = error(Judging {
         surfaces: Surfaces::Ids(at("small.png")),
         ..judging(vec![factor])
     });

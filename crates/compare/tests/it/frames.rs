@@ -44,11 +44,11 @@ fn frames(
 
 #[test]
 fn a_still_view_is_right_once_its_memory_is_filled() {
-    let of = |name: &str| {
+    let five_frames = |name: &str| {
         let (_, frames) = frames(name, TEMPORAL.as_ref(), 48, &["visibility"], 5);
         frames
     };
-    let (late, right) = (of("temporal.ron"), of("rt"));
+    let (late, right) = (five_frames("temporal.ron"), five_frames("rt"));
     let bytes = |frame: &Contents| frame["visibility"].bytes().to_vec();
     assert!(bytes(&late[0]) != bytes(&right[0]));
     assert_eq!(bytes(&late[4]), bytes(&right[0]));
@@ -95,9 +95,9 @@ fn buffers_that_grow_have_room_in_the_first_frame_whose_memory_is_empty() {
     ] {
         fs::write(folder.path().join(name), text).unwrap();
     }
-    let (told, frames) = frames("grows.ron", folder.path(), 4, &["items", "turns"], 2);
+    let (growth, frames) = frames("grows.ron", folder.path(), 4, &["items", "turns"], 2);
     let warmed = "warmed up: 2 frames before this one, until items had room";
-    assert!(told.contains(warmed), "{told}");
+    assert!(growth.contains(warmed), "{growth}");
     let items = frames[0]["items"].as_u32().unwrap();
     assert!((100..110).all(|item| items.contains(&item)), "{items:?}");
     let turns = frames.iter().map(|frame| frame["turns"].as_u32().unwrap());
@@ -107,11 +107,11 @@ fn buffers_that_grow_have_room_in_the_first_frame_whose_memory_is_empty() {
 #[test]
 fn what_a_first_frame_leaves_uncertain_is_the_same_in_every_run() {
     let first = |name: &str, side| {
-        let (told, frames) = frames(name, NOWHERE.as_ref(), side, &["status"], 1);
-        (told, frames[0]["status"].as_u32().unwrap())
+        let (growth, frames) = frames(name, NOWHERE.as_ref(), side, &["status"], 1);
+        (growth, frames[0]["status"].as_u32().unwrap())
     };
-    let (told, status) = first("light_buffer", 128);
-    assert!(told.contains("warmed up: "), "{told}");
+    let (growth, status) = first("light_buffer", 128);
+    assert!(growth.contains("warmed up: "), "{growth}");
     assert!(!status.contains(&4), "none is uncertain");
     assert_eq!(first("light_buffer", 128).1, status);
     assert_eq!(first("nsm", 16).0, "", "nothing of it grows");

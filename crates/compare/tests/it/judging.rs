@@ -62,8 +62,8 @@ fn every_run_is_measured_judged_and_pictured() {
     };
     assert_eq!(purple("nsm-bench_side-64x64-map64"), 0);
     assert!(purple("rt-bench_side-64x64") >= count(&runs[0]["uncertain"]));
-    let of = |preset| runs.iter().filter(move |run| run["preset"] == preset);
-    for run in of("rt") {
+    let runs_of = |preset| runs.iter().filter(move |run| run["preset"] == preset);
+    for run in runs_of("rt") {
         assert_eq!(
             count(&run["wrong"]["total"]),
             count(&run["wrong"]["in_band"]),
@@ -72,7 +72,9 @@ fn every_run_is_measured_judged_and_pictured() {
         assert_eq!(run["map_size"], Value::Null);
         assert!(count(&run["rays"]) > 0);
     }
-    let wrong: Vec<u64> = of("nsm").map(|run| count(&run["wrong"]["total"])).collect();
+    let wrong: Vec<u64> = runs_of("nsm")
+        .map(|run| count(&run["wrong"]["total"]))
+        .collect();
     assert!(
         wrong[1] < wrong[0],
         "a larger map is wrong less often: {wrong:?}"
@@ -100,8 +102,9 @@ fn fits_together(run: &Value) {
     );
     for class in ["lit", "shadow"] {
         let split = &run["split"][class];
-        let said = ["certain_right", "certain_wrong", "uncertain"].map(|word| count(&split[word]));
-        assert_eq!(said.iter().sum::<u64>(), count(&pixels[class]), "{split}");
+        let counts =
+            ["certain_right", "certain_wrong", "uncertain"].map(|word| count(&split[word]));
+        assert_eq!(counts.iter().sum::<u64>(), count(&pixels[class]), "{split}");
     }
     match run["preset"].as_str() {
         // Its map depends on the light, not on the camera, which is all that moves.

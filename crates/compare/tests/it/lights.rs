@@ -149,10 +149,10 @@ fn surfaces_inside_of_a_lamp_are_told() {
         heard.notes()
     };
     for light in ["bulb", "lamp"] {
-        let told = notes(12.0, light);
+        let remarks = notes(12.0, light);
         let named = format!("inside of the light `{light}`, in ");
-        assert!(told.contains(&named), "{told}");
-        assert!(told.contains("its radius of 12"), "{told}");
+        assert!(remarks.contains(&named), "{remarks}");
+        assert!(remarks.contains("its radius of 12"), "{remarks}");
     }
     assert!(!notes(0.01, "bulb").contains("inside of"));
 }
@@ -222,7 +222,7 @@ fn params_without_effect_are_told_once() {
     let methods = load_methods(&["nsm", "rt"], &fit, &[], &EmbeddedSources).unwrap();
     let mut comparison = Comparison::new(scene(LAMPS), methods).unwrap();
     comparison.viewports = vec![[16, 16]];
-    let told = |heard: &Heard| {
+    let mentions = |heard: &Heard| {
         let text = heard.notes();
         text.matches("fit=camera has no effect on nsm under a spot light")
             .count()
@@ -230,11 +230,11 @@ fn params_without_effect_are_told_once() {
     let checked = |comparison: &Comparison| {
         let heard = Heard::default();
         comparison.check(Session::new(gpu(), &heard)).unwrap();
-        told(&heard)
+        mentions(&heard)
     };
-    let all = under(comparison, "all");
-    assert_eq!(checked(&all), 1);
-    let lamp = under(all, "lamp");
+    let every_light = under(comparison, "all");
+    assert_eq!(checked(&every_light), 1);
+    let lamp = under(every_light, "lamp");
     let mut provider = SceneProvider::new(lamp.scene.clone());
     let [ViewOrPath::Still(view)] = &lamp.views[..] else {
         panic!("one view under one light");
@@ -244,7 +244,7 @@ fn params_without_effect_are_told_once() {
     let (heard, mut idle) = (Heard::default(), IdleParams::default());
     let plan = plan.unwrap_or_else(|error| panic!("{error}"));
     idle.note_of(&heard, "nsm", &plan, provider.light());
-    assert_eq!(told(&heard), 1);
+    assert_eq!(mentions(&heard), 1);
     assert_eq!(checked(&under(lamp, "moon")), 0);
 }
 
@@ -252,8 +252,8 @@ fn params_without_effect_are_told_once() {
 fn params_that_a_kind_of_light_has_no_use_for_are_named() {
     let methods = load_methods(&["nsm", "rt"], &[], &[], &EmbeddedSources).unwrap();
     let [nsm, rt] = [0, 1].map(|at| under_other_lights(&methods[at].preset.graph));
-    let told = "; under a spot light fit has no effect; under a point light fit has no effect";
-    assert_eq!(nsm, told);
+    let effects = "; under a spot light fit has no effect; under a point light fit has no effect";
+    assert_eq!(nsm, effects);
     assert!(!rt.contains("no effect"), "{rt}");
 }
 
@@ -276,12 +276,12 @@ fn every_preset_is_planned_under_its_lights_and_names_the_others() {
                     assert!(light_kinds::takes(graph, kind), "{} {kind}", method.name);
                     planned += 1;
                 }
-                Err(found) => {
+                Err(errors) => {
                     let takes = light_kinds::split(graph)[0].join(", ");
                     let file = format!("pipelines/{}.ron", method.name);
-                    let told = format!("`{file}` takes no {kind} light (it takes: {takes})");
-                    assert_eq!(reasons(found.iter()), told);
-                    assert!(!is_mistake(found.iter()), "{told}");
+                    let refusal = format!("`{file}` takes no {kind} light (it takes: {takes})");
+                    assert_eq!(reasons(errors.iter()), refusal);
+                    assert!(!is_mistake(errors.iter()), "{refusal}");
                     refused += 1;
                 }
             }
@@ -397,10 +397,10 @@ fn whatever_cannot_run_is_a_row_with_its_reason() {
     let mut none = compared;
     none.methods
         .retain(|method| ["crsm", "torn.ron@n=1"].contains(&&*method.name));
-    let told = none.check(session).unwrap_err().to_string();
+    let error = none.check(session).unwrap_err().to_string();
     assert!(
-        told.contains("takes no point light") && told.contains("torn.ron"),
-        "{told}"
+        error.contains("takes no point light") && error.contains("torn.ron"),
+        "{error}"
     );
 }
 

@@ -146,8 +146,8 @@ fn every_frame_is_judged_and_exact_methods_do_not_shimmer() {
         assert!(head.contains(columns), "{head}");
     }
     let (heard, _) = keep(&comparison, out.path(), Kept::All).unwrap();
-    let told = heard.notes();
-    assert!(told.contains("3 of 3 runs are kept"), "{told}");
+    let notes = heard.notes();
+    assert!(notes.contains("3 of 3 runs are kept"), "{notes}");
 }
 
 #[test]
@@ -173,12 +173,12 @@ fn a_part_that_is_not_there_is_refused_with_those_that_are() {
     let file = file.to_str().unwrap();
     let (scene, paths) = (scene(file), SceneLibrary::default().paths(file).unwrap());
     let paths = ViewOrPath::paths(&scene, paths, "p", None).unwrap();
-    let told = FrameSequence::new(&paths[0], &scene, None, Some(2));
-    let told = told.err().unwrap().to_string();
+    let sequence = FrameSequence::new(&paths[0], &scene, None, Some(2));
+    let error = sequence.err().unwrap().to_string();
     assert!(
-        told.contains("path \"p\": moves: no part of the mesh is called \"tree 9\"; known here:")
-            && told.contains("tree 1"),
-        "{told}"
+        error.contains("path \"p\": moves: no part of the mesh is called \"tree 9\"; known here:")
+            && error.contains("tree 1"),
+        "{error}"
     );
 }
 

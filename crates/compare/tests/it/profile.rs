@@ -31,7 +31,8 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
     let beside = rt.against(file, &old);
     assert_eq!(beside.file, "old.json");
     let differences = beside.differences.iter();
-    let differences = differences.map(|of| [of.what.as_str(), &of.old, &of.new]);
+    let differences =
+        differences.map(|difference| [difference.what.as_str(), &difference.old, &difference.new]);
     let differences: Vec<_> = differences.collect();
     for expected in [["viewport", "32x24", "16x16"], ["method", "nsm", "rt"]] {
         assert!(differences.contains(&expected), "{differences:?}");

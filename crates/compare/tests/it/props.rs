@@ -207,8 +207,8 @@ pub fn props() -> Vec<(&'static str, Shape)> {
 /// The prop of a name.
 pub fn prop(name: &str) -> Shape {
     let shapes = [vessels(), bodies(), furniture(), buildings()].concat();
-    let found = shapes.into_iter().find(|(other, _)| *other == name);
-    found.unwrap().1
+    let named = shapes.into_iter().find(|(other, _)| *other == name);
+    named.unwrap().1
 }
 
 /// Four legs at a distance from the middle.

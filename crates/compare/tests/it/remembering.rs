@@ -38,8 +38,8 @@ fn it_has_one_figure_whatever_is_timed() {
     for (name, subject) in subjects {
         let expected = figures(subject(), [0, 1, 0]);
         for (frames, warmup) in [(5, 0), (11, 0), (1, 3), (5, 3), (11, 3)] {
-            let found = figures(subject(), [warmup, frames, frames]);
-            assert_eq!(found, expected, "{name}: {frames} frames after {warmup}");
+            let measured = figures(subject(), [warmup, frames, frames]);
+            assert_eq!(measured, expected, "{name}: {frames} frames after {warmup}");
         }
     }
 }
@@ -128,6 +128,6 @@ fn blinks(folder: &Path) {
     assert_eq!(run["steady"]["period"], 3);
     assert_eq!(run["wrong"]["total"], lit.max(shadow));
     let mean = (2 * lit + shadow) as f64 / 3.0;
-    let found = run["steady"]["judged"]["wrong_mean"].as_f64().unwrap();
-    assert!((found - mean).abs() < 1e-6, "{found} for {mean}");
+    let wrong_mean = run["steady"]["judged"]["wrong_mean"].as_f64().unwrap();
+    assert!((wrong_mean - mean).abs() < 1e-6, "{wrong_mean} for {mean}");
 }

@@ -100,8 +100,8 @@ fn settings_stand_beside_each_other_and_runs_that_are_there_stay() {
         "{text}"
     );
     let own = ["n=1,depth=plane,cull=front", "n=1,depth=plane,cull=none"];
-    let all = own.into_iter().chain(["cull=front", "cull=none"]);
-    let expected: Vec<String> = all.map(|set| format!("crsm@{set}")).collect();
+    let settings = own.into_iter().chain(["cull=front", "cull=none"]);
+    let expected: Vec<String> = settings.map(|set| format!("crsm@{set}")).collect();
     assert_eq!(names, [&expected[..], &["rt".into()]].concat());
     let picture = "crsm-n-1-depth-plane-cull-none-bench_side-16x16-map8-error.png";
     assert!(out.path().join(picture).is_file());

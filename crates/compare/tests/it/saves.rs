@@ -159,8 +159,8 @@ fn layers_and_mips_are_saved_by_themselves_and_together_at_any_pass() {
     assert_eq!(floats(folder, "after.bin"), [3.5; 64]);
     let small = "small.png: 4x4, mip 1 of 2, layer 1 of 2, 2.5 … 2.5";
     assert!(text.contains(small), "{text}");
-    let all = [&[3.5; 64][..], &[0.0; 64], &[0.0; 16], &[2.5; 16]].concat();
-    assert_eq!(floats(folder, "all.bin"), all);
+    let texels = [&[3.5; 64][..], &[0.0; 64], &[0.0; 16], &[2.5; 16]].concat();
+    assert_eq!(floats(folder, "all.bin"), texels);
     let sheet = "all.png: 8x24, 4 mips and layers one below the other, 0 … 3.5";
     assert!(text.contains(sheet), "{text}");
 }
@@ -241,24 +241,32 @@ fn what_is_saved_after_a_pass_is_what_has_been_written_by_then() {
     let folder = folder.path();
     let stepwise = ("stepwise.ron", [4, 2]);
     let (small, large) = ([0.0f32; 16], [0.0f32; 64]);
-    let of = |values: &[(&[f32], f32)]| -> Vec<f32> {
+    let filled = |values: &[(&[f32], f32)]| -> Vec<f32> {
         let parts = values.iter();
         parts
             .flat_map(|(part, value)| part.iter().map(move |_| *value))
             .collect()
     };
     for (pass, expected, part) in [
-        ("one", of(&[(&large, 1.5)]), "mip 0 of 2, layer 1 of 2, "),
+        (
+            "one",
+            filled(&[(&large, 1.5)]),
+            "mip 0 of 2, layer 1 of 2, ",
+        ),
         (
             "two",
-            of(&[(&large, 2.5), (&large, 1.5)]),
+            filled(&[(&large, 2.5), (&large, 1.5)]),
             "mip 0 of 2, layers 0 to 1 of 2, ",
         ),
         // The four are not whole: what the pass itself has written.
-        ("small", of(&[(&small, 3.5)]), "mip 1 of 2, layer 1 of 2, "),
+        (
+            "small",
+            filled(&[(&small, 3.5)]),
+            "mip 1 of 2, layer 1 of 2, ",
+        ),
         (
             "rest",
-            of(&[(&large, 2.5), (&large, 1.5), (&small, 4.5), (&small, 3.5)]),
+            filled(&[(&large, 2.5), (&large, 1.5), (&small, 4.5), (&small, 3.5)]),
             "",
         ),
     ] {

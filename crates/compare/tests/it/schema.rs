@@ -124,8 +124,8 @@ impl<'t> Ron<'t> {
     }
 }
 
-fn schema(of: &str) -> Value {
-    let schema = match of {
+fn schema(kind: &str) -> Value {
+    let schema = match kind {
         "scenes" => skiagraph_scene::schema(),
         _ => skiagraph_graph::schema(&skiagraph_passes::registry()),
     };
@@ -133,8 +133,8 @@ fn schema(of: &str) -> Value {
     schema
 }
 
-fn validator(of: &str) -> Validator {
-    jsonschema::validator_for(&schema(of)).unwrap()
+fn validator(kind: &str) -> Validator {
+    jsonschema::validator_for(&schema(kind)).unwrap()
 }
 
 /// Lists what is wrong with a document, and where.
@@ -205,13 +205,13 @@ fn every_scene_file_is_by_the_schema_of_scenes() {
 }
 
 /// Collects the structs of a definition: itself, or the bodies of its variants.
-fn structs(of: &Value) -> Vec<&Value> {
+fn structs(definition: &Value) -> Vec<&Value> {
     let is_kind = |name: &str| name.starts_with(char::is_uppercase);
-    match (&of["oneOf"], of["properties"].as_object()) {
+    match (&definition["oneOf"], definition["properties"].as_object()) {
         (_, Some(fields)) if fields.keys().all(|name| is_kind(name)) => {
             fields.values().flat_map(structs).collect()
         }
-        (_, Some(_)) => vec![of],
+        (_, Some(_)) => vec![definition],
         (Value::Array(several), None) => several.iter().flat_map(structs).collect(),
         _ => Vec::new(),
     }
@@ -226,7 +226,7 @@ fn the_page_of_scenes_has_every_field() {
     let fields = page.split("## Every field\n").nth(1).unwrap();
     let schema = schema("scenes");
     let defs = &schema["$defs"];
-    for (part, of, inner) in [
+    for (part, outer, inner) in [
         (0, vec![&schema], vec![]),
         (1, vec![&defs["Mesh"]], vec![]),
         (2, vec![&defs["NamedLight"]], vec![]),
@@ -246,13 +246,15 @@ fn the_page_of_scenes_has_every_field() {
             .skip(1)
             .filter_map(|rest| rest.split("`**").next())
             .collect();
-        let of: Vec<&Value> = of.into_iter().flat_map(structs).collect();
-        let required = of.iter().flat_map(|of| of["required"].as_array().unwrap());
+        let bodies: Vec<&Value> = outer.into_iter().flat_map(structs).collect();
+        let required = bodies
+            .iter()
+            .flat_map(|body| body["required"].as_array().unwrap());
         let required: BTreeSet<&str> = required.filter_map(Value::as_str).collect();
         assert_eq!(bold, required, "{text}");
         let inner = inner.into_iter().map(|name| &defs[name]);
-        for of in of.into_iter().chain(inner) {
-            for name in of["properties"].as_object().unwrap().keys() {
+        for body in bodies.into_iter().chain(inner) {
+            for name in body["properties"].as_object().unwrap().keys() {
                 assert!(
                     words.contains(name.as_str()),
                     "`{name}` is missing in {text}"

@@ -58,15 +58,15 @@ fn what_helps_on_other_views_helps_on_the_judged_one() {
         panic!("three runs, not {}", runs.len())
     };
     assert!(nsm.tuned.is_none() && rt.tuned.is_none());
-    let found = tuned.tuned.as_ref().unwrap();
-    assert_eq!(found.of, "nsm");
+    let tuning = tuned.tuned.as_ref().unwrap();
+    assert_eq!(tuning.of, "nsm");
     assert_eq!(
-        found.chosen_on,
+        tuning.chosen_on,
         ["generated 1", "generated 2", "generated 3"]
     );
     assert_eq!(tuned.params["cull"], "none");
-    assert_eq!(tuned.preset, found.argument());
-    assert!(found.error < 0.2 * found.default_error, "{found:?}");
+    assert_eq!(tuned.preset, tuning.argument());
+    assert!(tuning.error < 0.2 * tuning.default_error, "{tuning:?}");
     assert!(wrong(nsm) > 100, "{}", wrong(nsm));
     assert!(
         5 * wrong(tuned) < wrong(nsm),
@@ -112,14 +112,14 @@ fn of_several_views_every_second_one_is_chosen_on() {
     tune(&mut comparison, session()).unwrap_or_else(|error| panic!("{error}"));
     let judged: Vec<&str> = comparison.views.iter().map(|view| view.name()).collect();
     assert_eq!(judged, [&*names[0], &*names[2]]);
-    for found in comparison.tuned.values() {
+    for tuning in comparison.tuned.values() {
         // One is too few: others show what the judged ones show.
-        assert_eq!(found.chosen_on, [&*names[1], "generated 1", "generated 2"]);
+        assert_eq!(tuning.chosen_on, [&*names[1], "generated 1", "generated 2"]);
     }
     // Nine times the work of the runs: two new executors as four frames each, three frames and the
     // one that is timed, of each view.
-    let found = comparison.tuned.values().next().unwrap();
-    assert!(found.tried <= 9 * 3 * 12 / 2, "{found:?}");
+    let tuning = comparison.tuned.values().next().unwrap();
+    assert!(tuning.tried <= 9 * 3 * 12 / 2, "{tuning:?}");
 }
 
 #[test]

@@ -127,8 +127,8 @@ fn many_casters_are_searched_by_the_hierarchy_with_the_same_answer() {
         let end = if strip == 199 { 50.0 } else { at(strip + 1) };
         add_rectangle(&mut strips, [at(strip), end], 1.0, [-30.0, 30.0]);
     }
-    let of = |mesh: &Mesh| area(mesh, (FROM_ABOVE, 85.0), 64, OracleMode::Exact).1;
-    let (strips, whole) = (of(&strips), of(&half_plane()));
+    let visibility = |mesh: &Mesh| area(mesh, (FROM_ABOVE, 85.0), 64, OracleMode::Exact).1;
+    let (strips, whole) = (visibility(&strips), visibility(&half_plane()));
     let left = |area: &AreaVisibility| -> Vec<f32> {
         area.shares
             .chunks(80)

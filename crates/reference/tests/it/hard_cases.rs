@@ -50,8 +50,8 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
             complaints.push(format!("{answered} of {facing_light} answered"));
         }
         let wrong = |i: usize| {
-            let said = truth.classes[i] == Class::Lit;
-            facing(i) && !truth.indeterminate[i] && answer(i).is_some_and(|lit| lit != said)
+            let is_lit = truth.classes[i] == Class::Lit;
+            facing(i) && !truth.indeterminate[i] && answer(i).is_some_and(|lit| lit != is_lit)
         };
         let wrongs: Vec<usize> = (0..primitives.len()).filter(|&i| wrong(i)).collect();
         if let Some(&first) = wrongs.first() {
@@ -73,8 +73,12 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
 
 /// Complains if the picture lacks its expected pixels: a fiftieth of them, or none.
 fn unexpected(case: &HardCase, truth: &GroundTruthPixels) -> Option<String> {
-    let of = |class: Class| truth.classes.iter().filter(|&&c| c == class).count();
-    let (lit, shadow, enough) = (of(Class::Lit), of(Class::Shadow), truth.classes.len() / 50);
+    let count = |class: Class| truth.classes.iter().filter(|&&c| c == class).count();
+    let (lit, shadow, enough) = (
+        count(Class::Lit),
+        count(Class::Shadow),
+        truth.classes.len() / 50,
+    );
     let right = match case.shows {
         Shows::Both => lit >= enough && shadow >= enough,
         // An indeterminate shadow may be none.
@@ -94,7 +98,7 @@ fn unexpected(case: &HardCase, truth: &GroundTruthPixels) -> Option<String> {
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn the_oracle_agrees_with_geometry_and_little_is_indeterminate() {
-    let found: Vec<String> = cases()
+    let complaints: Vec<String> = cases()
         .iter()
         .flat_map(|case| {
             VIEWPORTS.iter().flat_map(move |&viewport| {
@@ -104,7 +108,7 @@ fn the_oracle_agrees_with_geometry_and_little_is_indeterminate() {
             })
         })
         .collect();
-    assert!(found.is_empty(), "\n{}", found.join("\n"));
+    assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
 }
 
 /// Pixels that face the light in a square picture of a case, those of them that are indeterminate,
@@ -144,11 +148,11 @@ fn the_cap_far_from_the_origin_holds_at_every_size_and_is_no_looser_than_chance(
 /// Each item of the catalogue that geometry can answer is answered.
 #[test]
 fn many_cases_have_an_answer_of_their_own() {
-    let all = cases();
-    let analytic = all.iter().filter(|case| case.is_analytic()).count();
+    let catalogue = cases();
+    let analytic = catalogue.iter().filter(|case| case.is_analytic()).count();
     assert!(
-        all.len() >= 62 && analytic >= 52,
+        catalogue.len() >= 62 && analytic >= 52,
         "{analytic} of {}",
-        all.len()
+        catalogue.len()
     );
 }

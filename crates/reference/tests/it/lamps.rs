@@ -37,9 +37,9 @@ fn on_floor(camera: &Camera, pixel: usize) -> DVec3 {
 /// All pixels are of the class that their place on the floor should have, and only those within
 /// `near` of its change are indeterminate.
 fn expect(truth: &GroundTruthPixels, camera: &Camera, class: impl Fn(DVec3) -> (Class, f64)) {
-    for (pixel, found) in truth.classes.iter().enumerate() {
+    for (pixel, answer) in truth.classes.iter().enumerate() {
         let (expected, away) = class(on_floor(camera, pixel));
-        assert_eq!(*found, expected, "pixel {pixel}");
+        assert_eq!(*answer, expected, "pixel {pixel}");
         assert!(away < 1e-3 || !truth.indeterminate[pixel], "pixel {pixel}");
     }
 }
@@ -105,7 +105,7 @@ fn a_spot_light_far_away_is_directional() {
     let camera = from_above(1.0, [120, 120]);
     let direction = DVec3::new(0.3, -1.0, 0.2);
     let sun = render(&mesh, &camera, light(0.3, -1.0, 0.2), OracleMode::Exact);
-    let others = |distance: f64| {
+    let differing = |distance: f64| {
         let light = spot(-direction * distance, direction, 2.0);
         let lamp = render(&mesh, &camera, light, OracleMode::Exact);
         let other = |i: &usize| lamp.classes[*i] != sun.classes[*i];
@@ -113,13 +113,16 @@ fn a_spot_light_far_away_is_directional() {
         let outside = |i: &&usize| !(lamp.indeterminate[**i] || sun.indeterminate[**i]);
         [differ.len(), differ.iter().filter(outside).count()]
     };
-    let found = [1e2, 1e3, 1e4, 1e6, 1e8].map(others);
-    let all = found.map(|[all, _]| all);
-    assert!(all[0] > 100 && all.is_sorted_by(|a, b| a >= b), "{found:?}");
+    let counts = [1e2, 1e3, 1e4, 1e6, 1e8].map(differing);
+    let totals = counts.map(|[total, _]| total);
+    assert!(
+        totals[0] > 100 && totals.is_sorted_by(|a, b| a >= b),
+        "{counts:?}"
+    );
     // Pixels that still differ hang on rounding.
     assert!(
-        found[2..].iter().all(|[_, outside]| *outside == 0),
-        "{found:?}"
+        counts[2..].iter().all(|[_, outside]| *outside == 0),
+        "{counts:?}"
     );
 }
 
@@ -171,13 +174,13 @@ proptest! {
             if truth.indeterminate[pixel] {
                 continue;
             }
-            let said = match (status[pixel], visibility[pixel]) {
+            let answer = match (status[pixel], visibility[pixel]) {
                 (0, _) => Class::Background,
                 (1, _) => Class::FacingAway,
                 (_, 0) => Class::Shadow,
                 _ => Class::Lit,
             };
-            prop_assert_eq!(said, truth.classes[pixel], "pixel {}", pixel);
+            prop_assert_eq!(answer, truth.classes[pixel], "pixel {}", pixel);
         }
         let counts = Statistics::judged(&visibility, &status, &truth).expect("valid values");
         // Among the few pixels that a cone near the floor lights, two may lie at its edge.

@@ -151,18 +151,23 @@ fn surfaces_that_meet_in_a_pixel_are_candidates_and_hidden_ones_are_not() {
     let lists = candidates(&oracle, &camera, Progress::default()).unwrap();
     let seen = seen(&mesh, &camera);
     for (list, id) in lists.iter().zip(&seen) {
-        let own = list.iter().find(|of| of.primitive == *id);
+        let own = list.iter().find(|candidate| candidate.primitive == *id);
         let [least, greatest] = own.expect("what is seen may be seen").distances;
         assert!(
             least < greatest && greatest - least < 0.1,
             "{least} {greatest}"
         );
         // Two triangles of the floor hide together what is behind their edge.
-        let is_behind = list.iter().any(|of| of.primitive == BACKGROUND);
+        let is_behind = list
+            .iter()
+            .any(|candidate| candidate.primitive == BACKGROUND);
         assert!(!is_behind, "the floor fills the picture");
     }
     let meets = |list: &&Vec<Candidate>| {
-        let of_plates = list.iter().filter(|of| of_plate(of.primitive)).count();
+        let of_plates = list
+            .iter()
+            .filter(|candidate| of_plate(candidate.primitive))
+            .count();
         of_plates > 0 && of_plates < list.len()
     };
     // A rim of about 96 pixels, an eighth of which has the edge near its centre.

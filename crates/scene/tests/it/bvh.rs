@@ -259,9 +259,9 @@ proptest! {
         // In a light space each node is the one that the whole tree has there.
         let mut nodes = Vec::new();
         let fitted = SPACE.refit_pieces(&mut nodes, &levels, &mesh, 0..parts);
-        let all = SPACE.refit(&tree, &mesh);
-        prop_assert_eq!(fitted, all.is_some().then_some(levels.nodes.len()));
-        prop_assert!(all.is_none_or(|all| all == nodes));
+        let whole = SPACE.refit(&tree, &mesh);
+        prop_assert_eq!(fitted, whole.is_some().then_some(levels.nodes.len()));
+        prop_assert!(whole.is_none_or(|whole| whole == nodes));
         for (piece, by) in shifts {
             let piece = piece % parts;
             shift(&mut mesh, &run[piece], Vec3::new(by, -by, 1e3 * by));
@@ -269,7 +269,7 @@ proptest! {
             let tree = checked_levels(&mesh, &levels);
             if fitted.is_some() {
                 SPACE.refit_pieces(&mut nodes, &levels, &mesh, [piece]);
-                prop_assert!(SPACE.refit(&tree, &mesh).is_none_or(|all| all == nodes));
+                prop_assert!(SPACE.refit(&tree, &mesh).is_none_or(|whole| whole == nodes));
             }
         }
     }
@@ -490,7 +490,7 @@ fn those(mesh: &Mesh, there: &[std::ops::Range<u32>], levels: &TwoLevelBvh) -> (
         to[new].first = walked.primitives.len() as u32;
         for slot in node.first..node.first + node.count {
             let id = levels.primitives[slot as usize];
-            let place = ids.iter().position(|known| *known == id);
+            let place = ids.iter().position(|other| *other == id);
             walked.primitives.push(place.expect("it is there") as u32);
         }
     }
@@ -545,8 +545,8 @@ proptest! {
             let count = levels.nodes.len();
             let refit = levels.refit(&whole, &moved, Moved::Affinely);
             prop_assert_eq!(levels.nodes.len(), count);
-            let others = moved.iter().copied().chain(refit.rebuilt);
-            prop_assert!(SPACE.refit_pieces(&mut nodes, &levels, &whole, others).is_some());
+            let pieces = moved.iter().copied().chain(refit.rebuilt);
+            prop_assert!(SPACE.refit_pieces(&mut nodes, &levels, &whole, pieces).is_some());
             let mut anew = Vec::new();
             SPACE.refit_pieces(&mut anew, &levels, &whole, 0..levels.pieces());
             let mut open = if there.is_empty() { vec![] } else { vec![0] };

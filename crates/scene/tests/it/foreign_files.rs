@@ -149,7 +149,7 @@ fn assert_plates(file: &str, mesh: &Mesh, places: &[f32]) {
         (b - a).cross(c - a).y > 0.0
     };
     let floor = (0..mesh.triangles.len() as u32)
-        .filter(|&of| mesh.corners(of).iter().all(|corner| corner.y == 0.0));
+        .filter(|&triangle| mesh.corners(triangle).iter().all(|corner| corner.y == 0.0));
     assert!(floor.into_iter().all(up), "{file}");
     let parts = skiagraph_scene::Parts::new(mesh);
     let closed = parts.open.iter().filter(|open| !**open).count();
@@ -163,14 +163,14 @@ fn each_loads_or_says_why_not() {
             Plates(places, remark) => {
                 let (mesh, report) = load(file).unwrap_or_else(|why| panic!("{file}: {why}"));
                 assert_plates(file, &mesh, places);
-                let told = report.to_string();
-                assert_eq!(told.is_empty(), remark.is_empty(), "{file}: {told}");
-                assert!(told.contains(remark), "{file}: {told}");
+                let remarks = report.to_string();
+                assert_eq!(remarks.is_empty(), remark.is_empty(), "{file}: {remarks}");
+                assert!(remarks.contains(remark), "{file}: {remarks}");
             }
             Refused(words) => {
-                let told = load(file).expect_err(file).to_string();
-                let all = words.iter().all(|word| told.contains(word));
-                assert!(all && told.contains(file), "{told}");
+                let error = load(file).expect_err(file).to_string();
+                let has_words = words.iter().all(|word| error.contains(word));
+                assert!(has_words && error.contains(file), "{error}");
             }
         }
     }
@@ -179,18 +179,18 @@ fn each_loads_or_says_why_not() {
 /// A file that is in no table is tested by nothing.
 #[test]
 fn every_file_is_in_the_table() {
-    let mut found = Vec::new();
+    let mut files = Vec::new();
     for folder in std::fs::read_dir(faults()).unwrap() {
         let folder = folder.unwrap();
         for file in std::fs::read_dir(folder.path()).unwrap() {
             let name = file.unwrap().file_name().into_string().unwrap();
             if !name.ends_with(".mtl") {
-                found.push(format!("{}/{name}", folder.file_name().to_str().unwrap()));
+                files.push(format!("{}/{name}", folder.file_name().to_str().unwrap()));
             }
         }
     }
-    found.sort();
-    assert_eq!(found, FILES.map(|(file, _)| file));
+    files.sort();
+    assert_eq!(files, FILES.map(|(file, _)| file));
 }
 
 #[test]
@@ -261,18 +261,18 @@ const PLATE: &str = r#"{"mesh":1}"#;
 /// Asserts that the control, changed, is what it was, and that a remark holds the words, or that
 /// there is none.
 #[track_caller]
-fn assert_harmless(from: &str, to: &str, told: &str) {
+fn assert_harmless(from: &str, to: &str, remark: &str) {
     let (mesh, report) = control(from, to).unwrap_or_else(|why| panic!("{to}: {why}"));
     assert_plates(to, &mesh, ONE);
     let remarks = report.to_string();
-    let is_told = remarks.contains(told) && remarks.is_empty() == told.is_empty();
+    let is_told = remarks.contains(remark) && remarks.is_empty() == remark.is_empty();
     assert!(is_told, "{to}: {remarks}");
 }
 
 #[test]
 fn what_moves_no_triangle_refuses_no_file() {
     let required = |names: &str| format!(r#""extensionsRequired":[{names}],"asset""#);
-    for (from, to, told) in [
+    for (from, to, remark) in [
         (
             r#""asset""#,
             required(r#""KHR_materials_sheen","KHR_texture_basisu""#),
@@ -310,13 +310,13 @@ fn what_moves_no_triangle_refuses_no_file() {
             "attribute WEAR",
         ),
     ] {
-        assert_harmless(from, &to, told);
+        assert_harmless(from, &to, remark);
     }
 }
 
 #[test]
 fn looks_and_what_is_not_used_refuse_no_file() {
-    for (from, to, told) in [
+    for (from, to, remark) in [
         // Unused accessors, pictures and animations of any kind.
         (
             r#""accessors":["#,
@@ -348,13 +348,13 @@ fn looks_and_what_is_not_used_refuse_no_file() {
             "alphaMode \"GLASS\"",
         ),
     ] {
-        assert_harmless(from, to, told);
+        assert_harmless(from, to, remark);
     }
 }
 
 #[test]
 fn packed_and_old_files_say_so() {
-    for (from, to, told) in [
+    for (from, to, message) in [
         (
             r#""version":"2.0""#,
             r#""version":"1.1""#,
@@ -379,12 +379,15 @@ fn packed_and_old_files_say_so() {
     ] {
         match control(from, to) {
             Ok((mesh, _)) => {
-                assert_eq!(told, "", "{to}");
+                assert_eq!(message, "", "{to}");
                 assert_plates(to, &mesh, ONE);
             }
             Err(error) => {
                 let error = error.to_string();
-                assert!(!told.is_empty() && error.contains(told), "{to}: {error}");
+                assert!(
+                    !message.is_empty() && error.contains(message),
+                    "{to}: {error}"
+                );
             }
         }
     }
@@ -398,8 +401,8 @@ fn packed_and_old_files_say_so() {
         .replace(r#"AHAAMA"}]}"#, r#"AHAAMA"},{"byteLength":96}]}"#);
     let packed = parse_gltf(packed.as_bytes(), Path::new("a.gltf"), MaterialUse::All);
     let error = packed.unwrap_err().to_string();
-    let told = "buffer view 2: it is compressed (EXT_meshopt_compression)";
-    assert!(error.contains(told), "{error}");
+    let message = "buffer view 2: it is compressed (EXT_meshopt_compression)";
+    assert!(error.contains(message), "{error}");
     let text = CONTROL.trim_end();
     let cut = parse_gltf(
         &text.as_bytes()[..text.len() - 1],
@@ -495,7 +498,10 @@ fn instances_are_turned_scaled_and_mirrored() {
 fn the_largest_index_begins_another_strip() {
     let text: String = CONTROL.split_whitespace().collect();
     let indices: [u16; 8] = [0, 2, 1, 65535, 0, 3, 2, 65535];
-    let data: Vec<u8> = indices.iter().flat_map(|of| of.to_le_bytes()).collect();
+    let data: Vec<u8> = indices
+        .iter()
+        .flat_map(|index| index.to_le_bytes())
+        .collect();
     let data = STANDARD.encode(data);
     let text = text
         .replace(

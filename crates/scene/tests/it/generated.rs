@@ -106,8 +106,8 @@ fn parts_are_closed_welded_and_apart() {
     for (generator, parts) in generators(150_000).into_iter().zip([10_000, 5_000]) {
         let mesh = generator.build();
         are_welded(&mesh);
-        let found = are_closed(&mesh);
-        assert!(found > parts, "{generator}: {found}");
+        let closed = are_closed(&mesh);
+        assert!(closed > parts, "{generator}: {closed}");
         // The test must have had something to do.
         assert!(are_apart(&mesh, &Bvh::build(&mesh)) > 1_000);
     }
@@ -246,9 +246,9 @@ fn surfaces(scene: &Scene, bvh: &Bvh, view: usize) -> u32 {
 
 #[test]
 fn a_size_that_cannot_be_had_says_why() {
-    let told = |argument: &str| scene(argument).unwrap_err().to_string();
+    let error = |argument: &str| scene(argument).unwrap_err().to_string();
     insta::assert_snapshot!(
-        ["city:9999", "forest:many", "park:20000", "sponza:20000"].map(told).join("\n"),
+        ["city:9999", "forest:many", "park:20000", "sponza:20000"].map(error).join("\n"),
         @r#"
     "city:9999": "9999" is not a number of triangles from 10000 to 10000000
     "forest:many": "many" is not a number of triangles from 10000 to 10000000
@@ -256,6 +256,6 @@ fn a_size_that_cannot_be_had_says_why() {
     "sponza:20000": the mesh "sponza/sponza.obj" is a file of one size
     "#
     );
-    assert!(told("town:20000").starts_with("no scene \"town\": it is neither"));
-    assert!(told(":20000").starts_with("no scene \":20000\": it is neither"));
+    assert!(error("town:20000").starts_with("no scene \"town\": it is neither"));
+    assert!(error(":20000").starts_with("no scene \":20000\": it is neither"));
 }

@@ -144,7 +144,7 @@ fn broken_files_say_where_and_why() {
         assert!(good.contains(from), "{from}");
         error(&good.replace(from, to))
     };
-    let told = [
+    let errors = [
         error(&good[..good.len() / 2]),
         broken(r#""count": 6"#, r#""count": 60"#),
         broken(r#""byteLength": 92"#, r#""byteLength": 920"#),
@@ -170,7 +170,7 @@ fn broken_files_say_where_and_why() {
         error(&document("")),
         error("{\"asset\": {\"version\": \"2.0\"}}"),
     ];
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(errors.join("\n"));
     let cut = parse_bytes(&glb()[..200], "plant.glb").unwrap_err();
     assert!(cut.to_string().starts_with("plant.glb: "), "{cut}");
 }

@@ -64,7 +64,11 @@ fn a_camera_goes_and_a_door_turns_with_what_hangs_on_it() {
     let movable = walk.movable(&mesh).unwrap().unwrap();
     let corner = |frame, group: &str| {
         let moved = walk.shape(&movable, frame).unwrap();
-        let group = moved.groups.iter().find(|of| of.name == group).unwrap();
+        let group = moved
+            .groups
+            .iter()
+            .find(|other| other.name == group)
+            .unwrap();
         moved.corners(group.triangles.start)[0]
     };
     // The door's hinge is at x = 0.5; after two seconds it is open by 60 degrees.

@@ -31,7 +31,9 @@ fn parse_scene(text: &str) -> Result<SceneFile, SceneError> {
 #[track_caller]
 fn told(text: &str) -> String {
     let lines: Vec<String> = match parse_scene(text) {
-        Err(SceneError::SceneFile(found)) => found.iter().map(Diagnostic::brief).collect(),
+        Err(SceneError::SceneFile(diagnostics)) => {
+            diagnostics.iter().map(Diagnostic::brief).collect()
+        }
         other => panic!("{other:?}"),
     };
     lines.join("\n")
@@ -341,7 +343,7 @@ fn files_that_are_no_text_or_too_long() {
     sparse("huge.ron");
     sparse("huge.obj");
     std::fs::create_dir(file("folder.obj")).unwrap();
-    for (name, said) in [
+    for (name, message) in [
         (
             "binary.ron",
             "it is not UTF-8 text: save it in that encoding",
@@ -357,7 +359,7 @@ fn files_that_are_no_text_or_too_long() {
         ("folder.obj", "it is a folder, expected a file"),
     ] {
         let begin = format!("cannot read {}: ", file(name).display());
-        assert_eq!(said_of_file(&file(name)), format!("{begin}{said}"));
+        assert_eq!(said_of_file(&file(name)), format!("{begin}{message}"));
     }
 }
 

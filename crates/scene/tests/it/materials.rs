@@ -107,13 +107,13 @@ fn what_is_not_wanted_need_not_be_there() {
 
 #[test]
 fn broken_materials_say_where_and_what_to_do() {
-    let told = [
+    let errors = [
         error(None),
         error(Some("newmtl leaf\nd dim\n")),
         error(Some("newmtl leaf\nmap_d no.png\n")),
         error(Some("newmtl leaf\nmap_d leaf.obj\n")),
     ];
-    insta::assert_snapshot!(told.join("\n"));
+    insta::assert_snapshot!(errors.join("\n"));
 }
 
 /// The mask, the uvs of the first corner and the remarks that a file of materials makes.
@@ -173,8 +173,8 @@ fn transparency_hides_where_d_says_nothing() {
 #[test]
 fn materials_that_are_nowhere_are_told() {
     let (_, _, remarks) = masked("newmtl other\n");
-    let told = "material \"leaf\" is in no .mtl file that the file names: it is white and opaque";
-    assert_eq!(remarks, told);
+    let remark = "material \"leaf\" is in no .mtl file that the file names: it is white and opaque";
+    assert_eq!(remarks, remark);
 }
 
 #[test]
@@ -185,15 +185,15 @@ fn texture_coordinates_must_be_there_where_a_mask_is() {
     let error = load(folder.path(), ObjMaterials::All)
         .unwrap_err()
         .to_string();
-    let told = "(line 11) names texture coordinates 5, but the file has 4 pairs";
-    assert!(error.contains(told), "{error}");
+    let message = "(line 11) names texture coordinates 5, but the file has 4 pairs";
+    assert!(error.contains(message), "{error}");
     for materials in [ObjMaterials::Ignore, ObjMaterials::Color] {
         assert!(load(folder.path(), materials).is_ok());
     }
     std::fs::write(folder.path().join("leaf.mtl"), "newmtl leaf\n").unwrap();
     let (_, report) = load(folder.path(), ObjMaterials::All).unwrap();
-    let told = "1 face names texture coordinates that are not there";
-    assert_eq!(report.remarks, [told]);
+    let remark = "1 face names texture coordinates that are not there";
+    assert_eq!(report.remarks, [remark]);
 }
 
 /// Materials may come without texture coordinates, which then are zero.

@@ -157,8 +157,8 @@ fn curves_and_surfaces_are_told() {
     let (_, report) = parse(format!(
         "{SQUARE}f 1 2 3\nsurf 0 1 0 1 1 2 3 4\ncurv 0 1 1 2\n"
     ));
-    let told = "2 curves and surfaces (curv, surf) passed over: only faces are drawn";
-    assert_eq!(report.remarks, [told]);
+    let remark = "2 curves and surfaces (curv, surf) passed over: only faces are drawn";
+    assert_eq!(report.remarks, [remark]);
 }
 
 #[test]
@@ -235,9 +235,9 @@ fn odd_but_valid_text() {
 #[test]
 fn lines_of_old_macs_are_lines() {
     let text = format!("# a house\n{SQUARE}f 1 2 3\nf 1 3 9\n");
-    let told = error(text.replace('\n', "\r"));
-    assert!(told.contains("(line 7) names vertex 9"), "{told}");
-    assert_eq!(error(text.replace('\n', "\r\n")), told);
+    let message = error(text.replace('\n', "\r"));
+    assert!(message.contains("(line 7) names vertex 9"), "{message}");
+    assert_eq!(error(text.replace('\n', "\r\n")), message);
 }
 
 #[test]

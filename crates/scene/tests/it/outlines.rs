@@ -23,7 +23,7 @@ fn clouds(count: usize) -> Vec<Vec<Vec3>> {
 }
 
 fn loose(light: &DirectionalLight, points: &[Vec3]) -> Outline {
-    let [low, high] = [Vec3::min, Vec3::max].map(|of| points.iter().copied().reduce(of));
+    let [low, high] = [Vec3::min, Vec3::max].map(|op| points.iter().copied().reduce(op));
     let ends = low.zip(high).map(|(low, high)| [low, high]);
     let corners = ends.into_iter().flat_map(|ends| {
         (0..8).map(move |corner: usize| {
@@ -39,11 +39,11 @@ fn the_box_of_parts_is_that_of_their_points() {
         let light = DirectionalLight::new(direction);
         for count in [0, 1, 3, 60, 120] {
             let clouds = clouds(count);
-            let mut known = vec![None; count];
+            let mut outlines = vec![None; count];
             let mut asked = 0;
-            let mut joined = |known: &mut [Option<Outline>], clouds: &[Vec<Vec3>]| {
+            let mut joined = |outlines: &mut [Option<Outline>], clouds: &[Vec<Vec3>]| {
                 let outline = Outline::joined(
-                    known,
+                    outlines,
                     |part| loose(&light, &clouds[part]),
                     |part| {
                         asked += 1;
@@ -54,16 +54,16 @@ fn the_box_of_parts_is_that_of_their_points() {
             };
             let fit =
                 |clouds: &[Vec<Vec3>]| -> LightFit { light.fit(clouds.iter().flatten().copied()) };
-            assert_eq!(joined(&mut known, &clouds), fit(&clouds), "{count}");
+            assert_eq!(joined(&mut outlines, &clouds), fit(&clouds), "{count}");
             // Those inside are not asked for; nor is one twice, but for those that move.
             let mut moved = clouds.clone();
             for part in [0, 2, 31, 77].into_iter().filter(|part| *part < count) {
                 moved[part]
                     .iter_mut()
                     .for_each(|point| *point += Vec3::splat(0.4));
-                known[part] = None;
+                outlines[part] = None;
             }
-            assert_eq!(joined(&mut known, &moved), fit(&moved), "{count}");
+            assert_eq!(joined(&mut outlines, &moved), fit(&moved), "{count}");
             assert!(count < 100 || asked < 3 * count / 4, "{asked} of {count}");
         }
     }
@@ -93,8 +93,13 @@ fn outlines_of_the_border_are_those_of_all_points() {
                 _ => DVec3::new(angle.cos(), -(0.1 + 0.01 * angle), angle.sin()),
             };
             let light = DirectionalLight::new(direction);
-            let of = |points: &[Vec3]| light.outline(points.iter().copied());
-            assert_eq!(of(&border), of(points), "{direction}, {}", points.len());
+            let outline = |points: &[Vec3]| light.outline(points.iter().copied());
+            assert_eq!(
+                outline(&border),
+                outline(points),
+                "{direction}, {}",
+                points.len()
+            );
         }
     }
 }

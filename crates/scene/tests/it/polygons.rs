@@ -92,7 +92,7 @@ fn corners_on_a_line_are_kept_for_the_neighbours() {
     // Every side of the outline is a triangle's.
     for from in 0..corners.len() as u32 {
         let to = (from + 1) % corners.len() as u32;
-        let has = |of: &[u32; 3]| (0..3).any(|i| (of[i], of[(i + 1) % 3]) == (from, to));
+        let has = |face: &[u32; 3]| (0..3).any(|i| (face[i], face[(i + 1) % 3]) == (from, to));
         assert!(
             mesh.triangles.iter().any(has),
             "{from} {to} in {:?}",

@@ -102,8 +102,8 @@ fn a_mask_without_coordinates_is_told_and_opaque() {
         ("blended", blended, 2),
     ] {
         let (mesh, _, report) = read_with(&document, MaterialUse::BlendMask).unwrap();
-        let told: Vec<&String> = report.remarks.iter().collect();
-        let [told] = told[..] else {
+        let remarks: Vec<&String> = report.remarks.iter().collect();
+        let [remark] = remarks[..] else {
             panic!("{what}: {:?}", report.remarks)
         };
         for part in [
@@ -112,7 +112,7 @@ fn a_mask_without_coordinates_is_told_and_opaque() {
             &format!("{triangles} triangles"),
             "opaque",
         ] {
-            assert!(told.contains(part), "{what}: no {part} in {told}");
+            assert!(remark.contains(part), "{what}: no {part} in {remark}");
         }
         assert!(
             plate(&mesh).all(|id| mesh.surfaces.mask(id).is_none()),
@@ -159,11 +159,11 @@ fn faces_without_coordinates_under_a_mask_are_told_and_opaque() {
     let odd = "vt nan 0\nf 5/5 6/2 7/3\nf 5/1 7/3 8/4";
     for (faces, masked) in [("f 5 6 7 8", 0), ("f 5/1 6/2 7 8", 0), (odd, 1)] {
         let (mesh, report) = plate_obj(faces);
-        let told = report.remarks.join("\n");
-        assert!(told.contains("material \"leaf\""), "{faces}: {told}");
+        let remarks = report.remarks.join("\n");
+        assert!(remarks.contains("material \"leaf\""), "{faces}: {remarks}");
         assert!(
-            told.contains("the first in \"unnamed\": opaque there"),
-            "{faces}: {told}"
+            remarks.contains("the first in \"unnamed\": opaque there"),
+            "{faces}: {remarks}"
         );
         let ids = 0..mesh.triangles.len() as u32;
         let count = ids.filter(|id| mesh.surfaces.mask(*id).is_some()).count();
@@ -209,7 +209,13 @@ fn rotations_of_any_length_turn_alike() {
         &expected,
     );
     let turn: Vec<f64> = serde_json::from_value(unit["nodes"][1]["rotation"].clone()).unwrap();
-    let scaled = |by: f64| json!(turn.iter().map(|of| of * by).collect::<Vec<f64>>());
+    let scaled = |by: f64| {
+        json!(
+            turn.iter()
+                .map(|component| component * by)
+                .collect::<Vec<f64>>()
+        )
+    };
     for by in [1e-12, 0.3, -1.0, 7.0, 1e9] {
         let mut document = unit.clone();
         document["nodes"][1]["rotation"] = scaled(by);
@@ -238,8 +244,8 @@ fn cameras_and_lights_stand_as_their_nodes_do() {
     for by in [1e-6, 3.0] {
         let mut longer = document.clone();
         for node in [2, 3] {
-            for of in longer["nodes"][node]["rotation"].as_array_mut().unwrap() {
-                *of = json!(of.as_f64().unwrap() * by);
+            for component in longer["nodes"][node]["rotation"].as_array_mut().unwrap() {
+                *component = json!(component.as_f64().unwrap() * by);
             }
         }
         let (_, scene, _) = read(&longer);
@@ -341,12 +347,12 @@ fn a_spot_of_half_the_space_is_one_of_nearly_half() {
         panic!("{light:?}")
     };
     assert_eq!((light.name.as_str(), spot.cone_degrees), ("spot", 179.9));
-    let [told] = &scene.remarks[..] else {
+    let [remark] = &scene.remarks[..] else {
         panic!("{:?}", scene.remarks)
     };
     assert!(
-        told.starts_with("node 3 \"spot\": its cone of 180.00 degrees counts as"),
-        "{told}"
+        remark.starts_with("node 3 \"spot\": its cone of 180.00 degrees counts as"),
+        "{remark}"
     );
     let cone = |angle: f64| {
         let mut document = document("spot_90.gltf");
@@ -361,12 +367,12 @@ fn a_spot_of_half_the_space_is_one_of_nearly_half() {
     };
     // A right angle in f32 is a little more.
     assert_eq!(cone(1.5707964).0, Some(179.9));
-    let (width, told) = cone(1.5);
-    assert_eq!((width, told), (Some(3f64.to_degrees()), vec![]));
+    let (width, remarks) = cone(1.5);
+    assert_eq!((width, remarks), (Some(3f64.to_degrees()), vec![]));
     for angle in [0.0, -1.0, 1.6] {
-        let (width, told) = cone(angle);
+        let (width, remarks) = cone(angle);
         assert_eq!(width, None, "{angle}");
-        assert!(told[0].contains("at most a right angle"), "{told:?}");
+        assert!(remarks[0].contains("at most a right angle"), "{remarks:?}");
     }
 }
 
@@ -380,8 +386,8 @@ fn the_range_of_a_light_bears_on_nothing_and_is_told() {
         (scene.lights.len(), scene.remarks)
     };
     for kind in ["spot", "point"] {
-        let told = "the range of 1 light bears on nothing: a shadow counts at any distance";
-        assert_eq!(with(kind, 3.0), (1, vec![told.to_owned()]), "{kind}");
+        let remark = "the range of 1 light bears on nothing: a shadow counts at any distance";
+        assert_eq!(with(kind, 3.0), (1, vec![remark.to_owned()]), "{kind}");
     }
     // The extension has it ignored there.
     for range in [3.0, 0.0] {
@@ -398,10 +404,10 @@ fn blended_leaves_are_masks_where_that_is_asked_for() {
     document["materials"][0]["alphaCutoff"] = json!(0.0);
     let (mesh, _, report) = read(&document);
     assert!(!plate(&mesh).any(|id| mesh.surfaces.mask(id).is_some()));
-    let told = report.to_string();
+    let remarks = report.to_string();
     assert!(
-        told.contains("--materials blend=mask") && told.contains("BlendMask"),
-        "{told}"
+        remarks.contains("--materials blend=mask") && remarks.contains("BlendMask"),
+        "{remarks}"
     );
     let (mesh, _, report) = read_with(&document, MaterialUse::BlendMask).unwrap();
     assert_eq!(report.remarks, [""; 0]);
@@ -450,8 +456,8 @@ fn an_outline_that_goes_out_and_back_is_cut() {
     assert!(!report.has_warnings(), "{report}");
     let area = |mesh: &Mesh| -> f64 {
         let corner = |index: u32| mesh.positions[index as usize].as_dvec3();
-        let cross = mesh.triangles.iter().map(|of| {
-            let [a, b, c] = of.map(corner);
+        let cross = mesh.triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(corner);
             (b - a).cross(c - a)
         });
         cross.sum::<DVec3>().length() / 2.0
@@ -573,13 +579,13 @@ fn a_tuple_in_the_place_of_fields_is_told() {
                 near: 1, far: 9)],\n paths: [(name: \"p\", fov_y_degrees: 60, near: 1, far: 9, \
                 keys: [(0, (0, 1, 2), (0, 0, -1))])])";
     let why = skiagraph_scene::SceneFile::parse(text, "a.ron").unwrap_err();
-    let SceneError::SceneFile(told) = why else {
+    let SceneError::SceneFile(diagnostics) = why else {
         panic!("{why}")
     };
-    let told = told.to_string();
+    let message = diagnostics.to_string();
     assert!(
-        told.contains("what has fields, `(name: …)`, is needed"),
-        "{told}"
+        message.contains("what has fields, `(name: …)`, is needed"),
+        "{message}"
     );
-    assert!(!told.contains("r#"), "{told}");
+    assert!(!message.contains("r#"), "{message}");
 }

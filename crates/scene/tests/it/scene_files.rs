@@ -17,7 +17,7 @@ const GOOD: &str = r#"(
 
 fn found(text: &str) -> Diagnostics {
     match SceneFile::parse(text, "garden.ron") {
-        Err(SceneError::SceneFile(found)) => found,
+        Err(SceneError::SceneFile(diagnostics)) => diagnostics,
         other => panic!("{other:?}"),
     }
 }
@@ -164,8 +164,8 @@ fn every_mistake_of_a_file_is_told() {
     ],
     paths: walk,
 )"#;
-    let told = told(text);
-    let told: Vec<&str> = told
+    let report = told(text);
+    let lines: Vec<&str> = report
         .lines()
         .map(|line| &line["garden.ron:".len()..])
         .collect();
@@ -182,7 +182,7 @@ fn every_mistake_of_a_file_is_told() {
             longer than 0",
         "13:12: a list `[a, b]` is needed",
     ];
-    assert_eq!(told, expected);
+    assert_eq!(lines, expected);
 }
 
 const LAMPS: &str = r#"lights: [
@@ -196,13 +196,13 @@ const LAMPS: &str = r#"lights: [
 fn a_scene_may_have_several_lights() {
     let text = GOOD.replace("light: (direction: (0, -1, 0))", LAMPS);
     let scene = SceneFile::parse(&text, "garden.ron").unwrap();
-    let found: Vec<_> = scene
+    let lights: Vec<_> = scene
         .lights
         .iter()
         .map(|light| (light.name.as_str(), light.kind.word()))
         .collect();
     let expected = [("sun", "directional"), ("lamp", "spot"), ("bulb", "point")];
-    assert_eq!(found, expected);
+    assert_eq!(lights, expected);
     let bulb = scene.lights[2]
         .kind
         .towards(glam::DVec3::new(1.0, 2.0, 1.0));

@@ -161,8 +161,8 @@ proptest! {
             );
         }
         // Nor where an edge is evaluated in another way in each of its triangles.
-        let all: Vec<Arithmetic> = Arithmetic::every(seed).collect();
-        let by = |edge: usize| all[(seed as usize).wrapping_mul(edge + 7) / 16 % all.len()];
+        let ways: Vec<Arithmetic> = Arithmetic::every(seed).collect();
+        let by = |edge: usize| ways[(seed as usize).wrapping_mul(edge + 7) / 16 % ways.len()];
         let hit = |i: usize| {
             let each = [3 * i, 3 * i + 1, 3 * i + 2].map(by);
             Arithmetic::hits_by(each, [hub, rim[i], next(i)])
@@ -244,11 +244,11 @@ proptest! {
             let half_ulps = arithmetic.half_ulps() * (3.0 * away + 9.0 * exact.abs());
             let bound = f64::from(HALF_ULP) * half_ulps;
             for (area, ulps) in [(1.0, 0), (1.0, -2), (1.0, 2), (-1.0, 0)] {
-                let found =
+                let inward =
                     f64::from(arithmetic.inward_distance(edge, point, area, ulps) * area);
                 prop_assert!(
-                    (found - exact).abs() <= bound,
-                    "{arithmetic:?}: {found} for {exact}, {bound}"
+                    (inward - exact).abs() <= bound,
+                    "{arithmetic:?}: {inward} for {exact}, {bound}"
                 );
             }
         }

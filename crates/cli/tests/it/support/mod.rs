@@ -22,8 +22,8 @@ pub fn skiagraph(folder: &Path, line: &str) -> Output {
 #[allow(dead_code, reason = "not every test compares")]
 pub fn results(folder: &Path, line: &str) -> (Vec<Value>, String) {
     let output = skiagraph(folder, line);
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{line}: {told}");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {stderr}");
     let text = fs::read_to_string(folder.join("out/results.json")).unwrap();
     let results: Value = serde_json::from_str(&text).unwrap();
     let table = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -150,12 +150,12 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
     match error {
         SceneError::BadView { .. } => CliError::Usage(error.to_string()),
         SceneError::UnknownScene { .. } => {
-            let known = library.list();
-            let hint = did_you_mean(args.scene(), known.iter().map(|scene| scene.name.as_str()));
+            let scenes = library.list();
+            let hint = did_you_mean(args.scene(), scenes.iter().map(|scene| scene.name.as_str()));
             CliError::Input(format!("{error}{hint}"))
         }
-        SceneError::SceneFile(found) => CliError::Compare(CompareError::Diagnostics {
-            faults: vec![found.iter().cloned().collect()],
+        SceneError::SceneFile(diagnostics) => CliError::Compare(CompareError::Diagnostics {
+            faults: vec![diagnostics.iter().cloned().collect()],
             summary: format!("cannot load the scene `{}`", args.scene()),
         }),
         error => CliError::Scene {

@@ -118,13 +118,13 @@ fn figures(cell: &CellChange) -> [String; 4] {
             then => format!("{then} → {now}"),
         }
     };
-    let ratio = cell.ratio.map_or("–".into(), |of| {
-        format!("{:.2} ({:.2}–{:.2})", of.median, of.low, of.high)
+    let ratio = cell.ratio.map_or("–".into(), |ratio| {
+        format!("{:.2} ({:.2}–{:.2})", ratio.median, ratio.low, ratio.high)
     });
     [
-        pair(|of| thousands(of.wrong)),
-        pair(|of| format!("{:.5}", of.rmse)),
-        pair(|of| ms(of.ms)),
+        pair(|figures| thousands(figures.wrong)),
+        pair(|figures| format!("{:.5}", figures.rmse)),
+        pair(|figures| ms(figures.ms)),
         ratio,
     ]
 }
@@ -191,9 +191,12 @@ mod tests {
     fn of_many_cells_those_that_are_the_same_are_only_counted() {
         let mut many = changes();
         many.cells.extend((0..FEW).map(|_| cell("same")));
-        let told = text(&many);
-        assert!(told.contains("3 worse, 1 better, 17 the same"), "{told}");
-        assert!(!told.contains("  same"), "{told}");
+        let printed = text(&many);
+        assert!(
+            printed.contains("3 worse, 1 better, 17 the same"),
+            "{printed}"
+        );
+        assert!(!printed.contains("  same"), "{printed}");
         let mut one = changes();
         one.cells.truncate(1);
         assert!(!text(&one).contains("  on "), "one view and size");

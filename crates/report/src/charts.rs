@@ -65,7 +65,7 @@ fn named(maps: &[u32]) -> Vec<String> {
 
 /// Size of the marks of a run: the place of its map among these.
 fn mark_size(map: Option<u32>, maps: &[u32]) -> usize {
-    let place = map.and_then(|map| maps.iter().position(|known| *known == map));
+    let place = map.and_then(|map| maps.iter().position(|size| *size == map));
     place.unwrap_or(0)
 }
 
@@ -101,13 +101,16 @@ fn front_panel(kept: &Kept, place: Place<'_>, maps: &[u32]) -> Result<Panel, Com
         for (run, measured) in of_cell {
             let own = time(kept, measured)?;
             ms += own;
-            if let Some(of) = measured.frame.gpu_ms {
-                ends[0] += own + of.q1 - of.median;
-                ends[1] += own + of.q3 - of.median;
+            if let Some(gpu) = measured.frame.gpu_ms {
+                ends[0] += own + gpu.q1 - gpu.median;
+                ends[1] += own + gpu.q3 - gpu.median;
             }
             wrong += measured.wrong_outside_band();
             // Counts of a path are those of all its frames.
-            let frames = measured.sequence.as_ref().map_or(1, |of| of.frames.len());
+            let frames = measured
+                .sequence
+                .as_ref()
+                .map_or(1, |sequence| sequence.frames.len());
             pixels += run.viewport.map(u64::from).iter().product::<u64>() * frames as u64;
             views += 1.0;
         }
@@ -283,7 +286,7 @@ pub fn path_panels<'a>(
             y: y.into(),
             series: Vec::new(),
         };
-        let (_, panel) = find_or_push(&mut paths, |(of, _)| *of == place, || (place, new()));
+        let (_, panel) = find_or_push(&mut paths, |(key, _)| *key == place, || (place, new()));
         let mark = |(index, frame): (usize, &SequenceFrame)| {
             let wrong = 100.0 * frame.wrong_outside_band as f64;
             let error = if is_soft {
@@ -376,7 +379,7 @@ pub fn conditions(kept: &[Kept]) -> Vec<String> {
     let is_still = |run: &Run| {
         run.measured
             .as_ref()
-            .is_some_and(|of| of.sequence.is_none())
+            .is_some_and(|measured| measured.sequence.is_none())
     };
     let still = results().filter(|results| results.runs.iter().any(is_still));
     let medians = still.map(|results| results.frames).sorted().dedup();
@@ -516,8 +519,8 @@ mod tests {
     #[test]
     fn what_is_not_drawn_is_told() {
         assert!(front(&[kept()], Some([1, 1])).unwrap().panels.is_empty());
-        let told: Vec<String> = unavailable(&[kept()]).into_iter().collect();
-        assert_eq!(told, ["not drawn: rt_hw: needs ray queries, \"not\" here"]);
+        let lines: Vec<String> = unavailable(&[kept()]).into_iter().collect();
+        assert_eq!(lines, ["not drawn: rt_hw: needs ray queries, \"not\" here"]);
         let without = Kept {
             folder: "out".into(),
             results: sample(),

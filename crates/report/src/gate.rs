@@ -98,14 +98,14 @@ impl Figure {
 
     /// The figure of a judged picture of a view with these pixels; `None` if pictures have no such
     /// figure.
-    fn of_picture(self, of: &JudgedPicture, pixels: &PixelCounts) -> Option<f64> {
-        let percent = |count: u64, of: u64| Some(100.0 * share(Part { count, of }));
+    fn of_picture(self, picture: &JudgedPicture, pixels: &PixelCounts) -> Option<f64> {
+        let percent = |count: u64, whole: u64| Some(100.0 * share(Part { count, of: whole }));
         match self {
-            Self::Wrong => percent(of.wrong_attributable(), pixels.facing_light),
-            Self::Missing => percent(of.wrong.lit, pixels.shadow),
-            Self::False => percent(of.wrong.shadow, pixels.lit),
-            Self::Rmse => Some(of.graded.rmse_outside_band),
-            Self::Flip => Some(of.graded.flip),
+            Self::Wrong => percent(picture.wrong_attributable(), pixels.facing_light),
+            Self::Missing => percent(picture.wrong.lit, pixels.shadow),
+            Self::False => percent(picture.wrong.shadow, pixels.lit),
+            Self::Rmse => Some(picture.graded.rmse_outside_band),
+            Self::Flip => Some(picture.graded.flip),
             Self::Frame | Self::Memory => None,
         }
     }
@@ -126,12 +126,12 @@ impl Gate {
     /// # Errors
     /// A text for the user that names the first method that is not compared, and those that are.
     pub fn check(gates: &[Self], methods: &[Method]) -> Result<(), String> {
-        let mut known: Vec<&str> = methods.iter().map(|method| method.name.as_str()).collect();
-        known.dedup();
-        let is_unknown = |gate: &&Self| !known.contains(&&*gate.method);
+        let mut names: Vec<&str> = methods.iter().map(|method| method.name.as_str()).collect();
+        names.dedup();
+        let is_unknown = |gate: &&Self| !names.contains(&&*gate.method);
         gates.iter().find(is_unknown).map_or(Ok(()), |gate| {
             let what = format!("--fail-if: `{}` is not compared", gate.method);
-            Err(unknown(&what, &gate.method, "methods", &known))
+            Err(unknown(&what, &gate.method, "methods", &names))
         })
     }
 
@@ -195,19 +195,25 @@ impl Gate {
     pub fn picture_failures(&self, judged: &JudgedPictures) -> Vec<String> {
         let apart = judged.band + judged.unattributable;
         let wanted = judged.pixels.facing_light.saturating_sub(apart);
-        let pictures = judged.pictures.iter().filter(|of| self.is_of(&of.file));
-        let line = |of: &JudgedPicture| {
+        let pictures = judged
+            .pictures
+            .iter()
+            .filter(|picture| self.is_of(&picture.file));
+        let line = |picture: &JudgedPicture| {
             let (word, text) = (self.figure.word(), |value| self.figure.text(value));
-            if of.without_answer as f64 > MOST_WITHOUT_ANSWER * wanted as f64 {
-                let share = percent(of.without_answer, wanted);
+            if picture.without_answer as f64 > MOST_WITHOUT_ANSWER * wanted as f64 {
+                let share = percent(picture.without_answer, wanted);
                 return Some(format!(
                     "`{}` has no {word}: no finite number at {share} of the pixels that are judged",
-                    of.file
+                    picture.file
                 ));
             }
-            let value = self.figure.of_picture(of, &judged.pixels)?;
+            let value = self.figure.of_picture(picture, &judged.pixels)?;
             let (value, most) = (value > self.most).then(|| (text(value), text(self.most)))?;
-            Some(format!("`{}`: {word} {value} is more than {most}", of.file))
+            Some(format!(
+                "`{}`: {word} {value} is more than {most}",
+                picture.file
+            ))
         };
         pictures.filter_map(line).collect()
     }
@@ -241,8 +247,8 @@ mod tests {
             ["`nsm 1024` at 512x256: wrong 0.4970 % is more than 0.1000 %"]
         );
         assert_eq!(failures("nsm", Figure::Wrong, 0.5), [""; 0]);
-        let all = Figure::ALL.map(|figure| failures("nsm", figure, 0.0).len());
-        assert_eq!(all, [1; 7]);
+        let counts = Figure::ALL.map(|figure| failures("nsm", figure, 0.0).len());
+        assert_eq!(counts, [1; 7]);
         assert_eq!(
             failures("nsm", Figure::Missing, 0.1),
             ["`nsm 1024` at 512x256: missing 0.2550 % is more than 0.1000 %"]
@@ -280,13 +286,13 @@ mod tests {
             most,
         };
         results.runs.insert(1, roofs);
-        let told = gate(1.5).failures(&results);
+        let failures = gate(1.5).failures(&results);
         let on_roofs = "`nsm 1024` at 512x256: wrong 2.0060 % on `roofs` is more than 1.5000 %";
-        assert_eq!(told, [on_roofs]);
+        assert_eq!(failures, [on_roofs]);
         results.runs.insert(2, path);
-        let told = gate(3.0).failures(&results);
+        let failures = gate(3.0).failures(&results);
         let on_path =
             "`nsm 1024` at 512x256: wrong 9.0000 % on frame 2 of `walk` is more than 3.0000 %";
-        assert_eq!(told, [on_path]);
+        assert_eq!(failures, [on_path]);
     }
 }

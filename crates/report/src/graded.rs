@@ -55,11 +55,11 @@ pub fn no_shares(run: &Run) -> Option<String> {
 }
 
 /// Counts the pixels whose visibility is not a share of light, by kind of value.
-pub fn invalid_counts(of: &Invalid) -> String {
+pub fn invalid_counts(invalid: &Invalid) -> String {
     counted([
-        ("NaN", of.nan),
-        ("infinite", of.infinite),
-        ("outside 0 to 1", of.outside),
+        ("NaN", invalid.nan),
+        ("infinite", invalid.infinite),
+        ("outside 0 to 1", invalid.outside),
     ])
 }
 

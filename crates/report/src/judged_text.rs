@@ -14,7 +14,7 @@ use skiagraph_compare::wording::{percent, size, thousands};
 
 /// Returns heading, table, verdict and notes of judged pictures as text. `is_broken` breaks
 /// sentences into lines of 80 characters, as a terminal needs; otherwise each is a line.
-pub fn text(of: &JudgedPictures, is_broken: bool) -> String {
+pub fn text(judged: &JudgedPictures, is_broken: bool) -> String {
     let broken = |line: String| {
         if is_broken {
             wrapped(&line, TERMINAL)
@@ -22,12 +22,12 @@ pub fn text(of: &JudgedPictures, is_broken: bool) -> String {
             line
         }
     };
-    let mut lines: Vec<String> = heading(of).into_iter().map(broken).collect();
-    let names = short_names(&of.pictures);
-    lines.push(format!("\n{}\n", terminal(&table(of, &names))));
-    let pictures = names.iter().zip(&of.pictures);
-    let verdicts = pictures.map(|(name, picture)| verdict(of, name, picture));
-    lines.extend(verdicts.chain(notes(of, &names)).map(broken));
+    let mut lines: Vec<String> = heading(judged).into_iter().map(broken).collect();
+    let names = short_names(&judged.pictures);
+    lines.push(format!("\n{}\n", terminal(&table(judged, &names))));
+    let pictures = names.iter().zip(&judged.pictures);
+    let verdicts = pictures.map(|(name, picture)| verdict(judged, name, picture));
+    lines.extend(verdicts.chain(notes(judged, &names)).map(broken));
     lines.join("\n") + "\n"
 }
 
@@ -79,36 +79,40 @@ fn short_names(pictures: &[JudgedPicture]) -> Vec<String> {
     }
 }
 
-fn heading(of: &JudgedPictures) -> Vec<String> {
-    let surfaces = match &*of.surfaces {
+fn heading(judged: &JudgedPictures) -> Vec<String> {
+    let surfaces = match &*judged.surfaces {
         "ids" => "by the ids given",
         "depth" => "by the depths given",
         _ => "as rasterised here, or any other within 1/16 of a pixel",
     };
-    let under = of.light.as_ref().map(|light| format!(" under {light}"));
+    let under = judged.light.as_ref().map(|light| format!(" under {light}"));
     let mut lines = vec![
         format!(
             "{} · view {}{} · {}",
-            of.scene,
-            of.view,
+            judged.scene,
+            judged.view,
             under.unwrap_or_default(),
-            size(of.viewport)
+            size(judged.viewport)
         ),
-        pixels(&of.pixels, of.area.as_ref(), of.band),
+        pixels(&judged.pixels, judged.area.as_ref(), judged.band),
         format!(
             "unattributable: {} ({} of PFL) · surfaces: {surfaces}",
-            thousands(of.unattributable),
-            percent(of.unattributable, of.pixels.facing_light)
+            thousands(judged.unattributable),
+            percent(judged.unattributable, judged.pixels.facing_light)
         ),
     ];
-    if of.wrong_surface > 0 {
-        let all = of.pixels.background + of.pixels.facing_away + of.pixels.facing_light;
-        lines.push(format!("warning: {}", wrong_surface(of.wrong_surface, all)));
+    if judged.wrong_surface > 0 {
+        let total =
+            judged.pixels.background + judged.pixels.facing_away + judged.pixels.facing_light;
+        lines.push(format!(
+            "warning: {}",
+            wrong_surface(judged.wrong_surface, total)
+        ));
     }
     lines
 }
 
-fn table(of: &JudgedPictures, names: &[String]) -> Table {
+fn table(judged: &JudgedPictures, names: &[String]) -> Table {
     let heads = [
         "picture",
         "rank",
@@ -127,7 +131,7 @@ fn table(of: &JudgedPictures, names: &[String]) -> Table {
         "off > 1/16",
     ];
     let soft = |picture: &JudgedPicture, figure: f64| {
-        if of.area.is_some() || picture.answer == Answer::Graded {
+        if judged.area.is_some() || picture.answer == Answer::Graded {
             format!("{figure:.5}")
         } else {
             "–".into()
@@ -140,7 +144,7 @@ fn table(of: &JudgedPictures, names: &[String]) -> Table {
             name.clone(),
             picture.rank.map_or("–".into(), |rank| rank.to_string()),
             thousands(picture.wrong_attributable()),
-            percent(picture.wrong_attributable(), of.pixels.facing_light),
+            percent(picture.wrong_attributable(), judged.pixels.facing_light),
             thousands(wrong.lit),
             thousands(wrong.shadow),
             thousands(wrong.in_band),
@@ -157,15 +161,15 @@ fn table(of: &JudgedPictures, names: &[String]) -> Table {
             soft(picture, graded.soft.penumbra_rmse),
             soft(
                 picture,
-                graded.off.over_1_16 as f64 / of.pixels.facing_light.max(1) as f64,
+                graded.off.over_1_16 as f64 / judged.pixels.facing_light.max(1) as f64,
             ),
         ]
     };
-    Table::new(heads, 1, names.iter().zip(&of.pictures).map(row))
+    Table::new(heads, 1, names.iter().zip(&judged.pictures).map(row))
 }
 
-fn verdict(of: &JudgedPictures, name: &str, picture: &JudgedPicture) -> String {
-    let (wrong, facing) = (picture.wrong_attributable(), of.pixels.facing_light);
+fn verdict(judged: &JudgedPictures, name: &str, picture: &JudgedPicture) -> String {
+    let (wrong, facing) = (picture.wrong_attributable(), judged.pixels.facing_light);
     let mut text = format!(
         "{name} ({}): {} of the {} pixels that face the light are wrong ({})",
         picture.format,
@@ -177,7 +181,7 @@ fn verdict(of: &JudgedPictures, name: &str, picture: &JudgedPicture) -> String {
         let unanswered = thousands(picture.without_answer);
         text += &format!(", and {unanswered} have no finite number and are not judged");
     }
-    if of.area.is_some() {
+    if judged.area.is_some() {
         text += &format!(
             ", cut at one half; RMSE {:.5}",
             picture.graded.rmse_outside_band
@@ -195,10 +199,10 @@ fn verdict(of: &JudgedPictures, name: &str, picture: &JudgedPicture) -> String {
 }
 
 /// Warnings, each once with the pictures that it is about, and what holds of all figures.
-fn notes(of: &JudgedPictures, names: &[String]) -> Vec<String> {
+fn notes(judged: &JudgedPictures, names: &[String]) -> Vec<String> {
     let mut warnings: Vec<(String, Vec<&str>)> = Vec::new();
     let mut warn = |text: String, name| entry(&mut warnings, text).push(name);
-    for (name, picture) in names.iter().zip(&of.pictures) {
+    for (name, picture) in names.iter().zip(&judged.pictures) {
         let invalid = picture.graded.invalid;
         if invalid.total() > 0 {
             let counts = invalid_counts(&invalid);
@@ -217,12 +221,12 @@ fn notes(of: &JudgedPictures, names: &[String]) -> Vec<String> {
         ),
     };
     let mut notes: Vec<String> = warnings.into_iter().map(warning).collect();
-    if !of.is_attributable() {
+    if !judged.is_attributable() {
         notes.push(format!(
             "no rank: {} of the pixels are unattributable, more than {:.0} %: the truth differs \
              between surfaces that they may show. Give the surfaces with --ids or --depth, or \
              render in more pixels",
-            percent(of.unattributable, of.pixels.facing_light),
+            percent(judged.unattributable, judged.pixels.facing_light),
             MOST_UNATTRIBUTABLE * 100.0
         ));
     }
@@ -329,20 +333,20 @@ mod tests {
                 ..judged.pictures[1].clone()
             })
             .collect();
-        let told = text(&judged, false);
-        assert_eq!(told.matches(black).count(), 1, "{told}");
-        assert!(told.contains("warning: in 11 pictures ("), "{told}");
-        assert_eq!(told.matches("its own 7").count(), 1, "{told}");
-        let table: Vec<&str> = told.split("\n\n").collect();
+        let printed = text(&judged, false);
+        assert_eq!(printed.matches(black).count(), 1, "{printed}");
+        assert!(printed.contains("warning: in 11 pictures ("), "{printed}");
+        assert_eq!(printed.matches("its own 7").count(), 1, "{printed}");
+        let table: Vec<&str> = printed.split("\n\n").collect();
         assert!(
             table[1]
                 .lines()
                 .all(|line| line.chars().count() <= TERMINAL),
-            "{told}"
+            "{printed}"
         );
         let rows = table[1].lines().filter(|line| line.contains('…'));
-        assert_eq!(rows.unique().count(), 11, "each row is a line: {told}");
-        assert!(!told.contains(folder), "{told}");
+        assert_eq!(rows.unique().count(), 11, "each row is a line: {printed}");
+        assert!(!printed.contains(folder), "{printed}");
         // Of one folder only names are left, of names alike the folders that differ.
         for (files, names) in [
             (["a/b/one.png", "a/b/two.png"], ["one.png", "two.png"]),

@@ -66,8 +66,8 @@ impl<'s> Page<'s> {
         self.text += &format!("\n{heading}\n");
     }
 
-    fn description(&mut self, of: &Value) {
-        if let Some(description) = of["description"].as_str() {
+    fn description(&mut self, schema: &Value) {
+        if let Some(description) = schema["description"].as_str() {
             self.prose(description);
         }
     }
@@ -78,10 +78,10 @@ impl<'s> Page<'s> {
 
     /// The fields of a struct but those that it has in common with others, those first that must be
     /// given.
-    fn table(&mut self, of: &Value, common: &BTreeSet<&String>) {
-        let fields = of["properties"].as_object();
+    fn table(&mut self, definition: &Value, common: &BTreeSet<&String>) {
+        let fields = definition["properties"].as_object();
         let must = |name: &str| {
-            let required = of["required"].as_array();
+            let required = definition["required"].as_array();
             required.is_some_and(|required| required.iter().any(|field| field == name))
         };
         let own = |(name, _): &(&String, &Value)| !common.contains(name);
@@ -121,17 +121,17 @@ impl<'s> Page<'s> {
         }
         let common = ["EveryEntry", "EveryPass"].map(|name| &defs[name]["properties"]);
         for (tags, name) in groups {
-            let of = &defs[name];
+            let definition = &defs[name];
             let tags = tags.iter().map(|tag| format!("`{tag}`")).join(", ");
             self.heading(&format!("### {tags}"));
-            self.description(of);
+            self.description(definition);
             let has = |common: &&Value| {
                 let mut names = common.as_object().into_iter().flat_map(Map::keys);
-                names.all(|name| of["properties"].get(name).is_some())
+                names.all(|name| definition["properties"].get(name).is_some())
             };
             let names = common.iter().copied().filter(has);
             let names = names.filter_map(Value::as_object).flat_map(Map::keys);
-            self.table(of, &names.collect());
+            self.table(definition, &names.collect());
             self.told.insert(name.to_owned());
         }
     }
@@ -139,16 +139,16 @@ impl<'s> Page<'s> {
     /// Describes the values of fields: every definition that has not been told of.
     fn values(&mut self) {
         let defs = self.defs.as_object();
-        for (name, of) in defs.into_iter().flatten() {
+        for (name, definition) in defs.into_iter().flatten() {
             if self.told.contains(name) || name == "Entries" {
                 continue;
             }
             self.heading(&format!("### {name}"));
-            self.description(of);
-            let alternatives = either(of);
-            if of["properties"].is_object() {
-                self.table(of, &BTreeSet::new());
-            } else if let Some(words) = of["enum"].as_array() {
+            self.description(definition);
+            let alternatives = either(definition);
+            if definition["properties"].is_object() {
+                self.table(definition, &BTreeSet::new());
+            } else if let Some(words) = definition["enum"].as_array() {
                 self.prose(&words.iter().map(quoted).join(", "));
             } else {
                 for one in alternatives.into_iter().flatten() {
@@ -166,7 +166,9 @@ impl<'s> Page<'s> {
         }
         let what = one["description"].as_str();
         let what = what.map_or_else(String::new, |what| format!(": {what}"));
-        if let Some((tag, fields)) = variant(one).filter(|(_, of)| of["properties"].is_object()) {
+        if let Some((tag, fields)) =
+            variant(one).filter(|(_, fields)| fields["properties"].is_object())
+        {
             self.prose(&format!("`{tag}`{what}"));
             return self.table(fields, &BTreeSet::new());
         }
@@ -187,70 +189,73 @@ impl<'s> Page<'s> {
     }
 
     /// Describes the values that a field may have, in a few words.
-    fn value(&self, of: &Value) -> String {
-        if let Some(name) = named(of) {
+    fn value(&self, schema: &Value) -> String {
+        if let Some(name) = named(schema) {
             return match name {
                 "Entries" => "list of entries".to_owned(),
                 _ => format!("[{name}](#{})", name.to_lowercase()),
             };
         }
-        if let Some(constant) = of.get("const") {
+        if let Some(constant) = schema.get("const") {
             return quoted(constant);
         }
-        if let Some(words) = of["enum"].as_array() {
+        if let Some(words) = schema["enum"].as_array() {
             return words.iter().map(quoted).join(", ");
         }
-        if let Some(several) = either(of) {
+        if let Some(several) = either(schema) {
             return several.iter().map(|one| self.value(one)).join(" or ");
         }
-        if let Some((tag, inner)) = variant(of) {
+        if let Some((tag, inner)) = variant(schema) {
             return match inner["prefixItems"].as_array() {
                 Some(parts) => format!("`{tag}`({})", self.values_of(parts)),
                 None => format!("`{tag}`({})", self.value(inner)),
             };
         }
-        match of["type"].as_str() {
-            Some("array") if of["prefixItems"].is_array() => {
-                let parts = of["prefixItems"].as_array().into_iter().flatten();
+        match schema["type"].as_str() {
+            Some("array") if schema["prefixItems"].is_array() => {
+                let parts = schema["prefixItems"].as_array().into_iter().flatten();
                 format!("({})", self.values_of(parts))
             }
-            Some("array") if of["items"]["properties"].is_object() => {
-                let tags = of["items"]["properties"].as_object().into_iter().flatten();
+            Some("array") if schema["items"]["properties"].is_object() => {
+                let tags = schema["items"]["properties"]
+                    .as_object()
+                    .into_iter()
+                    .flatten();
                 let mut tags = tags.map(|(tag, _)| format!("`{tag}`"));
                 format!("list of {}", tags.join(", "))
             }
-            Some("array") => format!("list of {}", self.value(&of["items"])),
+            Some("array") => format!("list of {}", self.value(&schema["items"])),
             Some("object") => format!(
                 "map of names to {}",
-                self.value(&of["additionalProperties"])
+                self.value(&schema["additionalProperties"])
             ),
             Some("boolean") => "`true`, `false`".to_owned(),
             Some("integer") => "whole number".to_owned(),
             Some("number") => "number".to_owned(),
-            Some("string") if of["not"].is_object() => "expression in quotes".to_owned(),
+            Some("string") if schema["not"].is_object() => "expression in quotes".to_owned(),
             _ => "text".to_owned(),
         }
     }
 }
 
 /// The name of the definition that a schema refers to.
-fn named(of: &Value) -> Option<&str> {
-    of["$ref"].as_str()?.strip_prefix("#/$defs/")
+fn named(schema: &Value) -> Option<&str> {
+    schema["$ref"].as_str()?.strip_prefix("#/$defs/")
 }
 
 /// The tag and body of `Tag(…)`.
-fn variant(of: &Value) -> Option<(&str, &Value)> {
-    let fields = of["properties"].as_object()?;
+fn variant(schema: &Value) -> Option<(&str, &Value)> {
+    let fields = schema["properties"].as_object()?;
     let (tag, body) = fields.iter().next()?;
     let is_tag = fields.len() == 1 && tag.starts_with(|c: char| c.is_uppercase());
     is_tag.then_some((tag, body))
 }
 
 /// The alternatives that a value has.
-fn either(of: &Value) -> Option<&Vec<Value>> {
+fn either(schema: &Value) -> Option<&Vec<Value>> {
     ["anyOf", "oneOf"]
         .iter()
-        .find_map(|key| of[*key].as_array())
+        .find_map(|key| schema[*key].as_array())
 }
 
 /// Text in lines of at most 100 columns, those after the first indented.

@@ -23,9 +23,9 @@ mod tests {
     #[test]
     fn a_built_in_preset_has_its_place_whatever_stands_beside_it() {
         let some = looks(["mine.ron".to_owned(), "crsm@n=1".into(), "esm".into()]);
-        let others = looks(["tsm".to_owned()]);
+        let built_in = looks(["tsm".to_owned()]);
         assert_eq!(some[..8], SHIPPED);
-        assert_eq!(some[..others.len()], others);
-        assert_eq!(some[others.len()..], ["crsm@n=1", "mine.ron"]);
+        assert_eq!(some[..built_in.len()], built_in);
+        assert_eq!(some[built_in.len()..], ["crsm@n=1", "mine.ron"]);
     }
 }

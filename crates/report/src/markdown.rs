@@ -158,8 +158,8 @@ fn steps<'a>(runs: &[(&'a Run, &'a Measured)]) -> Vec<&'a str> {
     let passes = runs.iter().flat_map(|(_, measured)| &measured.passes);
     let published = runs.iter().flat_map(|(run, _)| &run.published);
     let published = published.filter_map(|figure| figure.quantity.strip_prefix("ms."));
-    let all = passes.map(|pass| step(&pass.name)).chain(published);
-    unique(all.filter(|step| !["frame", "steps"].contains(step)))
+    let names = passes.map(|pass| step(&pass.name)).chain(published);
+    unique(names.filter(|step| !["frame", "steps"].contains(step)))
 }
 
 /// A row: the columns before the steps, the steps, and the columns behind them.

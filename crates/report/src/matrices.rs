@@ -41,10 +41,10 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     let summaries = summaries(results);
     let mut tables = Vec::new();
     for viewport in unique(summaries.iter().map(|summary| summary.viewport)) {
-        let of = summaries
+        let summaries = summaries
             .iter()
             .filter(|summary| summary.viewport == viewport);
-        let lights: Vec<(&str, &Summary)> = of
+        let lights: Vec<(&str, &Summary)> = summaries
             .filter_map(|summary| Some((summary.light?, summary)))
             .collect();
         if lights.len() < 2 {
@@ -81,7 +81,7 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
     };
     let column = |run: &Run| (run.viewport, run.map_size);
     let columns = unique(measured().map(|(run, _)| column(run)));
-    let passes = measured().flat_map(|(_, of)| &of.passes);
+    let passes = measured().flat_map(|(_, measured)| &measured.passes);
     let passes = unique(passes.map(|pass| pass.name.as_str()));
     let head = |(viewport, map): &([u32; 2], Option<u32>)| match map {
         Some(map) => format!("{}\nmap {map}", size(*viewport)),
@@ -92,7 +92,7 @@ fn matrix(method: &str, runs: &[&Run]) -> String {
     let rows = passes.into_iter().map(|name| {
         let cell = |of_column: &([u32; 2], Option<u32>)| {
             let runs = measured().filter(|(run, _)| column(run) == *of_column);
-            let passes = runs.flat_map(|(_, of)| &of.passes);
+            let passes = runs.flat_map(|(_, measured)| &measured.passes);
             let times = passes.filter(|pass| pass.name == name);
             let times: Vec<f64> = times.filter_map(|pass| Some(pass.gpu_ms?.median)).collect();
             let mean = || times.iter().sum::<f64>() / times.len() as f64;

@@ -33,8 +33,8 @@ pub fn load_warning(machine: &Machine) -> Option<String> {
 /// hides; `None` if there are no such pixels. Methods are judged on the rasterised surface.
 pub fn surface_warning(run: &Run) -> Option<String> {
     let background = run.pixels.background + run.pixels.facing_away;
-    let all = background + run.pixels.facing_light;
-    let text = || format!("warning: {}", wrong_surface(run.wrong_surface, all));
+    let total = background + run.pixels.facing_light;
+    let text = || format!("warning: {}", wrong_surface(run.wrong_surface, total));
     (run.wrong_surface > 0).then(text)
 }
 
@@ -60,14 +60,14 @@ pub fn pixels(counts: &PixelCounts, area: Option<&AreaReference>, band: u64) -> 
     )
 }
 
-/// Returns the sentence that the GPU rasterised `count` of `all` pixels with a surface that another
-/// one hides.
-pub fn wrong_surface(count: u64, all: u64) -> String {
+/// Returns the sentence that the GPU rasterised `count` of `total` pixels with a surface that
+/// another one hides.
+pub fn wrong_surface(count: u64, total: u64) -> String {
     format!(
         "{} of {} pixels show a surface that another one hides, or none where there is one; every \
          method is judged on the surface that is shown",
         thousands(count),
-        thousands(all)
+        thousands(total)
     )
 }
 
@@ -75,19 +75,20 @@ pub fn wrong_surface(count: u64, all: u64) -> String {
 /// differ between the map's layers. Returns `None` if the run has no measurements of texels.
 pub fn map_figures(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
-    let of = measured.texels.as_ref()?;
-    let range = |of: &Quantiles| format!("{} to {}", digits(of.p5), digits(of.p95));
+    let texels = measured.texels.as_ref()?;
+    let range =
+        |quantiles: &Quantiles| format!("{} to {}", digits(quantiles.p5), digits(quantiles.p95));
     let mut text = format!(
         "texels per pixel: median {}, nine tenths of the pixels {}; by distance and map {}, by \
          angles × {}; under one in {}",
-        digits(of.texels.median),
-        range(&of.texels),
-        range(&of.perspective),
-        range(&of.projection),
-        percent(of.under_one, of.pixels),
+        digits(texels.texels.median),
+        range(&texels.texels),
+        range(&texels.perspective),
+        range(&texels.projection),
+        percent(texels.under_one, texels.pixels),
     );
-    if of.outside_map > 0 {
-        text += &format!("; outside the map {}", thousands(of.outside_map));
+    if texels.outside_map > 0 {
+        text += &format!("; outside the map {}", thousands(texels.outside_map));
     }
     if let Some(jump) = &measured.layer_jump {
         text += &format!(
@@ -112,16 +113,19 @@ fn digits(number: f64) -> String {
 /// one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
     let wrong = |run: &Run| {
-        let certain = run.measured.as_ref().map_or(0, |of| of.wrong.certain);
+        let certain = run
+            .measured
+            .as_ref()
+            .map_or(0, |measured| measured.wrong.certain);
         run.is_hard() && certain > 0
     };
     runs.chunk_by(|one, other| one.preset == other.preset)
         .map(|runs| runs.iter().filter(|run| wrong(run)).collect::<Vec<_>>())
         .filter_map(|runs| {
             let measured = runs.iter().filter_map(|run| run.measured.as_ref());
-            let counts = measured.map(|of| {
-                let blockers = of.certain_wrong_blockers.unwrap_or_default();
-                (of.wrong.certain, blockers)
+            let counts = measured.map(|measured| {
+                let blockers = measured.certain_wrong_blockers.unwrap_or_default();
+                (measured.wrong.certain, blockers)
             });
             let counts: Vec<_> = counts.collect();
             Some(format!("{}: {}", maps(&runs)?, blocked_by(&counts)))
@@ -132,16 +136,16 @@ pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
 /// Names a setting of params that makes most of a run's wrong pixels right; `None` if none was
 /// found.
 pub fn hint(run: &Run) -> Option<String> {
-    let of = run.measured.as_ref()?.hint.as_ref()?;
+    let hint = run.measured.as_ref()?.hint.as_ref()?;
     Some(format!(
         "{}: {} of {} wrong pixels {}: try {}, with which {} are wrong here (--tune searches \
          further)",
         run.method_label(),
-        thousands(of.explained),
-        thousands(of.wrong),
-        of.cause.words(),
-        of.set,
-        thousands(of.wrong_then)
+        thousands(hint.explained),
+        thousands(hint.wrong),
+        hint.cause.words(),
+        hint.set,
+        thousands(hint.wrong_then)
     ))
 }
 
@@ -167,15 +171,17 @@ const KINDS: [Kind; 3] = [
 /// block the light there. `counts` has an entry for each run: the number of these pixels, and the
 /// split of this number by kind of caster. Kinds that no run has are left out.
 pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
-    let said = |name: &str, count: &dyn Fn(&(u64, BlockerCounts)) -> u64| {
+    let phrase = |name: &str, count: &dyn Fn(&(u64, BlockerCounts)) -> u64| {
         let counts: Vec<u64> = counts.iter().map(count).collect();
         let text: Vec<String> = counts.iter().copied().map(thousands).collect();
         let any = counts.iter().any(|&count| count > 0);
         any.then(|| format!("{name} {}", text.join(" / ")))
     };
-    let all = said("certain wrong outside the band", &|(wrong, _)| *wrong);
-    let kinds = KINDS.iter().map(|(name, of)| said(name, &|(_, by)| of(by)));
-    let parts: Vec<String> = [all].into_iter().chain(kinds).flatten().collect();
+    let certain = phrase("certain wrong outside the band", &|(wrong, _)| *wrong);
+    let kinds = KINDS
+        .iter()
+        .map(|(name, pick)| phrase(name, &|(_, by)| pick(by)));
+    let parts: Vec<String> = [certain].into_iter().chain(kinds).flatten().collect();
     parts.join(", ")
 }
 
@@ -228,7 +234,10 @@ pub fn remembering(run: &Run) -> Option<String> {
 /// changed and once with every pass run, and the CPU times of building scene resources again. Each
 /// entry is a line. The list is empty for a still view.
 pub fn path_costs(run: &Run) -> Vec<String> {
-    let sequence = run.measured.as_ref().and_then(|of| of.sequence.as_ref());
+    let sequence = run
+        .measured
+        .as_ref()
+        .and_then(|measured| measured.sequence.as_ref());
     let lines = sequence.map(|sequence| {
         [
             ("as it is", sequence.slowest()),
@@ -251,10 +260,10 @@ pub fn path_costs(run: &Run) -> Vec<String> {
 
 /// Lists the resources of the scene that followed from what moves.
 fn remade(run: &Run, sequence: &Sequence) -> Option<String> {
-    let all = sequence.frames.len();
+    let frames = sequence.frames.len();
     let remade = sequence.remade().into_iter();
     let mut remade = remade.map(|(name, how, count, time)| {
-        format!("{name} {how} in {count} of {all}, {} ms each", ms(time))
+        format!("{name} {how} in {count} of {frames}, {} ms each", ms(time))
     });
     let (label, remade) = (run.method_label(), remade.join("; "));
     (!remade.is_empty()).then(|| format!("{label} between frames, on the CPU: {remade}"))
@@ -309,9 +318,10 @@ mod tests {
         let mut machine = sample().machine;
         assert_eq!(load_warning(&machine), None);
         machine.load = Some(4.0);
-        let told = load_warning(&machine).unwrap();
+        let warning = load_warning(&machine).unwrap();
         assert!(
-            told.starts_with("warning: the machine was busy when this began (load 4.0 on 8 cores)")
+            warning
+                .starts_with("warning: the machine was busy when this began (load 4.0 on 8 cores)")
         );
         machine.load = None;
         assert_eq!(load_warning(&machine), None);
@@ -321,7 +331,7 @@ mod tests {
     fn what_was_judged_of_a_method_that_remembers_is_said() {
         let mut run = sample().runs.remove(0);
         assert_eq!(remembering(&run), None);
-        let mut said = |period, pictures: Option<u32>| {
+        let mut wording = |period, pictures: Option<u32>| {
             let cycle = |pictures| Cycle {
                 pictures,
                 wrong_mean: 12.25,
@@ -333,20 +343,20 @@ mod tests {
                 period,
                 judged: pictures.map(cycle),
             });
-            let said = remembering(&run).unwrap();
-            said.split_once(": ").unwrap().1.to_owned()
+            let line = remembering(&run).unwrap();
+            line.split_once(": ").unwrap().1.to_owned()
         };
         assert_eq!(
-            said(Some(1), Some(1)),
+            wording(Some(1), Some(1)),
             "its picture stays the same after 256 frames, and is judged then"
         );
         assert_eq!(
-            said(None, Some(16)),
+            wording(None, Some(16)),
             "its picture does not repeat within 256 frames; it is ranked by the mean of 16 \
              pictures then, 12.2 wrong pixels and RMSE 0.50000; the worst has 503 and 0.07100"
         );
         assert_eq!(
-            said(Some(3), None),
+            wording(Some(3), None),
             "its picture repeats every 3 frames after 256 frames"
         );
     }
@@ -354,12 +364,12 @@ mod tests {
     #[test]
     fn blockers_of_all_maps_stand_in_a_line_and_only_those_there_are() {
         let mut runs = vec![sample().runs.remove(0); 3];
-        let of = |open_part, closed_part, none| BlockerCounts {
+        let blockers = |open_part, closed_part, none| BlockerCounts {
             open_part,
             closed_part,
             none,
         };
-        let counts = [of(1_200, 0, 0), of(0, 0, 0), of(7, 0, 2)];
+        let counts = [blockers(1_200, 0, 0), blockers(0, 0, 0), blockers(7, 0, 2)];
         for ((run, counts), map) in runs.iter_mut().zip(counts).zip([512, 1024, 2048]) {
             run.map_size = Some(map);
             let measured = run.measured.as_mut().unwrap();

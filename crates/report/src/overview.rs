@@ -105,21 +105,24 @@ impl<'a> Overview<'a> {
         let verdict = |column: &Column| {
             let name = self.name(column);
             let sentences = column.verdict.sentences.iter();
-            let said = sentences.map(|sentence| format!("{name}: {sentence}"));
-            said.collect::<Vec<_>>()
+            let sentences = sentences.map(|sentence| format!("{name}: {sentence}"));
+            sentences.collect::<Vec<_>>()
         };
-        let mut said: Vec<String> = self.columns.iter().flat_map(verdict).collect();
-        said.push(self.exact_on_all());
-        said.extend(self.taken());
-        said
+        let mut sentences: Vec<String> = self.columns.iter().flat_map(verdict).collect();
+        sentences.push(self.exact_on_all());
+        sentences.extend(self.taken());
+        sentences
     }
 
     /// Returns the overview as text for a terminal: tables and sentences.
     pub fn text(&self) -> String {
         let matrices = self.matrices().into_iter();
-        let tables = matrices.map(|of| {
-            let viewport = size(of.viewport);
-            format!("Overview, {viewport}: {LEGEND}\n{}\n", terminal(&of.table))
+        let tables = matrices.map(|matrix| {
+            let viewport = size(matrix.viewport);
+            format!(
+                "Overview, {viewport}: {LEGEND}\n{}\n",
+                terminal(&matrix.table)
+            )
         });
         tables.collect::<String>() + &self.sentences().join("\n") + "\n"
     }
@@ -127,8 +130,8 @@ impl<'a> Overview<'a> {
     /// Returns the overview as a section in Markdown.
     pub fn markdown(&self) -> String {
         let matrices = self.matrices().into_iter();
-        let tables = matrices.map(|of| {
-            let (viewport, table) = (size(of.viewport), of.table.markdown());
+        let tables = matrices.map(|matrix| {
+            let (viewport, table) = (size(matrix.viewport), matrix.table.markdown());
             format!("\n## Overview, {viewport}\n\n{LEGEND}\n\n{table}")
         });
         let sentences = self.sentences().into_iter();
@@ -150,7 +153,7 @@ impl<'a> Overview<'a> {
 
     /// Which methods have no wrong pixel on any scene.
     fn exact_on_all(&self) -> String {
-        let rows = self.columns.iter().flat_map(|of| &of.summary.rows);
+        let rows = self.columns.iter().flat_map(|column| &column.summary.rows);
         let labels = unique(rows.map(|row| row.label.as_str()));
         let is_exact = |label: &&str| {
             self.columns.iter().all(|Column { summary, .. }| {
@@ -160,7 +163,7 @@ impl<'a> Overview<'a> {
         };
         let exact = labels.into_iter().filter(is_exact);
         let exact = exact.map(|label| format!("`{label}`")).join(", ");
-        let mut rows = self.columns.iter().flat_map(|of| &of.summary.rows);
+        let mut rows = self.columns.iter().flat_map(|column| &column.summary.rows);
         let right = if rows.any(|row| is_conditioned(row.wrong())) {
             "right wherever that can be judged"
         } else {
@@ -178,8 +181,8 @@ impl<'a> Overview<'a> {
     fn taken(&self) -> Option<String> {
         let named = |is_taken: bool| {
             let columns = self.columns.iter();
-            let columns = columns.filter(move |of| of.verdict.is_taken == is_taken);
-            let first = columns.filter(|of| !of.verdict.first.is_empty());
+            let columns = columns.filter(move |column| column.verdict.is_taken == is_taken);
+            let first = columns.filter(|column| !column.verdict.first.is_empty());
             let named = first.map(|column| {
                 let rows = column.verdict.first.iter();
                 let rows = rows.map(|row| format!("`{}`", column.summary.rows[*row].label));
@@ -190,11 +193,11 @@ impl<'a> Overview<'a> {
         };
         let parts = [(true, "taken"), (false, "the least wrong")];
         let parts = parts.map(|(is_taken, what)| (what, named(is_taken)));
-        let said = parts.iter().filter(|(_, named)| !named.is_empty());
-        let said: Vec<String> = said
+        let clauses = parts.iter().filter(|(_, named)| !named.is_empty());
+        let clauses: Vec<String> = clauses
             .map(|(what, named)| format!("{what}: {named}"))
             .collect();
-        let mut text = said.join("; ");
+        let mut text = clauses.join("; ");
         let first = text.get_mut(..1)?;
         first.make_ascii_uppercase();
         Some(text + ".")
@@ -229,13 +232,13 @@ mod tests {
 
     /// `rt` is right on the first two of three scenes, `nsm` on the second.
     fn three() -> [Results; 3] {
-        let mut all = ["park", "sponza", "room"].map(|scene| {
+        let mut results = ["park", "sponza", "room"].map(|scene| {
             let mut results = sample();
             results.scene.name = scene.into();
             for run in &mut results.runs {
                 // Enough frames to tell times apart.
-                if let Some(of) = &mut run.measured {
-                    let frames = &mut of.frame;
+                if let Some(measured) = &mut run.measured {
+                    let frames = &mut measured.frame;
                     frames.wall_frames = frames.wall_frames.repeat(3);
                     frames.gpu_frames = frames.gpu_frames.as_ref().map(|ms| ms.repeat(3));
                 }
@@ -243,19 +246,20 @@ mod tests {
             results
         });
         for (scene, run) in [(0, 1), (1, 0), (1, 1)] {
-            let measured = all[scene].runs[run].measured.as_mut().unwrap();
+            let measured = results[scene].runs[run].measured.as_mut().unwrap();
             (measured.wrong.total, measured.wrong.in_band) = (6, 6);
         }
-        all[2].runs.truncate(1);
-        all
+        results[2].runs.truncate(1);
+        results
     }
 
     /// Calls `check` with the overview of results, or none.
     fn with_overview(results: &[Results], check: impl FnOnce(Option<Overview>)) {
-        let all: Vec<Vec<Summary>> = results.iter().map(summaries).collect();
+        let summaries: Vec<Vec<Summary>> = results.iter().map(summaries).collect();
         let names = results.iter().map(|results| results.scene.name.as_str());
-        let columns = names.zip(&all);
-        let columns = columns.flat_map(|(name, of)| of.iter().map(move |it| (name, it)));
+        let columns = names.zip(&summaries);
+        let columns =
+            columns.flat_map(|(name, summaries)| summaries.iter().map(move |it| (name, it)));
         check(Overview::new(&columns.collect::<Vec<_>>()));
     }
 
@@ -279,17 +283,17 @@ mod tests {
 
     #[test]
     fn what_is_exact_on_all_is_named_unless_pixels_cannot_be_judged() {
-        let said = |results: &[Results]| {
-            let mut said = Vec::new();
-            with_overview(results, |overview| said = overview.unwrap().sentences());
-            said.into_iter().find(|line| line.contains("both scenes"))
+        let sentence = |results: &[Results]| {
+            let mut lines = Vec::new();
+            with_overview(results, |overview| lines = overview.unwrap().sentences());
+            lines.into_iter().find(|line| line.contains("both scenes"))
         };
         let [park, mut sponza, _] = three();
-        let exact = said(&[park.clone(), sponza.clone()]);
+        let exact = sentence(&[park.clone(), sponza.clone()]);
         assert_eq!(exact.as_deref(), Some("On both scenes exact: `rt`."));
         sponza.runs[0].band = 50_000;
         let right = "On both scenes right wherever that can be judged: `rt`.";
-        assert_eq!(said(&[park, sponza]).as_deref(), Some(right));
+        assert_eq!(sentence(&[park, sponza]).as_deref(), Some(right));
     }
 
     #[test]

@@ -165,8 +165,8 @@ fn of_place(place: &Path) -> PathBuf {
     } else {
         place.to_path_buf()
     };
-    let found = fs::canonicalize(&file).or_else(|_| fs::canonicalize(place));
-    found.unwrap_or(file)
+    let canonical = fs::canonicalize(&file).or_else(|_| fs::canonicalize(place));
+    canonical.unwrap_or(file)
 }
 
 fn write_page(
@@ -199,9 +199,9 @@ mod tests {
 
     #[test]
     fn two_machines_are_joined_to_json_csv_and_page_and_again_with_a_third() {
-        let all = tempfile::tempdir().unwrap();
-        let place = |name: &str| all.path().join(name);
-        let here = folder(&place("here"), &sample());
+        let root = tempfile::tempdir().unwrap();
+        let place = |name: &str| root.path().join(name);
+        let near = folder(&place("here"), &sample());
         let on = |host: &str| {
             let mut results = sample();
             results.machine.host = Some(host.into());
@@ -212,8 +212,8 @@ mod tests {
         let far = folder(&place("far"), &on("far"));
         let out = place("out");
         // A folder, a file, and the folder by another name.
-        let again = all.path().join(".").join("here");
-        let places = [here, far.join("results.json"), again];
+        let again = root.path().join(".").join("here");
+        let places = [near, far.join("results.json"), again];
         merge(&places, &out, &Silent).unwrap();
         let read = |file: &str| fs::read_to_string(out.join(file)).unwrap();
         assert_eq!(read("results.csv").lines().count(), 1 + 6);
@@ -227,14 +227,20 @@ mod tests {
         let picture = "BwcHBwcHBwcH";
         assert!(page.contains(picture), "pictures of both folders are in it");
         let joined = read_back::kept(&out).unwrap();
-        let images = |of: &Results| of.runs[0].measured.as_ref().unwrap().images.clone();
-        assert!(joined.clone().each().iter().all(|of| images(of).is_none()));
+        let images = |results: &Results| results.runs[0].measured.as_ref().unwrap().images.clone();
+        assert!(
+            joined
+                .clone()
+                .each()
+                .iter()
+                .all(|results| images(results).is_none())
+        );
         assert_eq!(joined.others.len(), 1);
 
         let third = folder(&place("third"), &on("third"));
         merge(&[third], &out, &Silent).unwrap();
         let hosts = read_back::kept(&out).unwrap().each().into_iter();
-        let hosts: Vec<_> = hosts.map(|of| of.machine.host.unwrap()).collect();
+        let hosts: Vec<_> = hosts.map(|results| results.machine.host.unwrap()).collect();
         assert_eq!(hosts, ["bench", "far", "third"]);
         // What `report` makes of it has the same rows.
         write(std::slice::from_ref(&out), &out.join(FILE), &Silent).unwrap();
@@ -243,16 +249,16 @@ mod tests {
 
     #[test]
     fn nothing_and_foreign_files_are_not_joined() {
-        let all = tempfile::tempdir().unwrap();
-        let out = all.path().join("out");
+        let root = tempfile::tempdir().unwrap();
+        let out = root.path().join("out");
         let refused = |places: &[PathBuf]| merge(places, &out, &Silent).unwrap_err().to_string();
         assert!(refused(&[]).contains("there is nothing to join"));
-        let missing = all.path().join("missing");
+        let missing = root.path().join("missing");
         assert!(refused(&[missing]).contains("there is no folder"));
-        let foreign = all.path().join("foreign.json");
+        let foreign = root.path().join("foreign.json");
         fs::write(&foreign, "{\"schema\": 1}").unwrap();
-        let told = refused(&[foreign]);
-        assert!(told.contains("is not a results.json"), "{told}");
+        let message = refused(&[foreign]);
+        assert!(message.contains("is not a results.json"), "{message}");
         assert!(!out.join("results.json").exists());
     }
 }

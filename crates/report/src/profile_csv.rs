@@ -14,53 +14,53 @@ type Column = (&'static str, fn(&Line) -> String);
 
 /// In an order on which scripts rely: new ones stand at the end. Empty cells are nulls.
 const COLUMNS: [Column; 28] = [
-    ("program", |of| of.conditions().program.clone()),
-    ("build", |of| of.conditions().build.clone()),
-    ("date", |of| of.conditions().date.clone()),
-    ("adapter", |of| of.conditions().adapter.name.clone()),
-    ("backend", |of| of.conditions().adapter.backend.clone()),
-    ("driver", |of| of.conditions().adapter.driver.clone()),
-    ("gpu_unavailable", |of| {
-        let reason = of.conditions().adapter.gpu_unavailable.clone();
+    ("program", |line| line.conditions().program.clone()),
+    ("build", |line| line.conditions().build.clone()),
+    ("date", |line| line.conditions().date.clone()),
+    ("adapter", |line| line.conditions().adapter.name.clone()),
+    ("backend", |line| line.conditions().adapter.backend.clone()),
+    ("driver", |line| line.conditions().adapter.driver.clone()),
+    ("gpu_unavailable", |line| {
+        let reason = line.conditions().adapter.gpu_unavailable.clone();
         reason.unwrap_or_default()
     }),
-    ("scene", |of| of.conditions().scene.name.clone()),
-    ("triangles", |of| {
-        of.conditions().scene.triangles.to_string()
+    ("scene", |line| line.conditions().scene.name.clone()),
+    ("triangles", |line| {
+        line.conditions().scene.triangles.to_string()
     }),
-    ("preset", |of| of.conditions().preset.clone()),
-    ("view", |of| of.conditions().view.clone()),
-    ("width", |of| of.conditions().viewport[0].to_string()),
-    ("height", |of| of.conditions().viewport[1].to_string()),
-    ("params", |of| {
-        let params = of.conditions().params();
+    ("preset", |line| line.conditions().preset.clone()),
+    ("view", |line| line.conditions().view.clone()),
+    ("width", |line| line.conditions().viewport[0].to_string()),
+    ("height", |line| line.conditions().viewport[1].to_string()),
+    ("params", |line| {
+        let params = line.conditions().params();
         let texts = params.map(|(name, value)| format!("{name}={value}"));
         texts.collect::<Vec<_>>().join(" ")
     }),
-    ("frames", |of| of.profile.timed().to_string()),
-    ("warmup", |of| of.conditions().warmup.to_string()),
-    ("pass", |of| {
-        of.pass.map_or(String::new(), |pass| pass.name.clone())
+    ("frames", |line| line.profile.timed().to_string()),
+    ("warmup", |line| line.conditions().warmup.to_string()),
+    ("pass", |line| {
+        line.pass.map_or(String::new(), |pass| pass.name.clone())
     }),
-    ("kind", |of| {
-        of.pass.map_or("frame".into(), |pass| pass.kind.clone())
+    ("kind", |line| {
+        line.pass.map_or("frame".into(), |pass| pass.kind.clone())
     }),
-    ("gpu_min_ms", |of| ms(of.gpu(), |gpu| gpu.min)),
-    ("gpu_median_ms", |of| ms(of.gpu(), |gpu| gpu.median)),
-    ("gpu_p95_ms", |of| ms(of.gpu(), |gpu| gpu.p95)),
-    ("gpu_max_ms", |of| ms(of.gpu(), |gpu| gpu.max)),
-    ("gpu_share", |of| {
-        of.pass
+    ("gpu_min_ms", |line| ms(line.gpu(), |gpu| gpu.min)),
+    ("gpu_median_ms", |line| ms(line.gpu(), |gpu| gpu.median)),
+    ("gpu_p95_ms", |line| ms(line.gpu(), |gpu| gpu.p95)),
+    ("gpu_max_ms", |line| ms(line.gpu(), |gpu| gpu.max)),
+    ("gpu_share", |line| {
+        line.pass
             .and_then(|pass| pass.share)
             .map_or(String::new(), six_digits)
     }),
-    ("cpu_min_ms", |of| ms(of.cpu(), |cpu| cpu.min)),
-    ("cpu_median_ms", |of| ms(of.cpu(), |cpu| cpu.median)),
-    ("cpu_p95_ms", |of| ms(of.cpu(), |cpu| cpu.p95)),
-    ("cpu_max_ms", |of| ms(of.cpu(), |cpu| cpu.max)),
-    ("wall_median_ms", |of| match of.pass {
+    ("cpu_min_ms", |line| ms(line.cpu(), |cpu| cpu.min)),
+    ("cpu_median_ms", |line| ms(line.cpu(), |cpu| cpu.median)),
+    ("cpu_p95_ms", |line| ms(line.cpu(), |cpu| cpu.p95)),
+    ("cpu_max_ms", |line| ms(line.cpu(), |cpu| cpu.max)),
+    ("wall_median_ms", |line| match line.pass {
         Some(_) => String::new(),
-        None => six_digits(of.profile.frame.wall_ms.median),
+        None => six_digits(line.profile.frame.wall_ms.median),
     }),
 ];
 

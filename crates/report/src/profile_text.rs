@@ -72,9 +72,9 @@ fn matrix(method: &str, profiles: &[&Profile]) -> String {
     let heads = heads.chain(profiles.iter().map(head));
     let passes = profiles.iter().flat_map(|profile| &profile.passes);
     let passes = unique(passes.map(|pass| pass.name.as_str()));
-    let cell = |series: Option<&Series>| series.map_or("–".into(), |of| ms(of.median));
-    let row = |name: &str, of: &dyn Fn(&Profile) -> Option<&Series>| -> Vec<String> {
-        let cells = profiles.iter().map(|profile| cell(of(profile)));
+    let cell = |series: Option<&Series>| series.map_or("–".into(), |series| ms(series.median));
+    let row = |name: &str, pick: &dyn Fn(&Profile) -> Option<&Series>| -> Vec<String> {
+        let cells = profiles.iter().map(|profile| cell(pick(profile)));
         [name.to_owned()].into_iter().chain(cells).collect()
     };
     let rows = passes.into_iter().map(|name| {
@@ -136,7 +136,7 @@ fn conditions(profile: &Profile) -> String {
     } = &profile.conditions;
     let params = profile.conditions.params();
     let params = params.map(|(name, value)| format!("{name} = {value}"));
-    let params = params.reduce(|all, param| format!("{all}, {param}"));
+    let params = params.reduce(|list, param| format!("{list}, {param}"));
     let params = params.unwrap_or("none".into());
     let timed = profile.timed() as u32;
     let stopped = if timed < *asked {

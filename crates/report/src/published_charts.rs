@@ -132,9 +132,9 @@ fn axis(cells: &[Cell], quantity: &str) -> Result<(String, String), String> {
         .next()
         .ok_or_else(|| format!("no method without a map has {whole_head} there"))?
         .preset;
-    let of = format!("{method}'s {whole_head}");
-    let note = format!("Shares of {of} in the same view and viewport.");
-    Ok((format!("{head}, % of {of}"), note))
+    let base = format!("{method}'s {whole_head}");
+    let note = format!("Shares of {base} in the same view and viewport.");
+    Ok((format!("{head}, % of {base}"), note))
 }
 
 /// The quantities that are published of these runs, but counts, which are shares, too.
@@ -142,11 +142,11 @@ fn of_runs(cells: &[Cell]) -> Vec<String> {
     let figures = cells.iter().flat_map(|cell| &cell.run.published);
     let quantities_of = figures.map(|figure| figure.quantity.clone());
     let is_drawn = |name: &String| name.ends_with("_percent") || whole_of(name).is_some();
-    let mut found = unique(quantities_of.filter(is_drawn));
+    let mut names = unique(quantities_of.filter(is_drawn));
     let order = quantities();
-    let place = |quantity: &String| order.iter().position(|known| known == quantity);
-    found.sort_by_key(|quantity| place(quantity).unwrap_or(order.len()));
-    found
+    let place = |quantity: &String| order.iter().position(|name| name == quantity);
+    names.sort_by_key(|quantity| place(quantity).unwrap_or(order.len()));
+    names
 }
 
 /// The quantity that figures of another machine are shares of: of times the sum of steps, of rates
@@ -245,7 +245,7 @@ mod tests {
         let (_, figure) = charts
             .charts
             .iter()
-            .find(|(known, _)| known == name)
+            .find(|(chart, _)| chart == name)
             .unwrap();
         assert!(figure.shared_axes);
         let panel = |panel: &Panel| {
@@ -359,8 +359,11 @@ mod tests {
                 .map(|(name, _)| name.as_str())
                 .collect();
             assert_eq!(names, ["wrong-lit-by-map"]);
-            let told = charts.left_out.join("\n");
-            assert!(told.contains("not drawn: ms.create_shadow_map: "), "{told}");
+            let left_out = charts.left_out.join("\n");
+            assert!(
+                left_out.contains("not drawn: ms.create_shadow_map: "),
+                "{left_out}"
+            );
         }
     }
 
@@ -368,7 +371,7 @@ mod tests {
     fn other_viewports_are_not_asked_for() {
         let charts = draw(&[kept()], &[], "D", Some([1, 1]));
         assert!(charts.charts.is_empty());
-        let here = draw(&[kept()], &[], "D", Some([512, 256]));
-        assert_eq!(here.charts.len(), 3);
+        let drawn = draw(&[kept()], &[], "D", Some([512, 256]));
+        assert_eq!(drawn.charts.len(), 3);
     }
 }

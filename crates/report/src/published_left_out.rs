@@ -16,14 +16,14 @@ pub fn views_left_out(
     drawn: &[PanelRow],
     groups: Groups,
 ) -> Option<String> {
-    let all: BTreeSet<String> = cells
+    let measured: BTreeSet<String> = cells
         .iter()
         .map(|cell| format!("{} {}", cell.scene(), cell.run.view))
         .collect();
     let drawn = drawn
         .iter()
         .map(|row| format!("{} {}", row.scene, row.view));
-    let lacking: Vec<String> = (&all - &drawn.collect()).into_iter().collect();
+    let lacking: Vec<String> = (&measured - &drawn.collect()).into_iter().collect();
     if lacking.is_empty() {
         return None;
     }
@@ -56,18 +56,18 @@ pub fn without_counterpart<'a>(
             own.any(|cell| cell.run.preset == *name)
         };
         // One of several presets is enough.
-        let known = if row.named.iter().any(is_ours) {
+        let is_chosen = if row.named.iter().any(is_ours) {
             is_ours(&row.preset)
         } else {
             row.named.first() == Some(&row.preset)
         };
-        if !preset.is_empty() && known {
+        if !preset.is_empty() && is_chosen {
             entry(&mut theirs, scene).add(view, viewport, map, preset);
         }
     }
-    let find = |all: &[(&str, Sides)], scene: &str| {
-        let found = all.iter().find(|(known, _)| *known == scene);
-        found.map(|(_, sides)| sides.clone())
+    let find = |scenes: &[(&str, Sides)], scene: &str| {
+        let pair = scenes.iter().find(|(name, _)| *name == scene);
+        pair.map(|(_, sides)| sides.clone())
     };
     let mut lines = Vec::new();
     for (scene, sides) in &ours {
@@ -81,8 +81,8 @@ pub fn without_counterpart<'a>(
     for (scene, sides) in &theirs {
         lines.extend(match find(&ours, scene) {
             None => Some(format!("not drawn: {label}'s {scene}: no results of it")),
-            Some(here) => sides
-                .lacking(&here)
+            Some(measured) => sides
+                .lacking(&measured)
                 .map(|lacking| format!("not drawn, of {label}'s {scene}: {lacking}: no results")),
         });
     }

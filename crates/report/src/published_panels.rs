@@ -171,11 +171,11 @@ impl PanelRow<'_> {
     /// Returns two panels of bars, grouped by `groups`: the published figures, titled with `label`,
     /// and the measured ones. `y` is the label of the vertical axis.
     pub fn bars(&self, label: &str, groups: Groups, y: &str) -> [Panel; 2] {
-        let known = self.groups();
-        let names: Vec<String> = known.iter().map(|group| groups.name(*group)).collect();
+        let bar_groups = self.groups();
+        let names: Vec<String> = bar_groups.iter().map(|group| groups.name(*group)).collect();
         let mut sides: [Vec<Series>; 2] = Default::default();
         for (group, bar) in &self.bars {
-            let place = known.iter().position(|known| known == group);
+            let place = bar_groups.iter().position(|other| other == group);
             for (side, y) in sides.iter_mut().zip([bar.theirs, bar.ours]) {
                 let x = place.unwrap_or(0) as f64;
                 push(side, &bar.series, Mark::new(x, y));
@@ -197,7 +197,7 @@ impl PanelRow<'_> {
         let mut sides: [Vec<Series>; 2] = Default::default();
         let mut first: Option<&Bar> = None;
         for group in self.groups() {
-            for (_, bar) in self.bars.iter().filter(|(known, _)| *known == group) {
+            for (_, bar) in self.bars.iter().filter(|(other, _)| *other == group) {
                 let first = first.get_or_insert(bar);
                 let times = [bar.theirs / first.theirs, bar.ours / first.ours];
                 for (side, y) in sides.iter_mut().zip(times) {

@@ -63,8 +63,8 @@ fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
 /// camera paths of different lengths.
 pub fn timed_frames<'a>(results: &Results, runs: impl IntoIterator<Item = &'a Run>) -> String {
     let measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
-    let counts = measured.map(|of| {
-        let path = of.sequence.as_ref();
+    let counts = measured.map(|measured| {
+        let path = measured.sequence.as_ref();
         path.map_or(results.frames, |path| path.frames.len() as u32)
     });
     let counts: BTreeSet<u32> = counts.collect();
@@ -104,7 +104,7 @@ fn passes(runs: &[Run]) -> String {
         let every = measured
             .sequence
             .as_ref()
-            .and_then(|of| of.every_pass.as_ref());
+            .and_then(|sequence| sequence.every_pass.as_ref());
         let every = every.map(|times| ("with every pass", times.gpu_ms, None));
         let passes = measured.passes.iter();
         let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms, Some(pass.cpu_ms)));

@@ -113,16 +113,16 @@ pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
     let mut rows = Vec::new();
     for case in &report.cases {
         for set in sets(case) {
-            let found = |column: &&Column| {
+            let find = |column: &&Column| {
                 let mut cells = case.cells.iter();
                 cells.find(|cell| cell.is_of(column) && cell.set.as_deref() == set)
             };
-            let found: Vec<Option<&Cell>> = columns.iter().map(found).collect();
-            let cells = found.iter().map(|of| cell(case, *of, set));
+            let entries: Vec<Option<&Cell>> = columns.iter().map(find).collect();
+            let cells = entries.iter().map(|entry| cell(case, *entry, set));
             table
                 .rows
                 .push(heads_of(case, set).into_iter().chain(cells).collect());
-            rows.push((case, found));
+            rows.push((case, entries));
         }
     }
     (table, rows)

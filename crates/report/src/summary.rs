@@ -73,15 +73,15 @@ impl Wrong {
 }
 
 impl<'a> Row<'a> {
-    fn new(label: String, all: &[&'a Run]) -> Self {
+    fn new(label: String, attempts: &[&'a Run]) -> Self {
         let measured = |run: &&'a Run| Some((*run, run.measured.as_ref()?));
-        let runs: Vec<_> = all.iter().filter_map(measured).collect();
-        let unavailable = all.iter().find_map(|run| run.unavailable.as_deref());
-        let has_time = |(_, of): &(&Run, &Measured)| {
-            of.full_times().gpu_ms.is_some() && kept(of).gpu_ms.is_some()
+        let runs: Vec<_> = attempts.iter().filter_map(measured).collect();
+        let unavailable = attempts.iter().find_map(|run| run.unavailable.as_deref());
+        let has_time = |(_, measured): &(&Run, &Measured)| {
+            measured.full_times().gpu_ms.is_some() && kept(measured).gpu_ms.is_some()
         };
         Self {
-            method: all
+            method: attempts
                 .first()
                 .map(|run| run.preset.clone())
                 .unwrap_or_default(),
@@ -113,8 +113,9 @@ impl<'a> Row<'a> {
     /// results of earlier frames they are means over its steady state (the pictures that it
     /// repeats), rounded up.
     pub fn wrong(&self) -> Wrong {
-        self.runs.iter().fold(Wrong::default(), |sum, (run, of)| {
-            let (outside, in_band) = match cycle(of) {
+        let runs = self.runs.iter();
+        runs.fold(Wrong::default(), |sum, (run, measured)| {
+            let (outside, in_band) = match cycle(measured) {
                 Some(cycle) => {
                     let outside = cycle.wrong_outside_band_mean;
                     (
@@ -122,7 +123,7 @@ impl<'a> Row<'a> {
                         (cycle.wrong_mean - outside).ceil() as u64,
                     )
                 }
-                None => (of.wrong_outside_band(), of.wrong.in_band),
+                None => (measured.wrong_outside_band(), measured.wrong.in_band),
             };
             Wrong {
                 outside_band: sum.outside_band + outside,
@@ -137,9 +138,9 @@ impl<'a> Row<'a> {
     /// pixels whose answer rounding decides) among the pixels that face the light, 0 to 1; `None`
     /// without runs.
     pub fn most_wrong(&self) -> Option<Worst> {
-        let wrong = |count: u64, of: u64| Some(share(Part { count, of }));
+        let wrong = |count: u64, whole: u64| Some(share(Part { count, of: whole }));
         self.worst(
-            |run, of| wrong(of.wrong_outside_band(), run.pixels.facing_light),
+            |run, measured| wrong(measured.wrong_outside_band(), run.pixels.facing_light),
             |_, _, frame| wrong(frame.wrong_outside_band, frame.facing_light),
         )
     }
@@ -147,14 +148,14 @@ impl<'a> Row<'a> {
     /// Returns the view or frame with the greatest root mean square error of the [shares of
     /// light](skiagraph_compare#terms), 0 to 1; `None` without runs.
     pub fn greatest_rmse(&self) -> Option<Worst> {
-        let rmse = |_: &Run, of: &Measured| Some(of.graded.rmse);
+        let rmse = |_: &Run, measured: &Measured| Some(measured.graded.rmse);
         self.worst(rmse, |_, _, frame| Some(frame.graded.rmse))
     }
 
     /// Returns the view or frame with the greatest FLIP error (perceptual difference, 0 to 1) of
     /// the shaded picture; `None` without runs.
     pub fn greatest_flip(&self) -> Option<Worst> {
-        let flip = |_: &Run, of: &Measured| Some(of.graded.flip);
+        let flip = |_: &Run, measured: &Measured| Some(measured.graded.flip);
         self.worst(flip, |_, _, frame| Some(frame.graded.flip))
     }
 
@@ -163,8 +164,8 @@ impl<'a> Row<'a> {
     /// selects wall time instead of GPU time.
     pub fn slowest(&self, by_wall: bool) -> Option<Worst> {
         self.worst(
-            |_, of| median(of.full_times(), by_wall),
-            |of, index, _| of.full_times().frames(by_wall)?.get(index).copied(),
+            |_, measured| median(measured.full_times(), by_wall),
+            |measured, index, _| measured.full_times().frames(by_wall)?.get(index).copied(),
         )
     }
 
@@ -193,7 +194,7 @@ impl<'a> Row<'a> {
     }
 
     fn sum(&self, part: fn(&Run, &Measured) -> Part) -> Part {
-        let parts = self.runs.iter().map(|(run, of)| part(run, of));
+        let parts = self.runs.iter().map(|(run, measured)| part(run, measured));
         parts.fold(Part { count: 0, of: 0 }, |sum, part| Part {
             count: sum.count + part.count,
             of: sum.of + part.of,
@@ -201,8 +202,8 @@ impl<'a> Row<'a> {
     }
 
     fn greatest_share(&self, part: fn(&Run, &Measured) -> Part) -> Option<Worst> {
-        let shares = self.runs.iter().map(|(run, of)| Worst {
-            value: share(part(run, of)),
+        let shares = self.runs.iter().map(|(run, measured)| Worst {
+            value: share(part(run, measured)),
             place: (self.views() > 1).then(|| format!("`{}`", run.view)),
         });
         shares.reduce(|worst, other| {
@@ -223,15 +224,15 @@ impl<'a> Row<'a> {
                 worst = Some(Worst { value, place });
             }
         };
-        for (run, of) in &self.runs {
-            let Some(path) = &of.sequence else {
+        for (run, measured) in &self.runs {
+            let Some(path) = &measured.sequence else {
                 let name = (self.views() > 1).then(|| format!("`{}`", run.view));
-                add(of_view(run, of)?, name);
+                add(of_view(run, measured)?, name);
                 continue;
             };
             for (index, frame) in path.frames.iter().enumerate() {
                 let place = format!("frame {} of `{}`", index + 1, run.view);
-                add(of_frame(of, index, frame)?, Some(place));
+                add(of_frame(measured, index, frame)?, Some(place));
             }
         }
         worst
@@ -253,8 +254,8 @@ impl<'a> Row<'a> {
     /// decides) equals the [reference](skiagraph_compare#terms)'s, also as a [share of
     /// light](skiagraph_compare#terms). True without runs.
     pub fn is_exact(&self) -> bool {
-        let is_exact = |(_, of): &(&Run, &Measured)| {
-            of.wrong_outside_band() == 0 && of.graded.rmse_outside_band == 0.0
+        let is_exact = |(_, measured): &(&Run, &Measured)| {
+            measured.wrong_outside_band() == 0 && measured.graded.rmse_outside_band == 0.0
         };
         self.runs.iter().all(is_exact)
     }
@@ -270,7 +271,7 @@ impl<'a> Row<'a> {
     /// Passes without GPU times are left out.
     pub fn steps(&self) -> Vec<(&'a str, f64)> {
         let mut steps: Vec<(&str, f64)> = Vec::new();
-        let passes = self.runs.iter().flat_map(|(_, of)| &of.passes);
+        let passes = self.runs.iter().flat_map(|(_, measured)| &measured.passes);
         for (name, gpu) in passes.filter_map(|pass| Some((step(&pass.name), pass.gpu_ms?))) {
             let ms = gpu.median / self.views() as f64;
             *entry(&mut steps, name) += ms;
@@ -282,14 +283,19 @@ impl<'a> Row<'a> {
     /// 1, over all views; `None` without runs. For a method that reuses results of earlier frames
     /// the error of a view is the mean over its steady state, the pictures that it repeats.
     pub fn rmse(&self) -> Option<f64> {
-        let rmse = |of: &Measured| cycle(of).map_or(of.graded.rmse, |cycle| cycle.rmse_mean);
-        self.mean(|_, of| Some(rmse(of).powi(2))).map(f64::sqrt)
+        let rmse = |measured: &Measured| {
+            cycle(measured).map_or(measured.graded.rmse, |cycle| cycle.rmse_mean)
+        };
+        self.mean(|_, measured| Some(rmse(measured).powi(2)))
+            .map(f64::sqrt)
     }
 
     /// Returns the FLIP error (perceptual difference, 0 to 1) of the shaded pictures, as the mean
     /// of the views; `None` without runs.
     pub fn flip(&self) -> Option<f64> {
-        self.mean(|_, of| Some(cycle(of).map_or(of.graded.flip, |cycle| cycle.flip_mean)))
+        self.mean(|_, measured| {
+            Some(cycle(measured).map_or(measured.graded.flip, |cycle| cycle.flip_mean))
+        })
     }
 
     /// True if the light has an extent. Then methods are judged by their [shares of
@@ -302,16 +308,17 @@ impl<'a> Row<'a> {
     /// meshes have moved: the mean of the views' medians. `None` if a view has no such time.
     /// `by_wall` selects wall time instead of GPU time.
     pub fn frame_ms(&self, by_wall: bool) -> Option<f64> {
-        self.mean(|_, of| median(of.full_times(), by_wall))
+        self.mean(|_, measured| median(measured.full_times(), by_wall))
     }
 
     /// Returns the milliseconds of a frame in which only the camera has moved, so that passes with
     /// unchanged inputs are skipped: the mean of the views' medians. `None` if no pass is skipped,
     /// or a view has no such time. `by_wall` selects wall time instead of GPU time.
     pub fn kept_ms(&self, by_wall: bool) -> Option<f64> {
-        let keeps = |(_, of): &(&Run, &Measured)| kept(of) != of.full_times();
+        let keeps = |(_, measured): &(&Run, &Measured)| kept(measured) != measured.full_times();
         let any = self.runs.iter().any(keeps);
-        self.mean(|_, of| median(kept(of), by_wall)).filter(|_| any)
+        self.mean(|_, measured| median(kept(measured), by_wall))
+            .filter(|_| any)
     }
 
     /// Returns the first and third quartile of the times of [`frame_ms`](Self::frame_ms), or if
@@ -319,14 +326,17 @@ impl<'a> Row<'a> {
     /// `None` if a view has no such times.
     pub fn quartiles(&self, by_wall: bool, is_kept: bool) -> Option<[f64; 2]> {
         let times = if is_kept { kept } else { Measured::full_times };
-        let q1 = self.mean(|_, of| Some(times(of).spread(by_wall)?.q1))?;
-        Some([q1, self.mean(|_, of| Some(times(of).spread(by_wall)?.q3))?])
+        let q1 = self.mean(|_, measured| Some(times(measured).spread(by_wall)?.q1))?;
+        Some([
+            q1,
+            self.mean(|_, measured| Some(times(measured).spread(by_wall)?.q3))?,
+        ])
     }
 
     /// Returns the GPU milliseconds of a frame without its G-buffer, which all methods draw alike:
     /// the mean of the views' medians. `None` if a view has no GPU times.
     pub fn own_ms(&self) -> Option<f64> {
-        self.mean(|_, of| of.ms_without_gbuffer())
+        self.mean(|_, measured| measured.ms_without_gbuffer())
     }
 
     /// Returns the number of timed frames of the view that has the fewest; 0 without runs.
@@ -334,7 +344,7 @@ impl<'a> Row<'a> {
         let frames = self
             .runs
             .iter()
-            .map(|(_, of)| of.full_times().wall_frames.len());
+            .map(|(_, measured)| measured.full_times().wall_frames.len());
         frames.min().unwrap_or_default()
     }
 
@@ -348,13 +358,14 @@ impl<'a> Row<'a> {
     /// compare.
     pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
         let pair = || self.runs.iter().zip(&other.runs);
-        let is_pair = |((one, of), (other, of_other)): (&Measurement, &Measurement)| {
-            one.session == other.session && are_paired(of, of_other)
-        };
+        let is_pair =
+            |((one, one_measured), (other, other_measured)): (&Measurement, &Measurement)| {
+                one.session == other.session && are_paired(one_measured, other_measured)
+            };
         if !is_kept && pair().all(is_pair) {
             let mut sums: [Vec<f64>; 2] = Default::default();
             for ((_, one), (_, other)) in pair() {
-                let times = [one, other].map(|of| of.full_times().frames(by_wall));
+                let times = [one, other].map(|measured| measured.full_times().frames(by_wall));
                 let [Some(one_ms), Some(other_ms)] = times else {
                     return false;
                 };
@@ -389,20 +400,20 @@ impl<'a> Row<'a> {
     /// Returns the number of rays per frame, the mean of the views; `None` if the method does not
     /// count them.
     pub fn rays(&self) -> Option<f64> {
-        self.mean(|_, of| of.rays.map(|rays| rays as f64 / frames(of)))
+        self.mean(|_, measured| measured.rays.map(|rays| rays as f64 / frames(measured)))
     }
 
     /// Returns the number of pixels on camera paths whose visibility changed from one frame to the
     /// next although the right one did not, of those that were compared. `None` if a run is not of
     /// a path.
     pub fn shimmer(&self) -> Option<Part> {
-        let mut all = Shimmer::default();
-        for (_, of) in &self.runs {
-            all += of.sequence.as_ref()?.shimmer;
+        let mut shimmer = Shimmer::default();
+        for (_, measured) in &self.runs {
+            shimmer += measured.sequence.as_ref()?.shimmer;
         }
         Some(Part {
-            count: all.changed,
-            of: all.compared,
+            count: shimmer.changed,
+            of: shimmer.compared,
         })
     }
 
@@ -410,7 +421,7 @@ impl<'a> Row<'a> {
     /// `None` without paths.
     pub fn worst_frame(&self) -> Option<&'a SequenceFrame> {
         let paths = self.runs.iter();
-        let worst = paths.filter_map(|(_, of)| Some(of.sequence.as_ref()?.worst()?.1));
+        let worst = paths.filter_map(|(_, measured)| Some(measured.sequence.as_ref()?.worst()?.1));
         worst.max_by(|one, other| one.error().total_cmp(&other.error()))
     }
 
@@ -418,7 +429,7 @@ impl<'a> Row<'a> {
     /// that it reads: the most on any view.
     pub fn bytes(&self) -> u64 {
         let bytes = self.runs.iter();
-        let bytes = bytes.map(|(_, of)| of.memory_bytes + of.scene_bytes);
+        let bytes = bytes.map(|(_, measured)| measured.memory_bytes + measured.scene_bytes);
         bytes.max().unwrap_or_default()
     }
 
@@ -432,7 +443,7 @@ impl<'a> Row<'a> {
     }
 
     fn mean(&self, value: impl Fn(&Run, &Measured) -> Option<f64>) -> Option<f64> {
-        let values = self.runs.iter().map(|(run, of)| value(run, of));
+        let values = self.runs.iter().map(|(run, measured)| value(run, measured));
         let sum: f64 = values.sum::<Option<f64>>()?;
         (self.views() > 0).then(|| sum / self.views() as f64)
     }
@@ -451,23 +462,23 @@ fn anchors(one: &Measured, other: &Measured, by_wall: bool) -> Option<Vec<f64>> 
     if one.group == other.group {
         return None;
     }
-    let frames = |of: &Turns| Some(of.anchor.frames(by_wall)?.to_vec());
+    let frames = |turns: &Turns| Some(turns.anchor.frames(by_wall)?.to_vec());
     let pairs = frames(one)?.into_iter().zip(frames(other)?);
     Some(pairs.map(|(one, other)| one / other.max(1e-6)).collect())
 }
 
 /// Shadow of a run that is missing, of all that the reference has.
-fn missing(run: &Run, of: &Measured) -> Part {
+fn missing(run: &Run, measured: &Measured) -> Part {
     Part {
-        count: of.wrong.lit,
+        count: measured.wrong.lit,
         of: run.pixels.shadow,
     }
 }
 
 /// Light of a run that is dark, of all that the reference has.
-fn falsely_dark(run: &Run, of: &Measured) -> Part {
+fn falsely_dark(run: &Run, measured: &Measured) -> Part {
     Part {
-        count: of.wrong.shadow,
+        count: measured.wrong.shadow,
         of: run.pixels.lit,
     }
 }
@@ -478,19 +489,25 @@ pub(crate) fn share(part: Part) -> f64 {
 }
 
 /// The steady state of a method that remembers, as it was judged.
-fn cycle(of: &Measured) -> Option<Cycle> {
-    of.steady.as_ref()?.judged
+fn cycle(measured: &Measured) -> Option<Cycle> {
+    measured.steady.as_ref()?.judged
 }
 
 /// Counts of a path are those of all its frames.
-fn frames(of: &Measured) -> f64 {
-    let frames = of.sequence.as_ref().map_or(1, |path| path.frames.len());
+fn frames(measured: &Measured) -> f64 {
+    let frames = measured
+        .sequence
+        .as_ref()
+        .map_or(1, |path| path.frames.len());
     frames.max(1) as f64
 }
 
 /// Times with what is kept.
-fn kept(of: &Measured) -> &FrameTimes {
-    of.cached.as_ref().map_or(&of.frame, |cached| &cached.frame)
+fn kept(measured: &Measured) -> &FrameTimes {
+    measured
+        .cached
+        .as_ref()
+        .map_or(&measured.frame, |cached| &cached.frame)
 }
 
 fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
@@ -513,11 +530,11 @@ pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> 
     let by_wall = by_wall(&rows);
     let time = |row: &Row| row.frame_ms(by_wall).unwrap_or(f64::INFINITY);
     rows.sort_by(|one, other| time(one).total_cmp(&time(other)));
-    let is_changed = |row: &Row| row.tuned().is_some_and(|of| !of.set.is_empty());
+    let is_changed = |row: &Row| row.tuned().is_some_and(|tuned| !tuned.set.is_empty());
     let (tuned, mut rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(is_changed);
     for row in tuned {
-        let of = row.tuned().map(|tuned| &tuned.of);
-        let before = rows.iter().rposition(|other| Some(&other.method) == of);
+        let base = row.tuned().map(|tuned| &tuned.of);
+        let before = rows.iter().rposition(|other| Some(&other.method) == base);
         rows.insert(before.map_or(rows.len(), |before| before + 1), row);
     }
     rows

@@ -38,13 +38,13 @@ pub struct Summary<'a> {
 /// Returns a summary for each viewport and light of `results`, in the order of its runs.
 pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
     let place = |run: &'_ Run| (run.viewport, run.light.clone());
-    let all = unique(results.runs.iter().map(place)).into_iter();
+    let places = unique(results.runs.iter().map(place)).into_iter();
     let summary = |(viewport, light)| {
         let runs = results.runs.iter();
         let runs = runs.filter(|run| run.viewport == viewport && run.light == light);
         Summary::new(results, runs.collect())
     };
-    all.map(summary).collect()
+    places.map(summary).collect()
 }
 
 /// Beginning of lines that warn; the page makes them stand out by it.
@@ -138,15 +138,15 @@ impl<'a> Summary<'a> {
             size(self.viewport)
         )];
         lines.extend(self.conditions());
-        let mut said = self.verdict().sentences;
-        said.extend(self.notes());
+        let mut sentences = self.verdict().sentences;
+        sentences.extend(self.notes());
         if is_broken {
-            for line in lines.iter_mut().chain(&mut said) {
+            for line in lines.iter_mut().chain(&mut sentences) {
                 *line = wrapped(line, TERMINAL);
             }
         }
         lines.push(format!("\n{}\n", terminal(&self.table())));
-        lines.extend(said);
+        lines.extend(sentences);
         lines.join("\n") + "\n"
     }
 
@@ -165,7 +165,7 @@ impl<'a> Summary<'a> {
     pub fn conditions(&self) -> Vec<String> {
         let views = self.views();
         let each = self.of_each_view();
-        let sum = |of: fn(&Run) -> u64| each.iter().map(|run| of(run)).sum::<u64>();
+        let sum = |count: fn(&Run) -> u64| each.iter().map(|run| count(run)).sum::<u64>();
         let (facing, band) = (sum(|run| run.pixels.facing_light), sum(|run| run.band));
         let mean = match views.len() {
             1 => "",
@@ -226,7 +226,7 @@ impl<'a> Summary<'a> {
             if row.views() != views && row.views() > 0 {
                 label += &format!(" ({} of {})", row.views(), plural(views, "view"));
             }
-            if row.tuned().is_some_and(|of| !of.set.is_empty()) {
+            if row.tuned().is_some_and(|tuned| !tuned.set.is_empty()) {
                 label += " (tuned)";
             }
             if !row.is_whole() {
@@ -338,7 +338,11 @@ impl<'a> Summary<'a> {
     /// That promises end at open parts, and whose.
     fn open_parts(&self) -> Option<String> {
         let parts = &self.results.scene.parts;
-        let closed_only = |run: &&&Run| run.promise.as_ref().is_some_and(|of| of.closed_only);
+        let closed_only = |run: &&&Run| {
+            run.promise
+                .as_ref()
+                .is_some_and(|promise| promise.closed_only)
+        };
         let methods = self.runs.iter().filter(closed_only);
         let methods = methods.map(|run| format!("`{}`", run.preset));
         let methods: Vec<String> = methods.sorted().dedup().collect();
@@ -350,7 +354,7 @@ impl<'a> Summary<'a> {
             thousands(parts.open),
             match parts.all {
                 1 => "1 part".into(),
-                all => format!("{} parts", thousands(all)),
+                count => format!("{} parts", thousands(count)),
             },
             percent(parts.open_triangles, self.results.scene.triangles)
         );
@@ -400,10 +404,10 @@ impl<'a> Summary<'a> {
         let mut sums: BTreeMap<String, (u64, BlockerCounts)> = BTreeMap::new();
         for run in self.runs.iter().filter(|run| run.is_hard()) {
             let measured = run.measured.as_ref();
-            if let Some(of) = measured.filter(|of| of.wrong.certain > 0) {
+            if let Some(measured) = measured.filter(|measured| measured.wrong.certain > 0) {
                 let sum = sums.entry(run.method_label()).or_default();
-                sum.0 += of.wrong.certain;
-                sum.1 += of.certain_wrong_blockers.unwrap_or_default();
+                sum.0 += measured.wrong.certain;
+                sum.1 += measured.certain_wrong_blockers.unwrap_or_default();
             }
         }
         let line = |(label, sum): (String, _)| format!("{label}: {}", blocked_by(&[sum]));
@@ -427,13 +431,13 @@ mod tests {
             closed_only: true,
         });
         results.runs.pop();
-        let mut others = results.runs.clone();
-        for run in &mut others {
+        let mut other_runs = results.runs.clone();
+        for run in &mut other_runs {
             run.view = "other".into();
         }
         // The second method was not run on it.
-        others.truncate(1);
-        results.runs.extend(others);
+        other_runs.truncate(1);
+        results.runs.extend(other_runs);
         results
     }
 
@@ -450,7 +454,7 @@ mod tests {
         let names = skiagraph_compare::graphs::preset::SHIPPED
             .iter()
             .zip(1u64..);
-        let of = |(name, place): (&&str, u64)| {
+        let run_of = |(name, place): (&&str, u64)| {
             let mut run = run.clone();
             (run.preset, run.map_size) = ((*name).into(), Some(2048));
             let measured = run.measured.as_mut().unwrap();
@@ -458,7 +462,7 @@ mod tests {
             measured.rays = Some(1_234_567);
             run
         };
-        results.runs = names.map(of).collect();
+        results.runs = names.map(run_of).collect();
         let text = summaries(&results)[0].text(true);
         let wide = |line: &&str| line.chars().count() > 80;
         assert_eq!(text.lines().find(wide), None, "{text}");
@@ -498,10 +502,10 @@ mod tests {
         sun.light = Some("sun".into());
         sun.measured.as_mut().unwrap().wrong.total = 6;
         results.runs.push(sun);
-        let all = summaries(&results);
-        let whats: Vec<String> = all.iter().map(Summary::what).collect();
+        let summaries = summaries(&results);
+        let whats: Vec<String> = summaries.iter().map(Summary::what).collect();
         assert_eq!(whats, ["2 views under lamp", "view main"]);
-        assert_eq!(all[1].rows.len(), 1);
+        assert_eq!(summaries[1].rows.len(), 1);
         let [(_, table)] = &by_light(&results)[..] else {
             panic!("one viewport")
         };

@@ -31,8 +31,8 @@ pub fn terminal(table: &Table) -> String {
     for column in numbers {
         let block = &blocks[blocks.len() - 1];
         let wide = |column: &usize| width(table, *column) + GAP;
-        let all = block.iter().chain([&column]).map(wide).sum::<usize>() - GAP;
-        if all > TERMINAL && block.len() > table.words {
+        let line_width = block.iter().chain([&column]).map(wide).sum::<usize>() - GAP;
+        if line_width > TERMINAL && block.len() > table.words {
             blocks.push(words.clone());
         }
         blocks.last_mut().expect("there is one").push(column);
@@ -63,8 +63,8 @@ fn room(table: &Table, column: usize) -> usize {
     if column < table.words && is_beside {
         WORDS
     } else if !is_beside && is_last {
-        let others = (0..column).map(|other| width(table, other) + GAP);
-        TERMINAL.saturating_sub(others.sum()).max(NARROWEST)
+        let widths = (0..column).map(|other| width(table, other) + GAP);
+        TERMINAL.saturating_sub(widths.sum()).max(NARROWEST)
     } else {
         usize::MAX
     }
@@ -171,8 +171,8 @@ pub fn html_with(
                 };
                 format!("<th scope=\"row\">{sign}{text}</th>")
             } else {
-                let (of, content) = (cell(index, column), content(column, text));
-                format!("<td {of}>{content}</td>")
+                let (attributes, content) = (cell(index, column), content(column, text));
+                format!("<td {attributes}>{content}</td>")
             };
         }
         body += "</tr>\n";

@@ -17,45 +17,49 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
     let Some((_, first)) = tuned.first() else {
         return Vec::new();
     };
-    let mut said = vec![chosen_on(first)];
-    let (changed, kept): (Vec<_>, Vec<_>) =
-        tuned.into_iter().partition(|(_, of)| !of.set.is_empty());
-    let brought = |(row, of): &(&Row, &Tuned)| {
+    let mut sentences = vec![chosen_on(first)];
+    let (changed, kept): (Vec<_>, Vec<_>) = tuned
+        .into_iter()
+        .partition(|(_, tuned)| !tuned.set.is_empty());
+    let brought = |(row, tuned): &(&Row, &Tuned)| {
         let before = rows.iter().find(|other| is_default_of(other, row))?;
-        let (with, name, now, before) = (of.words(), &of.of, error(row), error(before));
+        let (with, name, now, before) = (tuned.words(), &tuned.of, error(row), error(before));
         Some(format!(
             "With {with} `{name}` is {now} here, with its defaults {before}."
         ))
     };
-    said.extend(changed.iter().filter_map(brought));
+    sentences.extend(changed.iter().filter_map(brought));
     if !changed.is_empty() {
         let arguments = changed
             .iter()
-            .map(|(_, of)| of.argument())
+            .map(|(_, tuned)| tuned.argument())
             .unique()
             .join(" ");
-        said.push(format!(
+        sentences.push(format!(
             "To have the tuned methods again: skiagraph compare {arguments}."
         ));
     }
     if !kept.is_empty() {
-        let tried = |(row, of): &(&Row, &Tuned)| {
+        let tried = |(row, tuned): &(&Row, &Tuned)| {
             format!(
                 "`{}` (of {})",
                 row.method,
-                plural(of.tried as usize, "setting")
+                plural(tuned.tried as usize, "setting")
             )
         };
         let names = and(kept.iter().map(tried).unique());
-        said.push(format!("The defaults stay the best of {names}."));
+        sentences.push(format!("The defaults stay the best of {names}."));
     }
-    let short = changed.iter().chain(&kept).filter(|(_, of)| !of.is_whole);
+    let short = changed
+        .iter()
+        .chain(&kept)
+        .filter(|(_, tuned)| !tuned.is_whole);
     let short = short
-        .map(|(_, of)| format!("`{}`", of.of))
+        .map(|(_, tuned)| format!("`{}`", tuned.of))
         .unique()
         .collect_vec();
     if !short.is_empty() {
-        said.push(format!(
+        sentences.push(format!(
             "The search for {} ended at the bound of its cost: more frames (--frames) allow a \
              longer one.",
             and(short.into_iter())
@@ -71,21 +75,23 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
             1 => ("has", "its"),
             _ => ("have", "their"),
         };
-        said.push(format!(
+        sentences.push(format!(
             "{} {have} nothing to tune, which is {their} point.",
             and(without.into_iter())
         ));
     }
-    said
+    sentences
 }
 
 /// True if `other` is the method of `row` with its params as they were before it was tuned.
 pub fn is_default_of(other: &Row, row: &Row) -> bool {
-    let Some(of) = row.tuned() else {
+    let Some(tuned) = row.tuned() else {
         return false;
     };
-    let is_same_map = of.set.contains_key("map_size") || other.map_size() == row.map_size();
-    other.method == of.of && is_same_map && other.tuned().is_none_or(|of| of.set.is_empty())
+    let is_same_map = tuned.set.contains_key("map_size") || other.map_size() == row.map_size();
+    other.method == tuned.of
+        && is_same_map
+        && other.tuned().is_none_or(|tuned| tuned.set.is_empty())
 }
 
 /// True if a method is exact whatever its params are.
@@ -98,9 +104,9 @@ fn is_exact_anyway(row: &Row) -> bool {
 }
 
 /// The views on which settings were chosen.
-fn chosen_on(of: &Tuned) -> String {
-    let views = plural(of.chosen_on.len(), "other view");
-    let names = of.chosen_on.join(", ");
+fn chosen_on(tuned: &Tuned) -> String {
+    let views = plural(tuned.chosen_on.len(), "other view");
+    let names = tuned.chosen_on.join(", ");
     format!("Tuned settings were chosen on {views} ({names}) than those they are judged on here.")
 }
 

@@ -55,7 +55,7 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
         .filter(|(_, row)| !is_another_hour(row.session(), newest))
         .filter_map(|(index, row)| Contender::new(index, row, by_wall))
         .collect();
-    let within = full.iter().filter(|of| of.is_within(budgets));
+    let within = full.iter().filter(|method| method.is_within(budgets));
     let within = better_settings(within.cloned().collect());
     let full = better_settings(full);
     let mut verdict = if full.is_empty() {
@@ -64,12 +64,12 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
         none_within(&full, budgets)
     } else if budgets.wrong_percent.is_some() {
         right_enough(&within)
-    } else if full.iter().any(|of| of.is_soft) {
+    } else if full.iter().any(|method| method.is_soft) {
         graded(&within, rows)
     } else {
         hard(&within)
     };
-    let frames = within.iter().map(|of| of.row.frames()).min();
+    let frames = within.iter().map(|method| method.row.frames()).min();
     let too_few = frames.filter(|frames| within.len() > 1 && *frames < LEAST_TURNS);
     if let Some(frames) = too_few {
         verdict.sentences = without_times(&within, frames);
@@ -82,7 +82,7 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
             .sentences
             .insert(0, format!("Within {budgets}: {count} of {methods}."));
     }
-    if let Some(condition) = full.iter().find_map(|of| of.condition) {
+    if let Some(condition) = full.iter().find_map(|method| method.condition) {
         verdict.sentences = conditioned(condition, verdict.sentences, &full);
     }
     let beyond = full.iter().filter_map(|method| method.beyond(budgets));
@@ -99,13 +99,16 @@ pub fn is_conditioned(wrong: Wrong) -> bool {
 
 /// The contenders without those that are beaten by another setting of the same method: of a method
 /// and what it was tuned to, the one with the greater error is left out, and never recommended.
-fn better_settings(all: Vec<Contender>) -> Vec<Contender> {
-    let is_beaten = |of: &Contender| {
-        let others = all.iter().filter(|other| of.is_other_setting_of(other));
-        let mut others = others.map(|other| other.error_to_rank().total_cmp(&of.error_to_rank()));
-        others.any(|order| order.is_lt() || (order.is_eq() && of.is_tuned()))
+fn better_settings(methods: Vec<Contender>) -> Vec<Contender> {
+    let is_beaten = |method: &Contender| {
+        let settings = methods
+            .iter()
+            .filter(|other| method.is_other_setting_of(other));
+        let mut orders =
+            settings.map(|other| other.error_to_rank().total_cmp(&method.error_to_rank()));
+        orders.any(|order| order.is_lt() || (order.is_eq() && method.is_tuned()))
     };
-    let better = all.iter().filter(|of| !is_beaten(of));
+    let better = methods.iter().filter(|method| !is_beaten(method));
     better.cloned().collect()
 }
 
@@ -128,26 +131,27 @@ impl Condition {
 }
 
 /// The sentences with the pixels that they hold of, and how much methods differ on the others.
-fn conditioned(of: Condition, sentences: Vec<String>, all: &[Contender]) -> Vec<String> {
-    let Condition { band, facing_light } = of;
+fn conditioned(condition: Condition, sentences: Vec<String>, methods: &[Contender]) -> Vec<String> {
+    let Condition { band, facing_light } = condition;
     let whole = |count: u64| format!("{:.0} %", 100.0 * count as f64 / facing_light as f64);
     let judged = whole(facing_light.saturating_sub(band));
-    let mut said: Vec<String> = sentences
+    let mut sentences: Vec<String> = sentences
         .into_iter()
         .map(|sentence| format!("Of the {judged} that can be judged: {sentence}"))
         .collect();
-    let mut others: Vec<&Contender> = all.iter().collect();
-    others.sort_by_key(|of| of.wrong.in_band);
-    let share = |of: &&Contender| format!("`{}` {}", of.label, percent(of.wrong.in_band, band));
-    let (least, most) = (others.first(), others.last().filter(|_| others.len() > 1));
+    let mut ranked: Vec<&Contender> = methods.iter().collect();
+    ranked.sort_by_key(|method| method.wrong.in_band);
+    let share =
+        |method: &&Contender| format!("`{}` {}", method.label, percent(method.wrong.in_band, band));
+    let (least, most) = (ranked.first(), ranked.last().filter(|_| ranked.len() > 1));
     let shares: Vec<String> = least.into_iter().chain(most).map(share).collect();
-    said.push(format!(
+    sentences.push(format!(
         "On the other {} the right answer hangs on rounding: no method is right or wrong there. \
          From the reference's choice differ {}.",
         whole(band),
         shares.join(" (the least) and ") + if shares.len() > 1 { " (the most)" } else { "" }
     ));
-    said
+    sentences
 }
 
 /// A row, with what decides.
@@ -233,13 +237,13 @@ impl<'a> Contender<'a> {
 
     /// True if it is a setting that was searched for, other than the defaults.
     fn is_tuned(&self) -> bool {
-        self.row.tuned().is_some_and(|of| !of.set.is_empty())
+        self.row.tuned().is_some_and(|tuned| !tuned.set.is_empty())
     }
 
     /// True if one of the two is what the other one was tuned to.
     fn is_other_setting_of(&self, other: &Self) -> bool {
-        let is_of = |tuned: &Self, of: &Self| {
-            tuned.is_tuned() && !of.is_tuned() && tuning::is_default_of(of.row, tuned.row)
+        let is_of = |tuned: &Self, base: &Self| {
+            tuned.is_tuned() && !base.is_tuned() && tuning::is_default_of(base.row, tuned.row)
         };
         is_of(self, other) || is_of(other, self)
     }
@@ -277,8 +281,8 @@ impl<'a> Contender<'a> {
         let shares = [self.wrong.share(), most_wrong.value].map(|share| 100.0 * share);
         let is_wrong = |most: &f64| shares[0] < *most && shares[1] >= *most;
         let wrong = budgets.wrong_percent.filter(is_wrong).map(|_| {
-            let [all, worst] = shares.map(|share| format!("{share:.3} %"));
-            format!("is wrong on {worst}{} ({all} in all)", most_wrong.on())
+            let [total, worst] = shares.map(|share| format!("{share:.3} %"));
+            format!("is wrong on {worst}{} ({total} in all)", most_wrong.on())
         });
         let beyond: Vec<String> = slow.into_iter().chain(wrong).collect();
         let name = self.name();
@@ -319,51 +323,62 @@ enum When {
 }
 
 fn least<'c, 'a>(
-    of: impl IntoIterator<Item = &'c Contender<'a>>,
+    methods: impl IntoIterator<Item = &'c Contender<'a>>,
     figure: impl Fn(&Contender) -> f64,
 ) -> Option<&'c Contender<'a>> {
-    let of = of.into_iter();
-    of.min_by(|one, other| figure(one).total_cmp(&figure(other)))
+    let methods = methods.into_iter();
+    methods.min_by(|one, other| figure(one).total_cmp(&figure(other)))
 }
 
-fn hard(all: &[Contender]) -> Verdict {
-    let exact: Vec<Contender> = all.iter().filter(|of| of.is_exact).cloned().collect();
-    let fastest = |when: When| least(&exact, |of| of.time(when));
+fn hard(methods: &[Contender]) -> Verdict {
+    let exact: Vec<Contender> = methods
+        .iter()
+        .filter(|method| method.is_exact)
+        .cloned()
+        .collect();
+    let fastest = |when: When| least(&exact, |method| method.time(when));
     let (Some(best), Some(kept)) = (fastest(When::AnythingMoves), fastest(When::CameraMoves))
     else {
-        return none_exact(all);
+        return none_exact(methods);
     };
-    let any_keeps = all.iter().any(|of| of.kept < of.frame);
+    let any_keeps = methods.iter().any(|method| method.kept < method.frame);
     let is_one = kept.index == best.index || !best.is_told_apart(kept, When::CameraMoves);
     let sentences = match (is_one, any_keeps) {
-        (true, false) => vec![sentence(best, "", When::AnythingMoves, &exact, all)],
+        (true, false) => vec![sentence(best, "", When::AnythingMoves, &exact, methods)],
         (true, true) => {
             let whatever = ", whatever moves";
-            vec![sentence(best, whatever, When::AnythingMoves, &exact, all)]
+            vec![sentence(
+                best,
+                whatever,
+                When::AnythingMoves,
+                &exact,
+                methods,
+            )]
         }
         (false, _) => {
             let moving = " while light or meshes move";
             let still = " while only the camera moves";
             vec![
-                sentence(best, moving, When::AnythingMoves, &exact, all),
-                sentence(kept, still, When::CameraMoves, &exact, all),
+                sentence(best, moving, When::AnythingMoves, &exact, methods),
+                sentence(kept, still, When::CameraMoves, &exact, methods),
             ]
         }
     };
     let when = When::AnythingMoves;
-    let faster = all.iter().filter(|of| !of.is_exact);
-    let faster = least(faster, |of| of.frame)
-        .filter(|of| of.frame < best.frame || !of.is_told_apart(best, when));
+    let faster = methods.iter().filter(|method| !method.is_exact);
+    let faster = least(faster, |method| method.frame)
+        .filter(|method| method.frame < best.frame || !method.is_told_apart(best, when));
     let next = || {
-        least(exact.iter().filter(|of| of.index != best.index), |of| {
-            of.frame
-        })
+        least(
+            exact.iter().filter(|method| method.index != best.index),
+            |method| method.frame,
+        )
     };
     Verdict {
         fastest_exact: Some(best.index),
         first: with_level(best, &exact, |_| true),
         is_taken: true,
-        runner_up: faster.or_else(next).map(|of| of.index),
+        runner_up: faster.or_else(next).map(|method| method.index),
         sentences,
     }
 }
@@ -371,12 +386,14 @@ fn hard(all: &[Contender]) -> Verdict {
 /// The best, and those of others that cannot be told apart from it in time.
 fn with_level(
     best: &Contender,
-    of: &[Contender],
+    methods: &[Contender],
     counts: impl Fn(&Contender) -> bool,
 ) -> Vec<usize> {
-    let others = of.iter().filter(|of| of.index != best.index && counts(of));
-    let level = others.filter(|of| !of.is_told_apart(best, When::AnythingMoves));
-    let level = level.map(|of| of.index);
+    let rivals = methods
+        .iter()
+        .filter(|method| method.index != best.index && counts(method));
+    let level = rivals.filter(|method| !method.is_told_apart(best, When::AnythingMoves));
+    let level = level.map(|method| method.index);
     [best.index].into_iter().chain(level).collect()
 }
 
@@ -387,11 +404,11 @@ fn sentence(
     condition: &str,
     when: When,
     exact: &[Contender],
-    all: &[Contender],
+    methods: &[Contender],
 ) -> String {
-    let others = || exact.iter().filter(|of| of.index != best.index);
-    let is_level = |of: &&Contender| !of.is_told_apart(best, when);
-    let level: Vec<String> = others().filter(is_level).map(Contender::name).collect();
+    let rivals = || exact.iter().filter(|method| method.index != best.index);
+    let is_level = |method: &&Contender| !method.is_told_apart(best, when);
+    let level: Vec<String> = rivals().filter(is_level).map(Contender::name).collect();
     let mut text = match &level[..] {
         [] => format!("Take {}{condition}: {}", best.name(), per_frame(best, when)),
         level => format!(
@@ -405,33 +422,37 @@ fn sentence(
     if is_kept_told && best.kept < best.frame {
         text += &format!(" ({} while only the camera moves)", ms(best.kept));
     }
-    let all_exact = exact.len() == all.len();
+    let all_exact = exact.len() == methods.len();
     let right = best.right();
     let subject = if level.is_empty() {
         "It is"
     } else {
         "They are"
     };
-    text += &match least(others().filter(|of| !is_level(of)), |of| of.time(when)) {
+    text += &match least(rivals().filter(|method| !is_level(method)), |method| {
+        method.time(when)
+    }) {
         Some(next) => {
             let times = ratio(next.time(when) / best.time(when));
             let next = next.name();
             format!(". {subject} {right} and {times} times as fast as {next}, the next such method")
         }
-        None if all_exact && all.len() > 1 => format!(". All are {right}"),
+        None if all_exact && methods.len() > 1 => format!(". All are {right}"),
         None => format!(". {subject} {right}"),
     };
-    let quickest = least(all.iter().filter(|of| !of.is_exact), |of| of.time(when));
-    if let Some(of) = quickest {
-        let name = of.name();
-        text += &if !of.is_told_apart(best, when) {
+    let quickest = least(methods.iter().filter(|method| !method.is_exact), |method| {
+        method.time(when)
+    });
+    if let Some(quickest) = quickest {
+        let name = quickest.name();
+        text += &if !quickest.is_told_apart(best, when) {
             format!(
                 ". {name} is as fast, as far as can be told, and {}",
-                of.error()
+                quickest.error()
             )
-        } else if of.time(when) < best.time(when) {
-            let times = ratio(best.time(when) / of.time(when));
-            format!(". {name} is {times} times as fast and {}", of.error())
+        } else if quickest.time(when) < best.time(when) {
+            let times = ratio(best.time(when) / quickest.time(when));
+            format!(". {name} is {times} times as fast and {}", quickest.error())
         } else {
             ". No other is faster".into()
         };
@@ -439,19 +460,19 @@ fn sentence(
     text + "."
 }
 
-fn per_frame(of: &Contender, when: When) -> String {
-    format!("{} ms a frame", ms(of.time(when)))
+fn per_frame(method: &Contender, when: When) -> String {
+    format!("{} ms a frame", ms(method.time(when)))
 }
 
-fn none_exact(all: &[Contender]) -> Verdict {
-    let none = match all.iter().find_map(|of| of.condition) {
+fn none_exact(methods: &[Contender]) -> Verdict {
+    let none = match methods.iter().find_map(|method| method.condition) {
         Some(_) => "Each method is wrong on some",
         None => "None is exact here",
     };
     let words = ["is the least wrong", "are the least wrong"];
-    let mut verdict = by_error(all, |of| of.wrong.share(), words);
-    for said in &mut verdict.sentences {
-        *said = format!("{none}. {said}.");
+    let mut verdict = by_error(methods, |method| method.wrong.share(), words);
+    for sentence in &mut verdict.sentences {
+        *sentence = format!("{none}. {sentence}.");
     }
     verdict
 }
@@ -459,19 +480,20 @@ fn none_exact(all: &[Contender]) -> Verdict {
 /// The method with the least error, those that are as right and cannot be told apart from it in
 /// time, and the fastest one beside it, as one sentence without its end. `words` say of one and of
 /// several that they are it.
-fn by_error(all: &[Contender], error: impl Fn(&Contender) -> f64, words: [&str; 2]) -> Verdict {
+fn by_error(methods: &[Contender], error: impl Fn(&Contender) -> f64, words: [&str; 2]) -> Verdict {
     let when = When::AnythingMoves;
-    let Some(least_error) = least(all, &error).map(&error) else {
+    let Some(least_error) = least(methods, &error).map(&error) else {
         return Verdict::default();
     };
-    let Some(best) = least(all.iter().filter(|of| error(of) == least_error), |of| {
-        of.frame
-    }) else {
+    let Some(best) = least(
+        methods.iter().filter(|method| error(method) == least_error),
+        |method| method.frame,
+    ) else {
         return Verdict::default();
     };
-    let others = || all.iter().filter(|of| of.index != best.index);
-    let is_level = |of: &&Contender| !of.is_told_apart(best, when);
-    let equals = others().filter(|of| error(of) == least_error && is_level(of));
+    let rivals = || methods.iter().filter(|method| method.index != best.index);
+    let is_level = |method: &&Contender| !method.is_told_apart(best, when);
+    let equals = rivals().filter(|method| error(method) == least_error && is_level(method));
     let equals: Vec<String> = equals.map(Contender::name).collect();
     let figures = format!("{}, {}", best.error(), per_frame(best, when));
     let mut text = match &equals[..] {
@@ -483,41 +505,54 @@ fn by_error(all: &[Contender], error: impl Fn(&Contender) -> f64, words: [&str; 
             words[1]
         ),
     };
-    let rest = || others().filter(|of| error(of) > least_error);
-    let fastest = least(rest(), |of| of.frame);
-    let is_faster = |of: &&Contender| of.frame < best.frame || is_level(of);
+    let rest = || rivals().filter(|method| error(method) > least_error);
+    let fastest = least(rest(), |method| method.frame);
+    let is_faster = |method: &&Contender| method.frame < best.frame || is_level(method);
     text += &match fastest {
         Some(fastest) if is_faster(&fastest) => format!(". {}", faster(fastest, best, when)),
         Some(_) => ". No other is faster".into(),
         None => String::new(),
     };
-    let next = || least(others(), &error);
+    let next = || least(rivals(), &error);
     Verdict {
-        first: with_level(best, all, |of| error(of) == least_error),
-        runner_up: fastest.filter(is_faster).or_else(next).map(|of| of.index),
+        first: with_level(best, methods, |method| error(method) == least_error),
+        runner_up: fastest
+            .filter(is_faster)
+            .or_else(next)
+            .map(|method| method.index),
         sentences: vec![text],
         ..Verdict::default()
     }
 }
 
 /// The sentences on methods whose frames are too few to tell their times apart.
-fn without_times(all: &[Contender], frames: usize) -> Vec<String> {
-    let is_soft = all.iter().any(|of| of.is_soft);
-    let error = |of: &Contender| if is_soft { of.rmse } else { of.wrong.share() };
+fn without_times(methods: &[Contender], frames: usize) -> Vec<String> {
+    let is_soft = methods.iter().any(|method| method.is_soft);
+    let error = |method: &Contender| {
+        if is_soft {
+            method.rmse
+        } else {
+            method.wrong.share()
+        }
+    };
     let by = |is_named: &dyn Fn(&Contender) -> bool| {
-        let named: Vec<String> = all
+        let named: Vec<String> = methods
             .iter()
-            .filter(|of| is_named(of))
+            .filter(|method| is_named(method))
             .map(Contender::name)
             .collect();
         let are = if named.len() == 1 { "is" } else { "are" };
         format!("{} {are}", named.join(" and "))
     };
-    let exact = all.iter().find(|of| of.is_exact && !is_soft);
-    let said = match (exact, least(all, error)) {
-        (Some(exact), _) => Some(format!("{} {}", by(&|of| of.is_exact), exact.right())),
+    let exact = methods.iter().find(|method| method.is_exact && !is_soft);
+    let sentence = match (exact, least(methods, error)) {
+        (Some(exact), _) => Some(format!(
+            "{} {}",
+            by(&|method| method.is_exact),
+            exact.right()
+        )),
         (None, Some(best)) => {
-            let named = by(&|of| error(of) == error(best));
+            let named = by(&|method| error(method) == error(best));
             Some(format!("{named} the least wrong ({})", best.error()))
         }
         (None, None) => None,
@@ -532,7 +567,7 @@ fn without_times(all: &[Contender], frames: usize) -> Vec<String> {
         format!("{frames} {are} too few to tell times apart: give --frames {LEAST_TURNS} or more.");
     [few]
         .into_iter()
-        .chain(said.map(|said| said + "."))
+        .chain(sentence.map(|sentence| sentence + "."))
         .collect()
 }
 
@@ -548,36 +583,43 @@ fn faster(fastest: &Contender, than: &Contender, when: When) -> String {
 }
 
 /// Judges errors of shares: the least one, and the fastest.
-fn graded(all: &[Contender], rows: &[Row]) -> Verdict {
+fn graded(methods: &[Contender], rows: &[Row]) -> Verdict {
     let words = ["has the least error", "have the least error"];
-    let mut verdict = by_error(all, |of| of.rmse, words);
-    let least_error = least(all, |of| of.rmse).map_or(f64::INFINITY, |of| of.rmse);
+    let mut verdict = by_error(methods, |method| method.rmse, words);
+    let least_error =
+        least(methods, |method| method.rmse).map_or(f64::INFINITY, |method| method.rmse);
     let own = rows
         .iter()
         .filter_map(Row::reference_error)
         .reduce(f64::max);
-    for said in &mut verdict.sentences {
+    for sentence in &mut verdict.sentences {
         if let Some(own) = own.filter(|own| least_error < 10.0 * own) {
-            *said += &format!(
+            *sentence += &format!(
                 ". The reference's own error is {own:.4}: more samples would tell more \
                  (--reference-samples)"
             );
         }
-        *said += ".";
+        *sentence += ".";
     }
     verdict
 }
 
 /// The fastest of methods that are all right enough, with those that cannot be told apart from it.
-fn right_enough(all: &[Contender]) -> Verdict {
+fn right_enough(methods: &[Contender]) -> Verdict {
     let when = When::AnythingMoves;
-    let Some(best) = least(all, |of| of.frame) else {
+    let Some(best) = least(methods, |method| method.frame) else {
         return Verdict::default();
     };
-    let others = || all.iter().filter(|of| of.index != best.index);
-    let level = others().filter(|of| !of.is_told_apart(best, when));
-    let figures =
-        |of: &Contender| format!("{} ({}, {})", of.name(), of.error(), per_frame(of, when));
+    let rivals = || methods.iter().filter(|method| method.index != best.index);
+    let level = rivals().filter(|method| !method.is_told_apart(best, when));
+    let figures = |method: &Contender| {
+        format!(
+            "{} ({}, {})",
+            method.name(),
+            method.error(),
+            per_frame(method, when)
+        )
+    };
     let level: Vec<String> = level.map(figures).collect();
     let level = match &level[..] {
         [] => String::new(),
@@ -585,39 +627,49 @@ fn right_enough(all: &[Contender]) -> Verdict {
     };
     Verdict {
         fastest_exact: best.is_exact.then_some(best.index),
-        first: with_level(best, all, |_| true),
+        first: with_level(best, methods, |_| true),
         is_taken: true,
-        runner_up: least(others(), |of| of.frame).map(|of| of.index),
+        runner_up: least(rivals(), |method| method.frame).map(|method| method.index),
         sentences: vec![format!("Take {}{level}.", figures(best))],
     }
 }
 
 /// That no method keeps to the budgets, and which come closest to each.
-fn none_within(all: &[Contender], budgets: &Budgets) -> Verdict {
+fn none_within(methods: &[Contender], budgets: &Budgets) -> Verdict {
     let mut text = format!("No method keeps to {budgets}");
-    let mut add = |name: &str, figure: &dyn Fn(&Contender) -> f64, told: Told| {
-        if let Some(of) = least(all, figure) {
-            text += &format!("; {name} is {} ({})", of.name(), told(of));
+    let mut add = |name: &str, figure: &dyn Fn(&Contender) -> f64, describe: Told| {
+        if let Some(method) = least(methods, figure) {
+            text += &format!("; {name} is {} ({})", method.name(), describe(method));
         }
     };
     if budgets.frame_ms.is_some() {
-        add("the fastest", &|of| of.slowest.value, |of| {
-            format!("{} ms a frame{}", ms(of.slowest.value), of.slowest.on())
+        add("the fastest", &|method| method.slowest.value, |method| {
+            format!(
+                "{} ms a frame{}",
+                ms(method.slowest.value),
+                method.slowest.on()
+            )
         });
     }
     if budgets.wrong_percent.is_some() {
-        add("the least wrong", &|of| of.most_wrong.value, |of| {
-            let share = 100.0 * of.most_wrong.value;
-            match of.most_wrong.on() {
-                place if place.is_empty() || of.is_exact => of.error(),
-                place => format!("wrong on {share:.3} %{place}"),
-            }
-        });
+        add(
+            "the least wrong",
+            &|method| method.most_wrong.value,
+            |method| {
+                let share = 100.0 * method.most_wrong.value;
+                match method.most_wrong.on() {
+                    place if place.is_empty() || method.is_exact => method.error(),
+                    place => format!("wrong on {share:.3} %{place}"),
+                }
+            },
+        );
     }
     if budgets.memory_bytes.is_some() {
-        add("the smallest", &|of| of.row.bytes() as f64, |of| {
-            bytes(of.row.bytes())
-        });
+        add(
+            "the smallest",
+            &|method| method.row.bytes() as f64,
+            |method| bytes(method.row.bytes()),
+        );
     }
     Verdict {
         sentences: vec![text + "."],
@@ -700,10 +752,10 @@ mod tests {
             run("light_buffer", 0, 21.0, 21.0),
             unavailable("rt_hw"),
         ];
-        let (marked, said) = outcome(&runs);
+        let (marked, sentences) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("light_buffer"));
         assert_eq!(
-            said,
+            sentences,
             [
                 "Take `light_buffer`, whatever moves: 21.0 ms a frame. It is exact here and 4.8 \
                  times as fast as `rt`, the next such method. `nsm` is 2.1 times as fast and wrong \
@@ -719,10 +771,10 @@ mod tests {
             run("crsma_full", 0, 380.0, 34.0),
             run("nsm", 9, 20.0, 10.0),
         ];
-        let (marked, said) = outcome(&runs);
+        let (marked, sentences) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("rt"));
         assert_eq!(
-            said,
+            sentences,
             [
                 "Take `rt` while light or meshes move: 70.0 ms a frame. It is exact here and 5.4 \
                  times as fast as `crsma_full`, the next such method. `nsm` is 3.5 times as fast \
@@ -736,27 +788,28 @@ mod tests {
 
     #[test]
     fn nothing_exact_all_exact_and_level_times() {
-        let (marked, said) = outcome(&[run("nsm", 500, 10.0, 10.0), run("crsm", 20, 40.0, 40.0)]);
+        let (marked, sentences) =
+            outcome(&[run("nsm", 500, 10.0, 10.0), run("crsm", 20, 40.0, 40.0)]);
         assert_eq!(marked, None);
         assert_eq!(
-            said,
+            sentences,
             [
                 "None is exact here. `crsm` is the least wrong (wrong on 0.020 % of the surfaces \
                  that face the light, 40.0 ms a frame). `nsm` is 4.0 times as fast (wrong on 0.500 \
                  % of the surfaces that face the light)."
             ]
         );
-        let (_, said) = outcome(&[run("a", 0, 10.0, 10.0), run("b", 0, 10.2, 10.2)]);
+        let (_, sentences) = outcome(&[run("a", 0, 10.0, 10.0), run("b", 0, 10.2, 10.2)]);
         assert_eq!(
-            said,
+            sentences,
             [
                 "Take `a` or `b`: their times cannot be told apart, 10.0 ms a frame. All are exact \
                  here."
             ]
         );
-        let (_, said) = outcome(&[run("rt", 0, 10.0, 4.0)]);
+        let (_, sentences) = outcome(&[run("rt", 0, 10.0, 4.0)]);
         assert_eq!(
-            said,
+            sentences,
             [
                 "Take `rt`, whatever moves: 10.0 ms a frame (4.00 while only the camera moves). It \
                  is exact here."
@@ -777,9 +830,9 @@ mod tests {
                 run("nsm@bias=0", wrong, 10.1, 10.1),
             ]
         };
-        let (_, said) = outcome(&twice(500));
+        let (_, sentences) = outcome(&twice(500));
         assert_eq!(
-            said,
+            sentences,
             [
                 "None is exact here. `nsm` and `nsm@bias=0` are the least wrong and cannot be told \
                  apart in time (wrong on 0.500 % of the surfaces that face the light, 10.0 ms a \
@@ -801,33 +854,33 @@ mod tests {
 
     #[test]
     fn the_runner_up_is_the_alternative_that_the_sentences_name() {
-        let of = |runs: &[Run]| {
+        let labels = |runs: &[Run]| {
             let [taken, runner_up] = pair(runs, &Budgets::default());
             [taken, runner_up].map(|label| label.unwrap_or_else(|| "none".into()))
         };
         let (rt, exact) = (run("rt", 0, 100.0, 100.0), run("buffer", 0, 21.0, 21.0));
         let (nsm, slow) = (run("nsm", 4_700, 10.0, 8.0), run("slow", 9, 300.0, 300.0));
         assert_eq!(
-            of(&[rt.clone(), exact.clone(), nsm.clone()]),
+            labels(&[rt.clone(), exact.clone(), nsm.clone()]),
             ["buffer", "nsm"]
         );
         assert_eq!(
-            of(&[rt.clone(), exact.clone(), slow.clone()]),
+            labels(&[rt.clone(), exact.clone(), slow.clone()]),
             ["buffer", "rt"]
         );
         assert_eq!(
-            of(&[nsm.clone(), slow.clone()]),
+            labels(&[nsm.clone(), slow.clone()]),
             ["slow", "nsm"],
             "none is exact"
         );
         assert_eq!(
-            of(&[run("a", 9, 1.0, 1.0), run("b", 99, 9.0, 9.0)]),
+            labels(&[run("a", 9, 1.0, 1.0), run("b", 99, 9.0, 9.0)]),
             ["a", "b"]
         );
-        assert_eq!(of(&[exact]), ["buffer", "none"]);
-        assert_eq!(of(&[]), ["none", "none"]);
+        assert_eq!(labels(&[exact]), ["buffer", "none"]);
+        assert_eq!(labels(&[]), ["none", "none"]);
         assert_eq!(
-            of(&[graded("a", 0.1, 9.0), graded("b", 0.2, 1.0)]),
+            labels(&[graded("a", 0.1, 9.0), graded("b", 0.2, 1.0)]),
             ["a", "b"]
         );
         let budgets = Budgets {
@@ -843,34 +896,37 @@ mod tests {
 
     #[test]
     fn of_fewer_than_eight_frames_no_times_are_told_apart_or_called_level() {
-        let few = |of: &mut Run, frames: usize| {
-            let times = &mut of.measured.as_mut().unwrap().frame;
+        let few = |run: &mut Run, frames: usize| {
+            let times = &mut run.measured.as_mut().unwrap().frame;
             times.wall_frames.truncate(frames);
             times.gpu_frames.as_mut().unwrap().truncate(frames);
         };
-        let said = |runs: &[Run], frames: usize| {
+        let judged = |runs: &[Run], frames: usize| {
             let mut runs = runs.to_vec();
             few(&mut runs[0], frames);
-            let (marked, said) = outcome(&runs);
+            let (marked, sentences) = outcome(&runs);
             assert!(
-                !said.iter().any(|said| said.contains("told apart,")),
-                "{said:?}"
+                !sentences.iter().any(|line| line.contains("told apart,")),
+                "{sentences:?}"
             );
-            (marked, said)
+            (marked, sentences)
         };
         let exact = [run("rt", 0, 100.0, 100.0), run("nsm", 9, 10.0, 10.0)];
-        let (marked, told) = said(&exact, 3);
+        let (marked, sentences) = judged(&exact, 3);
         assert_eq!(marked.as_deref(), Some("rt"));
         let few = "frames are too few to tell times apart: give --frames 8 or more.";
-        assert_eq!(told, [format!("3 {few}"), "`rt` is exact here.".into()]);
-        assert!(said(&exact, 8).1[0].starts_with("Take `rt`"));
+        assert_eq!(
+            sentences,
+            [format!("3 {few}"), "`rt` is exact here.".into()]
+        );
+        assert!(judged(&exact, 8).1[0].starts_with("Take `rt`"));
         let wrong = [
             run("crsm", 20, 40.0, 40.0),
             run("crsma", 20, 40.0, 40.0),
             run("nsm", 500, 1.0, 1.0),
         ];
         assert_eq!(
-            said(&wrong, 7).1,
+            judged(&wrong, 7).1,
             [
                 format!("7 {few}"),
                 "`crsm` and `crsma` are the least wrong (wrong on 0.020 % of the surfaces that \
@@ -880,14 +936,14 @@ mod tests {
         );
         let soft = [graded("pcf", 0.1, 10.0), graded("vsm", 0.2, 10.0)];
         assert_eq!(
-            said(&soft, 1).1,
+            judged(&soft, 1).1,
             [
                 few.replace("frames are", "1 frame is"),
                 "`pcf` is the least wrong (RMSE 0.1000).".into()
             ]
         );
         assert_eq!(
-            said(&exact[..1], 1).1[0],
+            judged(&exact[..1], 1).1[0],
             "Take `rt`: 100 ms a frame. It is exact here."
         );
     }
@@ -896,9 +952,9 @@ mod tests {
     fn a_row_of_another_hour_takes_no_part() {
         let mut old = run("quick", 0, 1.0, 1.0);
         old.session = "2026-11-20T03:00:00Z".into();
-        let (marked, said) = outcome(&[run("rt", 0, 50.0, 50.0), old]);
+        let (marked, sentences) = outcome(&[run("rt", 0, 50.0, 50.0), old]);
         assert_eq!(marked.as_deref(), Some("rt"));
-        assert_eq!(said, ["Take `rt`: 50.0 ms a frame. It is exact here."]);
+        assert_eq!(sentences, ["Take `rt`: 50.0 ms a frame. It is exact here."]);
     }
 
     #[test]
@@ -913,23 +969,26 @@ mod tests {
             wrong_percent,
             memory_bytes: None,
         };
-        let (_, said) = within(&runs, &budget(None, Some(1.0)));
+        let (_, sentences) = within(&runs, &budget(None, Some(1.0)));
         assert_eq!(
-            said,
+            sentences,
             [
                 "Within less than 1 % wrong: 2 of 3 methods.",
                 "Take `pssm` (wrong on 0.400 % of the surfaces that face the light, 8.00 ms a \
                  frame).",
             ]
         );
-        let (_, said) = within(&runs, &budget(Some(10.0), None));
-        assert!(said[1].contains("`pssm` is the least wrong"), "{said:?}");
-        let (marked, said) = within(&runs, &budget(Some(40.0), None));
-        assert_eq!(marked.as_deref(), Some("rt"), "{said:?}");
-        let (marked, said) = within(&runs, &budget(Some(6.0), Some(1.0)));
+        let (_, sentences) = within(&runs, &budget(Some(10.0), None));
+        assert!(
+            sentences[1].contains("`pssm` is the least wrong"),
+            "{sentences:?}"
+        );
+        let (marked, sentences) = within(&runs, &budget(Some(40.0), None));
+        assert_eq!(marked.as_deref(), Some("rt"), "{sentences:?}");
+        let (marked, sentences) = within(&runs, &budget(Some(6.0), Some(1.0)));
         assert_eq!(marked, None);
         assert_eq!(
-            said,
+            sentences,
             [
                 "No method keeps to at most 6 ms a frame and less than 1 % wrong; the fastest is \
                  `nsm` (5.00 ms a frame); the least wrong is `rt` (exact here)."
@@ -939,8 +998,8 @@ mod tests {
             memory_bytes: Some(1 << 20),
             ..Budgets::default()
         };
-        let (_, said) = within(&runs, &memory);
-        assert!(said[0].starts_with("No method keeps to at most 1.0 MiB; the smallest is"));
+        let (_, sentences) = within(&runs, &memory);
+        assert!(sentences[0].starts_with("No method keeps to at most 1.0 MiB; the smallest is"));
     }
 
     #[test]
@@ -962,19 +1021,25 @@ mod tests {
             wrong_percent,
             memory_bytes: None,
         };
-        let (marked, said) = within(&runs, &budget(Some(30.0), None));
+        let (marked, sentences) = within(&runs, &budget(Some(30.0), None));
         assert_eq!(marked, None);
         let on_roofs = "`rt` takes 53.7 ms on `roofs` (mean 29.4).";
-        assert_eq!(said[0], "Within at most 30 ms a frame: 2 of 3 methods.");
-        assert!(said[1].contains("`nsm` is the least wrong"), "{said:?}");
-        assert_eq!(said.last().unwrap(), on_roofs);
-        let (_, said) = within(&runs, &budget(None, Some(1.5)));
-        assert!(said[1].starts_with("Take `nsm`"), "{said:?}");
-        let wrong = "`pssm` is wrong on 2.120 % on `roofs` (1.260 % in all).";
-        assert_eq!(said.last().unwrap(), wrong);
-        let (_, said) = within(&runs, &budget(Some(8.5), None));
         assert_eq!(
-            said,
+            sentences[0],
+            "Within at most 30 ms a frame: 2 of 3 methods."
+        );
+        assert!(
+            sentences[1].contains("`nsm` is the least wrong"),
+            "{sentences:?}"
+        );
+        assert_eq!(sentences.last().unwrap(), on_roofs);
+        let (_, sentences) = within(&runs, &budget(None, Some(1.5)));
+        assert!(sentences[1].starts_with("Take `nsm`"), "{sentences:?}");
+        let wrong = "`pssm` is wrong on 2.120 % on `roofs` (1.260 % in all).";
+        assert_eq!(sentences.last().unwrap(), wrong);
+        let (_, sentences) = within(&runs, &budget(Some(8.5), None));
+        assert_eq!(
+            sentences,
             [
                 "No method keeps to at most 8.5 ms a frame; the fastest is `pssm` (9.00 ms a \
                  frame on `roofs`).",
@@ -993,7 +1058,7 @@ mod tests {
             outcome(&[plant, run("rt", 0, 50.0, 50.0)]).1.remove(0)
         };
         let wrong = "wrong on 4.800 % of the surfaces that face the light";
-        for (said, first) in [
+        for (sentence, first) in [
             (error(4_780, 26), "without 95.600 % of the shadow, "),
             (
                 error(100, 28_500),
@@ -1002,7 +1067,7 @@ mod tests {
             (error(1_200, 3_606), ""),
         ] {
             let expected = format!("`nsm` is 5.6 times as fast and {first}{wrong}.");
-            assert!(said.ends_with(&expected), "{said}");
+            assert!(sentence.ends_with(&expected), "{sentence}");
         }
     }
 
@@ -1019,10 +1084,10 @@ mod tests {
             doubtful("hybrid_pcf", 0, 1_200, 30.0),
             doubtful("nsm", 51, 16_675, 9.0),
         ];
-        let (marked, said) = outcome(&runs);
+        let (marked, sentences) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("hybrid_pcf"));
         assert_eq!(
-            said,
+            sentences,
             [
                 "Of the 42 % that can be judged: Take `hybrid_pcf`: 30.0 ms a frame. It is right \
                  on all of these. `nsm` is 3.3 times as fast and wrong on 0.121 % of these.",
@@ -1035,11 +1100,14 @@ mod tests {
             &runs[..1],
             &[doubtful("a", 4, 9, 1.0), doubtful("b", 3, 9, 1.0)],
         ] {
-            let (_, said) = outcome(runs);
-            assert!(said.iter().all(|line| !line.contains("exact")), "{said:?}");
+            let (_, sentences) = outcome(runs);
             assert!(
-                said[0].starts_with("Of the 42 %") && said.len() == 2,
-                "{said:?}"
+                sentences.iter().all(|line| !line.contains("exact")),
+                "{sentences:?}"
+            );
+            assert!(
+                sentences[0].starts_with("Of the 42 %") && sentences.len() == 2,
+                "{sentences:?}"
             );
         }
     }
@@ -1048,11 +1116,11 @@ mod tests {
     fn a_share_that_is_off_is_not_exact_though_it_is_right_at_one_half() {
         let mut soft = run("pcf", 0, 5.0, 5.0);
         soft.measured.as_mut().unwrap().graded.rmse_outside_band = 0.02;
-        let (marked, said) = outcome(&[soft, run("rt", 0, 50.0, 50.0)]);
+        let (marked, sentences) = outcome(&[soft, run("rt", 0, 50.0, 50.0)]);
         assert_eq!(marked.as_deref(), Some("rt"));
         assert!(
-            said[0].contains("`pcf` is 10 times as fast and off in its shades"),
-            "{said:?}"
+            sentences[0].contains("`pcf` is 10 times as fast and off in its shades"),
+            "{sentences:?}"
         );
     }
 
@@ -1067,29 +1135,29 @@ mod tests {
             elsewhere(run("rt", 0, 60.0, 60.0)),
             run("quick", 0, 1.0, 1.0),
         ];
-        let (marked, said) = outcome(&runs);
+        let (marked, sentences) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("rt"));
-        assert_eq!(said, ["Take `rt`: 55.0 ms a frame. It is exact here."]);
+        assert_eq!(sentences, ["Take `rt`: 55.0 ms a frame. It is exact here."]);
         // Wrong in one view is wrong.
         let runs = [run("rt", 0, 1.0, 1.0), elsewhere(run("rt", 7, 1.0, 1.0))];
         assert!(outcome(&runs).1[0].starts_with("None is exact here"));
     }
 
-    /// A run of what `of` was tuned to; of the defaults, if nothing is set.
-    fn tuned(of: &str, set: &[(&str, serde_json::Value)], wrong: u64, frame: f64) -> Run {
+    /// A run of what `base` was tuned to; of the defaults, if nothing is set.
+    fn tuned(base: &str, set: &[(&str, serde_json::Value)], wrong: u64, frame: f64) -> Run {
         let set = set
             .iter()
             .map(|(name, value)| ((*name).to_owned(), value.clone()));
-        let found = Tuned {
-            of: of.into(),
+        let tuned = Tuned {
+            of: base.into(),
             set: set.collect(),
             chosen_on: vec!["side".into(), "back".into()],
             tried: 40,
             is_whole: true,
             ..Tuned::default()
         };
-        let mut run = run(&found.argument(), wrong, frame, frame);
-        run.tuned = Some(found);
+        let mut run = run(&tuned.argument(), wrong, frame, frame);
+        run.tuned = Some(tuned);
         run
     }
 
@@ -1115,16 +1183,22 @@ mod tests {
         insta::assert_snapshot!(outcome(&runs).1.join("\n"));
         // Where the defaults are better after all, they are what is advised.
         let worse = [run("nsm", 5, 10.0, 10.0), tuned("nsm", &set, 40, 12.0)];
-        let said = outcome(&worse).1;
-        assert!(said[0].contains("`nsm` is the least wrong"), "{said:?}");
-        assert!(!said[0].contains("slope_bias"), "{said:?}");
+        let sentences = outcome(&worse).1;
+        assert!(
+            sentences[0].contains("`nsm` is the least wrong"),
+            "{sentences:?}"
+        );
+        assert!(!sentences[0].contains("slope_bias"), "{sentences:?}");
         // A budget that only the defaults keep to.
         let quick = Budgets {
             frame_ms: Some(11.0),
             ..Budgets::default()
         };
-        let said = within(&runs, &quick).1;
-        assert!(said[1].contains("`nsm` is the least wrong"), "{said:?}");
+        let sentences = within(&runs, &quick).1;
+        assert!(
+            sentences[1].contains("`nsm` is the least wrong"),
+            "{sentences:?}"
+        );
     }
 
     #[test]

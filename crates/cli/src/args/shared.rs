@@ -125,8 +125,8 @@ pub enum Materials {
 }
 
 impl From<Materials> for MaterialUse {
-    fn from(of: Materials) -> Self {
-        match of {
+    fn from(materials: Materials) -> Self {
+        match materials {
             Materials::All => Self::All,
             Materials::Color => Self::Color,
             Materials::Ignore => Self::Ignore,
@@ -145,8 +145,8 @@ pub enum ConcavePolygons {
 }
 
 impl From<ConcavePolygons> for Concave {
-    fn from(of: ConcavePolygons) -> Self {
-        match of {
+    fn from(polygons: ConcavePolygons) -> Self {
+        match polygons {
             ConcavePolygons::Cut => Self::Cut,
             ConcavePolygons::Fan => Self::Fan,
         }

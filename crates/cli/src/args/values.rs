@@ -46,11 +46,13 @@ pub fn gate(text: &str) -> Result<Gate, String> {
     };
     let [method, figure, value] = parts().ok_or(expected)?;
     let mut figures = Figure::ALL.into_iter();
-    let Some(known) = figures.find(|known| known.word() == figure) else {
-        let all = Figure::ALL.map(Figure::word).join(", ");
-        return Err(format!("unknown figure `{figure}`; expected one of {all}"));
+    let Some(quantity) = figures.find(|quantity| quantity.word() == figure) else {
+        let words = Figure::ALL.map(Figure::word).join(", ");
+        return Err(format!(
+            "unknown figure `{figure}`; expected one of {words}"
+        ));
     };
-    let most = match known {
+    let most = match quantity {
         Figure::Wrong | Figure::Missing | Figure::False => percent(value),
         Figure::Frame => milliseconds(value),
         Figure::Memory => bytes(value).map(|bytes| bytes as f64),
@@ -58,7 +60,7 @@ pub fn gate(text: &str) -> Result<Gate, String> {
     };
     Ok(Gate {
         method: method.into(),
-        figure: known,
+        figure: quantity,
         most: most.map_err(|why| format!("{figure}: {why}"))?,
     })
 }
@@ -72,7 +74,7 @@ mod tests {
         let most = |text| gate(text).map(|gate| (gate.method, gate.most));
         assert_eq!(most("nsm: wrong > 0.1%"), Ok(("nsm".into(), 0.1)));
         assert_eq!(most("crsm@n=1: frame>3ms"), Ok(("crsm@n=1".into(), 3.0)));
-        for (text, told) in [
+        for (text, message) in [
             ("nsm wrong > 1%", "METHOD: FIGURE > VALUE"),
             ("nsm: wrong < 1%", "METHOD: FIGURE > VALUE"),
             (
@@ -83,7 +85,7 @@ mod tests {
             ("nsm: frame > 1", "frame: no unit"),
         ] {
             let error = gate(text).unwrap_err();
-            assert!(error.contains(told), "{text}: {error}");
+            assert!(error.contains(message), "{text}: {error}");
         }
     }
 }

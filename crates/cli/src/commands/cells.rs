@@ -26,16 +26,16 @@ use std::{ffi::OsString, path::Path};
 /// written.
 pub fn plan(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let file = args.plan.as_deref().unwrap_or(Path::new(FILE));
-    let of = Loaded::new(args, gpu, std::env::args_os())?;
-    let session = Session::new(&of.gpu, &Terminal);
-    check_all(&of.comparisons, session)?;
+    let loaded = Loaded::new(args, gpu, std::env::args_os())?;
+    let session = Session::new(&loaded.gpu, &Terminal);
+    check_all(&loaded.comparisons, session)?;
     let words = std::env::args_os().skip(1).map(OsString::into_string);
     let words = words.collect::<Result<Vec<String>, OsString>>();
     let words = words.map_err(|word| {
         let text = format!("--plan: {word:?} is not UTF-8; rename it, for plans are text");
         CliError::Input(text)
     })?;
-    let plan = many_machines::plan(&scenes(&of), session, words)?;
+    let plan = many_machines::plan(&scenes(&loaded), session, words)?;
     write_whole(file, plan.text().as_bytes())?;
     let (cells, file) = (plural(plan.cells.len(), "cell"), file.display());
     note(&format!(
@@ -92,8 +92,8 @@ pub fn measure(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-fn scenes(of: &Loaded) -> Vec<SceneCells<'_>> {
-    let scenes = of.comparisons.iter().zip(&of.targets);
+fn scenes(loaded: &Loaded) -> Vec<SceneCells<'_>> {
+    let scenes = loaded.comparisons.iter().zip(&loaded.targets);
     let scenes = scenes.map(|(comparison, target)| SceneCells {
         comparison,
         folder: target.name.as_deref(),

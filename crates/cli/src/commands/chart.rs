@@ -35,11 +35,11 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
         note(&line);
     }
     if figure.panels.is_empty() {
-        let of = args
+        let size_text = args
             .size
             .map_or(String::new(), |size| format!(" of {size}"));
         return Err(CliError::Input(format!(
-            "there is nothing to draw: no run{of} has measurements"
+            "there is nothing to draw: no run{size_text} has measurements"
         )));
     }
     let svg = charts::svg(&figure)?;

@@ -77,17 +77,17 @@ fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         None
     };
     let trial = trial(args, adapter.as_ref())?;
-    let mut found = Vec::new();
+    let mut outcomes = Vec::new();
     for (argument, path) in args.graphs.iter().zip(paths) {
         let checked = match path {
             Ok(path) => planning::check(&path, &registry, &sources, &trial).map_err(Fault::Graph),
             Err(error) => Err(Fault::Missing(error.to_string())),
         };
-        found.push((argument.as_str(), checked));
+        outcomes.push((argument.as_str(), checked));
     }
     match args.format {
-        CheckFormat::Text => text(&found),
-        CheckFormat::Json => json(&found),
+        CheckFormat::Text => text(&outcomes),
+        CheckFormat::Json => json(&outcomes),
     }
 }
 
@@ -149,11 +149,11 @@ enum Fault {
 /// The arguments in their order, and what came of them.
 type Found<'a> = (&'a str, Result<Checked, Fault>);
 
-fn text(found: &[Found]) -> Result<(), CliError> {
+fn text(outcomes: &[Found]) -> Result<(), CliError> {
     let mut faults = GraphFaults::default();
     let mut fine = String::new();
     let mut missing = Vec::new();
-    for (argument, checked) in found {
+    for (argument, checked) in outcomes {
         match checked {
             Ok(Checked {
                 graph,
@@ -194,8 +194,8 @@ fn refused_lights(graph: &Graph, plan: &Plan) -> String {
     }
 }
 
-fn json(found: &[Found]) -> Result<(), CliError> {
-    let of = |(argument, checked): &Found| match checked {
+fn json(outcomes: &[Found]) -> Result<(), CliError> {
+    let file_report = |(argument, checked): &Found| match checked {
         Ok(Checked { graph, plan, .. }) => {
             let warnings = graph.warnings().iter().chain(plan.warnings());
             FileReport::new(argument, Some(plan.passes().len()), warnings)
@@ -203,14 +203,17 @@ fn json(found: &[Found]) -> Result<(), CliError> {
         Err(Fault::Graph(diagnostics)) => FileReport::new(argument, None, diagnostics.iter()),
         Err(Fault::Missing(message)) => FileReport::missing(argument, message.clone()),
     };
-    let report = CheckReport::new(found.iter().map(of).collect());
+    let report = CheckReport::new(outcomes.iter().map(file_report).collect());
     print(&to_text(&report))?;
-    let faulty = found.iter().filter(|(_, checked)| checked.is_err()).count();
+    let faulty = outcomes
+        .iter()
+        .filter(|(_, checked)| checked.is_err())
+        .count();
     match faulty {
         0 => Ok(()),
         _ => Err(CliError::Input(format!(
             "{faulty} of {} cannot be used; the diagnostics are on standard output",
-            found.len()
+            outcomes.len()
         ))),
     }
 }

@@ -87,8 +87,8 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
     }
     let mut measured = Measured::default();
-    let mut all = comparisons.into_iter().zip(&targets);
-    let outcome = all.try_for_each(|(comparison, target)| {
+    let mut comparisons = comparisons.into_iter().zip(&targets);
+    let outcome = comparisons.try_for_each(|(comparison, target)| {
         let baseline = baseline.as_ref();
         measure(args, &comparison, baseline, target, session, &mut measured)
     });
@@ -279,7 +279,7 @@ struct Measured {
 /// A scene with the views or paths that the arguments select.
 fn views(
     args: &CompareArgs,
-    of: &SceneArgs,
+    scene_args: &SceneArgs,
     methods: &[Method],
     session: Session,
 ) -> Result<(Arc<Scene>, Vec<ViewOrPath>), CliError> {
@@ -288,12 +288,12 @@ fn views(
         mut views,
         further,
         paths: own,
-    } = SceneSelection::load(of)?;
+    } = SceneSelection::load(scene_args)?;
     views.extend(further);
     let scene = Arc::new(scene);
-    let light = light_name(of, methods, &scene, session);
-    let views = match (&args.path, &of.light) {
-        (Some(name), _) => paths(of, &scene, &own, name, light)?,
+    let light = light_name(scene_args, methods, &scene, session);
+    let views = match (&args.path, &scene_args.light) {
+        (Some(name), _) => paths(scene_args, &scene, &own, name, light)?,
         (None, Some(_)) => views.into_iter().map(ViewOrPath::Still).collect(),
         (None, None) => {
             let views = under_lights(&scene, views, light)?.into_iter();
@@ -446,7 +446,8 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
     match args.format {
         Format::Table => {
             let is_terminal = std::io::stdout().is_terminal();
-            print(&summaries.iter().map(|of| of.text(is_terminal)).join("\n"))?;
+            let mut texts = summaries.iter().map(|summary| summary.text(is_terminal));
+            print(&texts.join("\n"))?;
             for (viewport, lights) in matrices::by_light(results) {
                 let head = format!("By light, {}: wrong pixels, frame, memory", size(viewport));
                 print(&format!("\n{head}\n{}\n", terminal(&lights)))?;
@@ -474,20 +475,21 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
 }
 
 /// Prints the scenes that have results beside each other, and writes the page of all.
-fn overview(args: &CompareArgs, targets: &[Target], all: &[Results]) -> Result<(), CliError> {
+fn overview(args: &CompareArgs, targets: &[Target], results: &[Results]) -> Result<(), CliError> {
     let names = targets.iter().filter_map(|target| target.name.as_deref());
-    let summaries: Vec<Vec<Summary>> = all.iter().map(summary_table::summaries).collect();
+    let summaries: Vec<Vec<Summary>> = results.iter().map(summary_table::summaries).collect();
     let summaries = names.zip(&summaries);
-    let summaries = summaries.flat_map(|(name, of)| of.iter().map(move |summary| (name, summary)));
+    let summaries = summaries
+        .flat_map(|(name, summaries)| summaries.iter().map(move |summary| (name, summary)));
     let overview = Overview::new(&summaries.collect::<Vec<_>>());
     match (args.format, overview) {
-        (Format::Json, _) => print(&json::to_text(&all))?,
+        (Format::Json, _) => print(&json::to_text(&results))?,
         (Format::Table, Some(overview)) => print(&format!("\n{}", overview.text()))?,
         (Format::Markdown, Some(overview)) => print(&overview.markdown())?,
         (_, None) => {}
     }
     let folders = targets.iter().map(|target| target.folder.clone());
-    let folders: Vec<PathBuf> = folders.take(all.len()).collect();
+    let folders: Vec<PathBuf> = folders.take(results.len()).collect();
     show_scenes(&folders, &args.out.join(page::FILE))
 }
 
@@ -521,8 +523,8 @@ fn what_is_kept(
     }
     match &target.name {
         Some(name) => {
-            let all = args.scene.scenes.len();
-            format!("scenes finished: {finished} of {all}; {name}: {kept}")
+            let total = args.scene.scenes.len();
+            format!("scenes finished: {finished} of {total}; {name}: {kept}")
         }
         None => kept,
     }

@@ -117,7 +117,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 fn show(profiles: &[Profile]) -> Result<(), CliError> {
     match profiles {
         [profile] => print(&report(profile)),
-        all => print(&matrices(all)),
+        profiles => print(&matrices(profiles)),
     }
 }
 

@@ -89,8 +89,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             let (contents, growth) = frame::render(session, graph, plan, &mut provider, &names)?;
             print(&growth.text())?;
-            for said in write_all(graph, saves, &decodings, &contents) {
-                print(&said?)?;
+            for line in write_all(graph, saves, &decodings, &contents) {
+                print(&line?)?;
             }
         }
         if let Some(verdict) = poisoned {

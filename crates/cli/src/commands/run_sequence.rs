@@ -72,8 +72,8 @@ fn path(
     name: &str,
 ) -> Result<ViewOrPath, CliError> {
     let light = args.scene.light_name();
-    let mut found = paths(&args.scene, scene, own, name, light)?.into_iter();
-    match (found.next(), found.next()) {
+    let mut selected = paths(&args.scene, scene, own, name, light)?.into_iter();
+    match (selected.next(), selected.next()) {
         (Some(path), None) => Ok(path),
         _ => Err(CliError::Usage(
             "--save takes the pictures of one path under one light; name them".into(),
@@ -116,7 +116,7 @@ pub fn record(
         let files = saves.iter().map(|save| of_frame(save, index));
         let files: Vec<Save> = files.collect();
         write_all(&preset.name, &files, &decodings, &contents)
-            .try_for_each(|said| said.map(drop))?;
+            .try_for_each(|line| line.map(drop))?;
         step.set_done(index as u64 + 1);
     }
     step.end();

@@ -104,9 +104,9 @@ fn front(table: &Shown, kept: bool) -> Panel {
 /// The figures of a row, as the table has them.
 fn about(table: &Shown, index: usize) -> String {
     let cells = table.table.heads.iter().zip(&table.table.rows[index]);
-    let told = cells.skip(1).filter(|(_, cell)| *cell != "–");
-    let told = told.map(|(head, cell)| format!("\n{head}: {cell}"));
-    table.summary.rows[index].label.clone() + &told.collect::<String>()
+    let figures = cells.skip(1).filter(|(_, cell)| *cell != "–");
+    let figures = figures.map(|(head, cell)| format!("\n{head}: {cell}"));
+    table.summary.rows[index].label.clone() + &figures.collect::<String>()
 }
 
 /// Returns the mark of a method as SVG, in the colour and shape that it has in all charts of
@@ -143,15 +143,15 @@ pub fn growths(tables: &[Shown]) -> String {
         let alike = (0..tables.len()).filter(|other| key(&tables[*other]) == key(table));
         let alike: Vec<usize> = alike.collect();
         let viewport = size(table.summary.viewport);
-        let mut add = |of: &[usize], [title, x]: [&str; 2], kept, place: Place| {
-            let rows = of.iter().flat_map(|index| {
+        let mut add = |indices: &[usize], [title, x]: [&str; 2], kept, place: Place| {
+            let rows = indices.iter().flat_map(|index| {
                 let table = &tables[*index];
                 table.summary.rows.iter().map(move |row| (table, row))
             });
             let (panel, ticks) = growth(rows, [title, x], kept, place);
             if !panel.series.is_empty() {
                 let panels = figure(tables, vec![panel]);
-                html += &halves(&Figure { ticks, ..panels }, of, Some(kept));
+                html += &halves(&Figure { ticks, ..panels }, indices, Some(kept));
             }
         };
         for kept in times(tables).iter().copied() {

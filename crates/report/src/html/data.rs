@@ -92,20 +92,20 @@ fn conditions(source: &Source) -> Conditions<'_> {
     }
 }
 
-fn table<'a>(of: &'a Shown) -> Table<'a> {
+fn table<'a>(shown: &'a Shown) -> Table<'a> {
     let line = |row: &'a Row| Line {
         label: &row.label,
         method: &row.method,
         wrong: row.wrong().outside_band,
     };
     Table {
-        source: of.source,
-        viewport: of.summary.viewport,
-        of: &of.title,
-        views: of.summary.views(),
-        sentences: of.summary.verdict().sentences,
-        conditions: of.summary.conditions(),
-        notes: of.summary.notes(),
-        rows: of.summary.rows.iter().map(line).collect(),
+        source: shown.source,
+        viewport: shown.summary.viewport,
+        of: &shown.title,
+        views: shown.summary.views(),
+        sentences: shown.summary.verdict().sentences,
+        conditions: shown.summary.conditions(),
+        notes: shown.summary.notes(),
+        rows: shown.summary.rows.iter().map(line).collect(),
     }
 }

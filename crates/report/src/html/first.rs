@@ -37,34 +37,34 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
     let row = |index: Option<usize>| table.summary.rows.get(index?);
     let (taken, runner_up) = (row(verdict.first.first().copied())?, row(verdict.runner_up));
     let (run, judged) = worst_view(runner_up.unwrap_or(taken))?;
-    let told = |row: &Row, run: &Run, of: &Measured| {
+    let caption_of = |row: &Row, run: &Run, measured: &Measured| {
         let (sign, label) = (sign(tables, &row.method), xml(&row.label));
-        let frame = frame_in_words(frame(of)?);
+        let frame = frame_in_words(frame(measured)?);
         let time = row.frame_ms(table.by_wall).map_or("–".into(), ms);
         let error = error(table, row);
-        let here = if row.views() > 1 && !table.summary.is_soft() && !is_right(row) {
-            let here = percent(of.wrong_outside_band(), run.pixels.facing_light);
-            format!(" ({here} on this view)")
+        let suffix = if row.views() > 1 && !table.summary.is_soft() && !is_right(row) {
+            let share = percent(measured.wrong_outside_band(), run.pixels.facing_light);
+            format!(" ({share} on this view)")
         } else {
             String::new()
         };
         Some(format!(
-            "<b>{sign}{label}</b>{frame}: {error}{here}, {time} ms"
+            "<b>{sign}{label}</b>{frame}: {error}{suffix}, {time} ms"
         ))
     };
-    let (its_run, of) = on_view(taken, &run.view)?;
+    let (its_run, measured) = on_view(taken, &run.view)?;
     let mut shown = vec![
         reference(run, frame(judged)?),
         Figure {
             run: its_run,
-            frame: frame(of)?,
+            frame: frame(measured)?,
             is_reference: false,
             kind: "shaded",
             alt: format!("{} on {}, shaded", taken.label, run.view),
-            caption: told(taken, its_run, of)?,
+            caption: caption_of(taken, its_run, measured)?,
         },
     ];
-    let caption = runner_up.map(|row| Some((row, told(row, run, judged)?)));
+    let caption = runner_up.map(|row| Some((row, caption_of(row, run, judged)?)));
     match caption.flatten() {
         Some((row, caption)) if is_right(row) => {
             let text = format!("<p>{caption}. It has no wrong pixel to show.</p>");
@@ -92,7 +92,7 @@ fn reference(run: &Run, frame: Option<usize>) -> Figure<'_> {
 }
 
 /// The wrong pixels of a row on one of its views.
-fn wrong<'a>(row: &Row, (run, of): (&'a Run, &Measured), caption: &str) -> Option<Figure<'a>> {
+fn wrong<'a>(row: &Row, (run, judged): (&'a Run, &Measured), caption: &str) -> Option<Figure<'a>> {
     let colours = if run.is_hard() {
         "blue lights a shadow, red shadows light"
     } else {
@@ -100,7 +100,7 @@ fn wrong<'a>(row: &Row, (run, of): (&'a Run, &Measured), caption: &str) -> Optio
     };
     Some(Figure {
         run,
-        frame: frame(of)?,
+        frame: frame(judged)?,
         is_reference: false,
         kind: "error",
         alt: format!("wrong pixels of {} on {}: {colours}", row.label, run.view),
@@ -109,8 +109,8 @@ fn wrong<'a>(row: &Row, (run, of): (&'a Run, &Measured), caption: &str) -> Optio
 }
 
 /// The frame of a camera path that the pictures show; the outer `None` without pictures.
-fn frame(of: &Measured) -> Option<Option<usize>> {
-    Some(of.images.as_ref()?.frame)
+fn frame(measured: &Measured) -> Option<Option<usize>> {
+    Some(measured.images.as_ref()?.frame)
 }
 
 /// A comma and the frame of a camera path; nothing for a view.
@@ -120,9 +120,9 @@ fn frame_in_words(frame: Option<usize>) -> String {
 
 /// The run on the view where a method is wrong the most; of equal ones the first.
 fn worst_view<'a>(row: &Row<'a>) -> Option<(&'a Run, &'a Measured)> {
-    let share = |(run, of): &(&Run, &Measured)| {
-        let wrong = of.wrong_outside_band() as f64 / run.pixels.facing_light.max(1) as f64;
-        (wrong, of.graded.rmse)
+    let share = |(run, measured): &(&Run, &Measured)| {
+        let wrong = measured.wrong_outside_band() as f64 / run.pixels.facing_light.max(1) as f64;
+        (wrong, measured.graded.rmse)
     };
     row.runs().reduce(|worst, next| {
         if share(&next) > share(&worst) {
@@ -143,41 +143,41 @@ fn is_right(row: &Row) -> bool {
 
 /// The error of a row as the verdict ranks it.
 fn error(table: &Shown, row: &Row) -> String {
-    let of = row.wrong();
+    let wrong = row.wrong();
     if table.summary.is_soft() {
         return format!("RMSE {:.4}", row.rmse().unwrap_or(0.0));
     }
-    let judged = of.facing_light.saturating_sub(of.band);
-    let (all, which) = if of.band as f64 > MAX_BAND * of.facing_light as f64 {
+    let judged = wrong.facing_light.saturating_sub(wrong.band);
+    let (whole, which) = if wrong.band as f64 > MAX_BAND * wrong.facing_light as f64 {
         (judged, " of what can be judged")
     } else {
-        (of.facing_light, "")
+        (wrong.facing_light, "")
     };
     if is_right(row) {
         format!("no wrong pixel{which}")
     } else {
-        format!("{} wrong{which}", percent(of.outside_band, all))
+        format!("{} wrong{which}", percent(wrong.outside_band, whole))
     }
 }
 
 fn html(figures: &[Figure]) -> String {
-    let figure = |of: &Figure| {
-        let [wide, high] = of.run.viewport;
-        let label = (!of.is_reference).then(|| of.run.method_label());
+    let figure = |picture: &Figure| {
+        let [wide, high] = picture.run.viewport;
+        let label = (!picture.is_reference).then(|| picture.run.method_label());
         let label = label.map_or(String::new(), |label| {
             format!(" data-label=\"{}\"", xml(&label))
         });
-        let frame = of
+        let frame = picture
             .frame
             .map_or(String::new(), |frame| format!(" data-frame=\"{frame}\""));
         format!(
             "<figure><button type=\"button\" data-view=\"{}\" data-kind=\"{}\"{label}{frame}>\
              <img width=\"{wide}\" height=\"{high}\" alt=\"{}\"></button>\
              <figcaption>{}</figcaption></figure>\n",
-            xml(&of.run.view),
-            of.kind,
-            xml(&of.alt),
-            of.caption
+            xml(&picture.run.view),
+            picture.kind,
+            xml(&picture.alt),
+            picture.caption
         )
     };
     figures.iter().map(figure).collect()

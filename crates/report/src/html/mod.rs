@@ -60,12 +60,12 @@ pub fn page(sources: &[Source], reports: &[Report]) -> Page {
 }
 
 fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
-    let all = sources.iter().enumerate().flat_map(|(index, source)| {
+    let summaries = sources.iter().enumerate().flat_map(|(index, source)| {
         let summaries = summaries(&source.results).into_iter();
         summaries.map(move |summary| (index, summary))
     });
-    let all: Vec<(usize, Summary)> = all.collect();
-    let tables = shown(sources, &all);
+    let summaries: Vec<(usize, Summary)> = summaries.collect();
+    let tables = shown(sources, &summaries);
     let frame = include_str!("report.html")
         .replace("/*STYLE*/", include_str!("report.css"))
         .replace("/*SCRIPT*/", &SCRIPTS.concat())

@@ -110,7 +110,7 @@ impl Pictures {
         for file in &candidates {
             let source = &sources[file.source];
             let path = source.folder_of(file.run).join(&file.name);
-            let Ok(length) = fs::metadata(&path).map(|found| found.len() as usize) else {
+            let Ok(length) = fs::metadata(&path).map(|metadata| metadata.len() as usize) else {
                 continue;
             };
             // Its letters, and what names it.
@@ -127,11 +127,11 @@ impl Pictures {
             pictures.place(source, file);
         }
         if !left_out.is_empty() {
-            let all: usize = left_out.values().sum();
+            let count: usize = left_out.values().sum();
             let mut each = left_out.iter().map(|(kind, n)| format!("{n} of {kind}"));
             pictures.left_out.push(format!(
                 "{} had no room in this page: {}; they are in the folders of the results",
-                plural(all, "picture"),
+                plural(count, "picture"),
                 each.join(", ")
             ));
         }
@@ -139,32 +139,38 @@ impl Pictures {
     }
 
     /// The newest file, where it belongs.
-    fn place(&mut self, source: &Source, of: &EmbedCandidate) {
+    fn place(&mut self, source: &Source, candidate: &EmbedCandidate) {
         let file = self.files.len() - 1;
-        let run = &source.results.runs[of.run];
-        if of.kind == Kind::Graph {
+        let run = &source.results.runs[candidate.run];
+        if candidate.kind == Kind::Graph {
             self.graphs.push(Graph {
-                source: of.source,
+                source: candidate.source,
                 method: run.preset.clone(),
                 file,
             });
             return;
         }
-        let label = (of.kind != Kind::Reference).then(|| run.method_label());
+        let label = (candidate.kind != Kind::Reference).then(|| run.method_label());
         let is_of = |set: &Set| {
             (set.source, &set.view, set.viewport, &set.label, set.frame)
-                == (of.source, &run.view, run.viewport, &label, of.frame)
+                == (
+                    candidate.source,
+                    &run.view,
+                    run.viewport,
+                    &label,
+                    candidate.frame,
+                )
         };
         let set = find_or_push(&mut self.sets, is_of, || Set {
-            source: of.source,
+            source: candidate.source,
             view: run.view.clone(),
             viewport: run.viewport,
             label: label.clone(),
-            frame: of.frame,
+            frame: candidate.frame,
             graded: !run.is_hard(),
             ..Set::default()
         });
-        let place = match of.kind {
+        let place = match candidate.kind {
             Kind::Error => &mut set.error,
             Kind::Shaded => &mut set.shaded,
             Kind::Uncertain => &mut set.uncertain,
@@ -181,19 +187,19 @@ impl Pictures {
 }
 
 fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
-    let mut all: Vec<EmbedCandidate> = Vec::new();
+    let mut candidates: Vec<EmbedCandidate> = Vec::new();
     for (index, source) in sources.iter().enumerate() {
         for (number, run) in source.results.runs.iter().enumerate() {
             let measured = run.measured.as_ref();
-            let Some(images) = measured.and_then(|of| of.images.as_ref()) else {
+            let Some(images) = measured.and_then(|measured| measured.images.as_ref()) else {
                 continue;
             };
             for (kind, name) in names(run, images) {
                 let is_shared = matches!(kind, Kind::Reference | Kind::Graph);
                 let is_known =
-                    |known: &EmbedCandidate| (known.source, &known.name) == (index, &name);
-                if !is_shared || !all.iter().any(is_known) {
-                    all.push(EmbedCandidate {
+                    |earlier: &EmbedCandidate| (earlier.source, &earlier.name) == (index, &name);
+                if !is_shared || !candidates.iter().any(is_known) {
+                    candidates.push(EmbedCandidate {
                         source: index,
                         run: number,
                         kind,
@@ -204,7 +210,7 @@ fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
             }
         }
     }
-    all
+    candidates
 }
 
 fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {

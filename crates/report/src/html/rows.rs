@@ -17,29 +17,31 @@ use std::path::{Path, PathBuf};
 /// Returns one HTML table with the rows of all `tables`. The page's script shows the rows of the
 /// tables that the reader has chosen.
 pub fn tables(tables: &[Shown]) -> String {
-    let each = tables.iter().map(|of| &of.table);
+    let each = tables.iter().map(|shown| &shown.table);
     // Tables of paths have columns that others lack.
     let Some(widest) = each.max_by_key(|table| table.heads.len()) else {
         return String::new();
     };
     let mut heads = widest.heads.clone();
-    let cells = tables.iter().flat_map(|of| {
-        let table = &of.table;
+    let cells = tables.iter().flat_map(|shown| {
+        let table = &shown.table;
         table.rows.iter().map(|cells| {
             let cell = |head: &String| {
-                let column = table.heads.iter().position(|known| known == head);
+                let column = table.heads.iter().position(|name| name == head);
                 column.map_or("–".into(), |column| cells[column].clone())
             };
             let mut row: Vec<String> = widest.heads.iter().map(cell).collect();
-            row.insert(1, of.title.clone());
+            row.insert(1, shown.title.clone());
             row
         })
     });
     let cells: Vec<Vec<String>> = cells.collect();
     heads.insert(1, "of".into());
     let rows = tables.iter().enumerate();
-    let rows: Vec<String> = rows.flat_map(|(index, of)| attributes(index, of)).collect();
-    let all_rows = tables.iter().flat_map(|of| &of.summary.rows);
+    let rows: Vec<String> = rows
+        .flat_map(|(index, shown)| attributes(index, shown))
+        .collect();
+    let all_rows = tables.iter().flat_map(|shown| &shown.summary.rows);
     let signs: Vec<String> = all_rows.map(|row| sign(tables, &row.method)).collect();
     let class = |row: usize, column: usize| match (&*heads[column], &*cells[row][column]) {
         (WRONG, "0") => "class=\"zero\"".into(),
@@ -53,8 +55,8 @@ pub fn tables(tables: &[Shown]) -> String {
         |row| signs[row].clone(),
         class,
     );
-    let all: Vec<usize> = (0..tables.len()).collect();
-    part("rows", &all, None, &table)
+    let indices: Vec<usize> = (0..tables.len()).collect();
+    part("rows", &indices, None, &table)
 }
 
 /// Returns HTML tables with a row for each method and a column for each light, one for each source
@@ -86,7 +88,7 @@ pub fn lights(sources: &[Source], tables: &[Shown]) -> String {
 /// the page's tables.
 fn sign_of(tables: &[Shown], table: &Table, row: usize) -> String {
     let label = table.rows[row].first();
-    let mut rows = tables.iter().flat_map(|of| &of.summary.rows);
+    let mut rows = tables.iter().flat_map(|shown| &shown.summary.rows);
     let row = rows.find(|row| Some(&row.label) == label);
     row.map_or(String::new(), |row| sign(tables, &row.method))
 }
@@ -101,29 +103,29 @@ pub fn overview(sources: &[Source], tables: &[Shown]) -> String {
     });
     let scenes: Vec<_> = scenes.collect();
     // One scene on several machines has several sources.
-    let mut known = sources.iter().map(|source| &source.results.scene);
-    if known.all_equal() {
+    let mut source_scenes = sources.iter().map(|source| &source.results.scene);
+    if source_scenes.all_equal() {
         return String::new();
     }
     let names = scene_names(&scenes);
     let columns = tables.iter();
-    let columns = columns.map(|of| (names[of.source].as_str(), of.summary));
+    let columns = columns.map(|shown| (names[shown.source].as_str(), shown.summary));
     let Some(overview) = Overview::new(&columns.collect::<Vec<_>>()) else {
         return String::new();
     };
-    let matrix = |of: Matrix| {
-        let head = format!("<h3>{}</h3>", size(of.viewport));
+    let matrix = |matrix: Matrix| {
+        let head = format!("<h3>{}</h3>", size(matrix.viewport));
         let class = |row: usize, column: usize| {
-            let is_exact = of.table.rows[row][column].contains('*');
+            let is_exact = matrix.table.rows[row][column].contains('*');
             if is_exact { "class=\"zero\"" } else { "" }.to_owned()
         };
         let link = |column: usize, text: String| {
-            let (table, text) = (of.summaries[column - 1], text.replace("&#10;", "<br>"));
+            let (table, text) = (matrix.summaries[column - 1], text.replace("&#10;", "<br>"));
             format!("<a href=\"#table-section\" data-choose=\"{table}\">{text}</a>")
         };
         let none = |_| String::new();
-        let sign = |row| sign_of(tables, &of.table, row);
-        head + &html_with(&of.table, none, sign, class, link)
+        let sign = |row| sign_of(tables, &matrix.table, row);
+        head + &html_with(&matrix.table, none, sign, class, link)
     };
     let matrices = overview.matrices().into_iter().map(matrix);
     let sentences = overview.sentences().into_iter();

@@ -28,9 +28,9 @@ pub struct Shown<'a> {
 
 /// Returns a table for each summary, in order. Each summary comes with the index of its source in
 /// `sources`.
-pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Shown<'a>> {
-    let different = |of: fn(&Results) -> String| {
-        let values = sources.iter().map(|source| of(&source.results));
+pub fn shown<'a>(sources: &[Source], summaries: &'a [(usize, Summary<'a>)]) -> Vec<Shown<'a>> {
+    let different = |describe: fn(&Results) -> String| {
+        let values = sources.iter().map(|source| describe(&source.results));
         values.collect::<BTreeSet<String>>().len() > 1
     };
     let adapters = different(|results| results.adapter.to_string());
@@ -61,7 +61,7 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
             title,
         }
     };
-    let tables = all.iter();
+    let tables = summaries.iter();
     let mut tables: Vec<Shown> = tables
         .map(|(source, summary)| table(*source, summary))
         .collect();
@@ -69,7 +69,7 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
     // their numbers.
     let alike = tables.iter().map(|table| table.title.clone()).duplicates();
     for title in alike.collect::<Vec<_>>() {
-        let folder = |of: &Shown| sources[of.source].folders.first().cloned();
+        let folder = |table: &Shown| sources[table.source].folders.first().cloned();
         let alike = || tables.iter().filter(|table| table.title == title);
         let by_folder = alike().map(folder).all_unique();
         let mut number = 0;
@@ -85,9 +85,12 @@ pub fn shown<'a>(sources: &[Source], all: &'a [(usize, Summary<'a>)]) -> Vec<Sho
 }
 
 /// The protocol of results in words.
-fn protocol(of: &Results) -> String {
-    let frames = frames(of.frames);
-    format!("{frames} after {}, oracle {}", of.warmup, of.oracle)
+fn protocol(results: &Results) -> String {
+    let frames = frames(results.frames);
+    format!(
+        "{frames} after {}, oracle {}",
+        results.warmup, results.oracle
+    )
 }
 
 impl Shown<'_> {

@@ -24,7 +24,7 @@ pub fn bars(tables: &[Shown]) -> String {
             *entry(&mut totals, *name) += ms;
         }
         totals.sort_by(|(_, one), (_, other)| other.total_cmp(one));
-        let colour = |name: &str| match totals.iter().position(|(known, _)| *known == name) {
+        let colour = |name: &str| match totals.iter().position(|(step, _)| *step == name) {
             Some(place) if place < COLOURS => format!("var(--s{place})"),
             _ => "var(--quiet)".into(),
         };
@@ -38,7 +38,7 @@ pub fn bars(tables: &[Shown]) -> String {
         let mut html = String::new();
         for (row, steps) in &rows {
             let label = xml(&row.label);
-            let parts: String = steps.iter().map(|of| step(&label, of)).collect();
+            let parts: String = steps.iter().map(|timing| step(&label, timing)).collect();
             let (method, whole) = (xml(&row.method), ms(sum(steps)));
             let sign = sign(tables, &row.method);
             html += &format!(

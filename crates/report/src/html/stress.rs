@@ -27,11 +27,11 @@ fn of_report(report: &Report) -> String {
             None => return String::new(),
         };
         let counts = cell.and_then(|cell| cell.counts);
-        let told = counts.map_or(String::new(), |counts| {
+        let uncertainty = counts.map_or(String::new(), |counts| {
             let share = percent(counts.uncertain, case.pixels.facing_light);
             format!("; uncertain {share}")
         });
-        format!("class=\"{class}\" title=\"{class}{told}\"")
+        format!("class=\"{class}\" title=\"{class}{uncertainty}\"")
     };
     let lines = |class: &str, text: &str| -> String {
         let lines = text.lines().filter(|line| !line.trim().is_empty());

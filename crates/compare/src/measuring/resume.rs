@@ -202,8 +202,8 @@ mod tests {
         let planned = &sample().runs[1..2];
         for keep in [Kept::Others, Kept::All] {
             let (stay, kept) = earlier(folder.path(), keep, &sample(), planned, &Silent).unwrap();
-            let others: Vec<&str> = stay.others.iter().map(|run| run.preset.as_str()).collect();
-            assert_eq!(others, ["nsm", "rt_hw"]);
+            let presets: Vec<&str> = stay.others.iter().map(|run| run.preset.as_str()).collect();
+            assert_eq!(presets, ["nsm", "rt_hw"]);
             assert_eq!(kept[0].is_some(), keep == Kept::All);
         }
     }

@@ -52,7 +52,7 @@ impl fmt::Display for Budgets {
         let memory = self
             .memory_bytes
             .map(|most| format!("at most {}", bytes(most)));
-        let all = [time, wrong, memory].into_iter().flatten();
-        f.write_str(&all.collect::<Vec<String>>().join(" and "))
+        let limits = [time, wrong, memory].into_iter().flatten();
+        f.write_str(&limits.collect::<Vec<String>>().join(" and "))
     }
 }

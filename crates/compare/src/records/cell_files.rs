@@ -178,8 +178,8 @@ pub fn join(places: &[PathBuf]) -> Result<Joined, CompareError> {
         entry(&mut plans, plan).push(place);
     }
     let mut joined = Joined::default();
-    if let [(first, folders), others @ ..] = &plans[..] {
-        for (other, other_folders) in others {
+    if let [(first, folders), other_plans @ ..] = &plans[..] {
+        for (other, other_folders) in other_plans {
             check_plans([first, other], [folders[0], other_folders[0]])?;
         }
     }
@@ -213,7 +213,7 @@ fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<
     let ours = version(&plan.head.program, plan.head.commit.as_deref());
     let (id, mut missing, mut twice) = (plan.id(), Vec::new(), 0);
     for cell in &plan.cells {
-        let mut found: Vec<(PathBuf, Kept)> = Vec::new();
+        let mut copies: Vec<(PathBuf, Kept)> = Vec::new();
         for folder in folders {
             let folder = scene_folder(folder, plan, cell);
             let path = path(&folder, &cell.cell);
@@ -229,36 +229,36 @@ fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<
                     path.display()
                 )));
             }
-            let mut known = found.iter();
-            let known = known.find(|(_, kept)| kept.results.adapter == results.adapter);
-            if let Some((other, kept)) = known {
+            let mut earlier = copies.iter();
+            let earlier = earlier.find(|(_, kept)| kept.results.adapter == results.adapter);
+            if let Some((other, kept)) = earlier {
                 if let Some(why) = disagreement(&kept.results.runs[0], run) {
                     return Err(at_odds(run, [other, &path], &why));
                 }
                 twice += 1;
             } else {
                 results.plan = Some(id.clone());
-                found.push((path, Kept { folder, results }));
+                copies.push((path, Kept { folder, results }));
             }
         }
-        if found.is_empty() {
+        if copies.is_empty() {
             missing.push(plan.label(cell));
         }
-        joined.kept.extend(found.into_iter().map(|(_, kept)| kept));
+        joined.kept.extend(copies.into_iter().map(|(_, kept)| kept));
     }
     if twice > 0 {
-        let all = plural(plan.cells.len(), "cell");
+        let cells = plural(plan.cells.len(), "cell");
         joined.notes.push(format!(
-            "{twice} of {all} were measured more than once and agree: the first of each counts"
+            "{twice} of {cells} were measured more than once and agree: the first of each counts"
         ));
     }
     if let [first, ..] = &missing[..] {
-        let (count, all) = (missing.len(), plural(plan.cells.len(), "planned cell"));
+        let (count, cells) = (missing.len(), plural(plan.cells.len(), "planned cell"));
         let plan = folders[0].join(cell_plan::FILE);
         let place = folders[0].display();
         joined.missing = Some(format!(
-            "{count} of {all} are not measured yet, the first of them {first}: `skiagraph compare \
-             --cells {} --out {place}` measures what {place} lacks",
+            "{count} of {cells} are not measured yet, the first of them {first}: `skiagraph \
+             compare --cells {} --out {place}` measures what {place} lacks",
             plan.display()
         ));
     }
@@ -267,7 +267,7 @@ fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<
 
 /// Refuses truths that two folders hold and that differ.
 fn check_truths(plan: &CellPlan, folders: &[&Path]) -> Result<(), CompareError> {
-    let mut known: BTreeMap<PathBuf, PathBuf> = BTreeMap::new();
+    let mut by_name: BTreeMap<PathBuf, PathBuf> = BTreeMap::new();
     for folder in folders {
         let mut scenes: Vec<Option<&String>> = plan
             .truths
@@ -285,8 +285,8 @@ fn check_truths(plan: &CellPlan, folders: &[&Path]) -> Result<(), CompareError> 
             let names = entries.map(|entry| below.join(entry.file_name()));
             for name in names.filter(|name| name.extension().is_some_and(|it| it == "truth")) {
                 let path = folder.join(&name);
-                let Some(other) = known.get(&name) else {
-                    known.insert(name, path);
+                let Some(other) = by_name.get(&name) else {
+                    by_name.insert(name, path);
                     continue;
                 };
                 let [one, two] = [other, &path].map(|file| {

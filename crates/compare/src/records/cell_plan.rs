@@ -227,9 +227,9 @@ impl CellPlan {
             let pixels = width * height * u64::from(truth.frames);
             (truth.truth.as_str(), pixels)
         });
-        let of: BTreeMap<&str, u64> = truths.collect();
+        let by_truth: BTreeMap<&str, u64> = truths.collect();
         let cells = self.cells.iter();
-        let pixels = cells.map(|cell| of.get(&*cell.truth).copied().unwrap_or_default());
+        let pixels = cells.map(|cell| by_truth.get(&*cell.truth).copied().unwrap_or_default());
         pixels.collect()
     }
 
@@ -255,9 +255,9 @@ pub fn version(program: &str, commit: Option<&str>) -> String {
     format!("{program}{}", commit.unwrap_or_default())
 }
 
-fn line(of: &impl Serialize) -> String {
+fn line(record: &impl Serialize) -> String {
     let mut text =
-        serde_json::to_string(of).expect("plain structs with string keys always serialise");
+        serde_json::to_string(record).expect("plain structs with string keys always serialise");
     text.push('\n');
     text
 }
@@ -306,12 +306,12 @@ fn parse(text: &str) -> Result<CellPlan, Mistake> {
         }
         at += line.len();
     }
-    let (planned, found) = (plan.head.cells, plan.cells.len());
-    if planned == found {
+    let (planned, listed) = (plan.head.cells, plan.cells.len());
+    if planned == listed {
         return Ok(plan);
     }
     let what = format!(
-        "its first line says {}, and {found} are there: it was cut off, or lines were taken out",
+        "its first line says {}, and {listed} are there: it was cut off, or lines were taken out",
         plural(planned, "cell")
     );
     Err(Mistake::at_field(text, "\"cells\":", what))

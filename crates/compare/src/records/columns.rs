@@ -72,116 +72,121 @@ const CSV: &[Figure] = &[
     ("lit", Always(|_, run| Count(run.pixels.lit))),
     ("shadow", Always(|_, run| Count(run.pixels.shadow))),
     ("band", Always(|_, run| Count(run.band))),
-    ("certain_lit", Measure(|of| Count(of.certain.lit))),
-    ("certain_shadow", Measure(|of| Count(of.certain.shadow))),
-    ("uncertain", Measure(|of| Share(of.uncertain))),
-    ("rays", Measure(|of| of.rays.map_or(Unknown, Count))),
-    ("wrong_lit", Measure(|of| Count(of.wrong.lit))),
-    ("wrong_shadow", Measure(|of| Count(of.wrong.shadow))),
-    ("wrong_total", Measure(|of| Share(of.wrong.total))),
-    ("wrong_certain", Measure(|of| Count(of.wrong.certain))),
-    ("wrong_in_band", Measure(|of| Count(of.wrong.in_band))),
-    ("facing_mismatch", Measure(|of| Count(of.facing_mismatch))),
-    ("gpu_ms", Measure(|of| median(of.frame.gpu_ms))),
-    ("wall_ms", Measure(|of| median(Some(of.frame.wall_ms)))),
-    ("memory_bytes", Measure(|of| Count(of.memory_bytes))),
-    ("saved_bytes", Measure(|of| Count(of.saved_bytes))),
+    ("certain_lit", Measure(|measured| Count(measured.certain.lit))),
+    ("certain_shadow", Measure(|measured| Count(measured.certain.shadow))),
+    ("uncertain", Measure(|measured| Share(measured.uncertain))),
+    ("rays", Measure(|measured| measured.rays.map_or(Unknown, Count))),
+    ("wrong_lit", Measure(|measured| Count(measured.wrong.lit))),
+    ("wrong_shadow", Measure(|measured| Count(measured.wrong.shadow))),
+    ("wrong_total", Measure(|measured| Share(measured.wrong.total))),
+    ("wrong_certain", Measure(|measured| Count(measured.wrong.certain))),
+    ("wrong_in_band", Measure(|measured| Count(measured.wrong.in_band))),
+    ("facing_mismatch", Measure(|measured| Count(measured.facing_mismatch))),
+    ("gpu_ms", Measure(|measured| median(measured.frame.gpu_ms))),
+    ("wall_ms", Measure(|measured| median(Some(measured.frame.wall_ms)))),
+    ("memory_bytes", Measure(|measured| Count(measured.memory_bytes))),
+    ("saved_bytes", Measure(|measured| Count(measured.saved_bytes))),
     ("unavailable", Always(|_, run| run.unavailable.as_deref().map_or(Unknown, text))),
-    ("cached_gpu_ms", Measure(|of| median(cached(of, false)))),
-    ("lit_certain_right", Measure(|of| Count(of.split.lit.certain_right))),
-    ("lit_certain_wrong", Measure(|of| Count(of.split.lit.certain_wrong))),
+    ("cached_gpu_ms", Measure(|measured| median(cached(measured, false)))),
+    ("lit_certain_right", Measure(|measured| Count(measured.split.lit.certain_right))),
+    ("lit_certain_wrong", Measure(|measured| Count(measured.split.lit.certain_wrong))),
     ("lit_certain_wrong_outside_band",
-        Measure(|of| Count(of.split.lit.certain_wrong_outside_band))),
-    ("lit_uncertain", Measure(|of| Count(of.split.lit.uncertain))),
-    ("lit_uncertain_wrong", Measure(|of| Count(of.split.lit.uncertain_wrong))),
-    ("shadow_certain_right", Measure(|of| Count(of.split.shadow.certain_right))),
-    ("shadow_certain_wrong", Measure(|of| Count(of.split.shadow.certain_wrong))),
+        Measure(|measured| Count(measured.split.lit.certain_wrong_outside_band))),
+    ("lit_uncertain", Measure(|measured| Count(measured.split.lit.uncertain))),
+    ("lit_uncertain_wrong", Measure(|measured| Count(measured.split.lit.uncertain_wrong))),
+    ("shadow_certain_right", Measure(|measured| Count(measured.split.shadow.certain_right))),
+    ("shadow_certain_wrong", Measure(|measured| Count(measured.split.shadow.certain_wrong))),
     ("shadow_certain_wrong_outside_band",
-        Measure(|of| Count(of.split.shadow.certain_wrong_outside_band))),
-    ("shadow_uncertain", Measure(|of| Count(of.split.shadow.uncertain))),
-    ("shadow_uncertain_wrong", Measure(|of| Count(of.split.shadow.uncertain_wrong))),
-    ("gbuffer_gpu_ms", Measure(|of| of.gbuffer_ms().map_or(Unknown, Time))),
-    ("scene_bytes", Measure(|of| Count(of.scene_bytes))),
-    ("wrong_certain_open_part", Measure(|of| blocked(of, |by| by.open_part))),
-    ("wrong_certain_closed_part", Measure(|of| blocked(of, |by| by.closed_part))),
-    ("wrong_certain_no_blocker", Measure(|of| blocked(of, |by| by.none))),
-    ("shimmer", Measure(|of| shimmer(of).map_or(Unknown, OfPicture))),
-    ("shimmer_compared", Measure(|of| shimmer(of).map_or(Unknown, |part| Count(part.of)))),
-    ("worst_frame", Measure(|of| worst(of).map_or(Unknown, |(index, _)| Count(index)))),
-    ("worst_frame_wrong", Measure(|of| worst(of).map_or(Unknown, |(_, part)| OfPicture(part)))),
-    ("answer", Measure(|of| text(of.answer.word()))),
+        Measure(|measured| Count(measured.split.shadow.certain_wrong_outside_band))),
+    ("shadow_uncertain", Measure(|measured| Count(measured.split.shadow.uncertain))),
+    ("shadow_uncertain_wrong", Measure(|measured| Count(measured.split.shadow.uncertain_wrong))),
+    ("gbuffer_gpu_ms", Measure(|measured| measured.gbuffer_ms().map_or(Unknown, Time))),
+    ("scene_bytes", Measure(|measured| Count(measured.scene_bytes))),
+    ("wrong_certain_open_part", Measure(|measured| blocked(measured, |by| by.open_part))),
+    ("wrong_certain_closed_part", Measure(|measured| blocked(measured, |by| by.closed_part))),
+    ("wrong_certain_no_blocker", Measure(|measured| blocked(measured, |by| by.none))),
+    ("shimmer", Measure(|measured| shimmer(measured).map_or(Unknown, OfPicture))),
+    ("shimmer_compared",
+        Measure(|measured| shimmer(measured).map_or(Unknown, |part| Count(part.of)))),
+    ("worst_frame", Measure(|measured| worst(measured).map_or(Unknown, |(index, _)| Count(index)))),
+    ("worst_frame_wrong",
+        Measure(|measured| worst(measured).map_or(Unknown, |(_, part)| OfPicture(part)))),
+    ("answer", Measure(|measured| text(measured.answer.word()))),
     ("reference", Always(|_, run| text(run.area.map_or("hard", |_| "area")))),
-    ("reference_samples", Always(|_, run| area(run, |of| Count(of.samples.into())))),
-    ("reference_error_rms", Always(|_, run| area(run, |of| Real(of.standard_error_rms)))),
-    ("reference_error_worst", Always(|_, run| area(run, |of| Real(of.standard_error_worst)))),
-    ("penumbra", Always(|_, run| area(run, |of| Count(of.penumbra)))),
-    ("rmse", Measure(|of| Real(of.graded.rmse))),
-    ("rmse_outside_band", Measure(|of| Real(of.graded.rmse_outside_band))),
-    ("mean_absolute_error", Measure(|of| Real(of.graded.mean_absolute_error))),
-    ("off_over_1_255", Measure(|of| Share(of.graded.off.over_1_255))),
-    ("off_over_1_16", Measure(|of| Share(of.graded.off.over_1_16))),
-    ("off_over_1_4", Measure(|of| Share(of.graded.off.over_1_4))),
-    ("flip", Measure(|of| Real(of.graded.flip))),
-    ("nan", Measure(|of| Count(of.graded.invalid.nan))),
-    ("infinite", Measure(|of| Count(of.graded.invalid.infinite))),
-    ("outside", Measure(|of| Count(of.graded.invalid.outside))),
-    ("steady_frames", Measure(|of| steady(of, |by| Some(by.frames)))),
-    ("steady_period", Measure(|of| steady(of, |by| by.period))),
-    ("slowest_frame", Measure(|of| path(of, |by| Some(Count(by.slowest()?.0 as u64))))),
-    ("slowest_frame_ms", Measure(|of| path(of, |by| Some(Time(by.slowest()?.1.ms()))))),
+    ("reference_samples", Always(|_, run| area(run, |area| Count(area.samples.into())))),
+    ("reference_error_rms", Always(|_, run| area(run, |area| Real(area.standard_error_rms)))),
+    ("reference_error_worst", Always(|_, run| area(run, |area| Real(area.standard_error_worst)))),
+    ("penumbra", Always(|_, run| area(run, |area| Count(area.penumbra)))),
+    ("rmse", Measure(|measured| Real(measured.graded.rmse))),
+    ("rmse_outside_band", Measure(|measured| Real(measured.graded.rmse_outside_band))),
+    ("mean_absolute_error", Measure(|measured| Real(measured.graded.mean_absolute_error))),
+    ("off_over_1_255", Measure(|measured| Share(measured.graded.off.over_1_255))),
+    ("off_over_1_16", Measure(|measured| Share(measured.graded.off.over_1_16))),
+    ("off_over_1_4", Measure(|measured| Share(measured.graded.off.over_1_4))),
+    ("flip", Measure(|measured| Real(measured.graded.flip))),
+    ("nan", Measure(|measured| Count(measured.graded.invalid.nan))),
+    ("infinite", Measure(|measured| Count(measured.graded.invalid.infinite))),
+    ("outside", Measure(|measured| Count(measured.graded.invalid.outside))),
+    ("steady_frames", Measure(|measured| steady(measured, |by| Some(by.frames)))),
+    ("steady_period", Measure(|measured| steady(measured, |by| by.period))),
+    ("slowest_frame", Measure(|measured| path(measured, |by| Some(Count(by.slowest()?.0 as u64))))),
+    ("slowest_frame_ms", Measure(|measured| path(measured, |by| Some(Time(by.slowest()?.1.ms()))))),
     ("every_pass_gpu_ms",
-        Measure(|of| path(of, |by| Some(median(by.every_pass.as_ref()?.gpu_ms))))),
-    ("every_pass_wall_ms",
-        Measure(|of| path(of, |by| Some(median(Some(by.every_pass.as_ref()?.wall_ms)))))),
-    ("every_pass_slowest_frame",
-        Measure(|of| path(of, |by| Some(Count(by.slowest_with_every_pass()?.0 as u64))))),
+        Measure(|measured| path(measured, |by| Some(median(by.every_pass.as_ref()?.gpu_ms))))),
+    ("every_pass_wall_ms", Measure(|measured| {
+        path(measured, |by| Some(median(Some(by.every_pass.as_ref()?.wall_ms))))
+    })),
+    ("every_pass_slowest_frame", Measure(|measured| {
+        path(measured, |by| Some(Count(by.slowest_with_every_pass()?.0 as u64)))
+    })),
     ("every_pass_slowest_frame_ms",
-        Measure(|of| path(of, |by| Some(Time(by.slowest_with_every_pass()?.1.ms()))))),
-    ("worst_frame_rmse", Measure(|of| path(of, |by| Some(Real(by.worst()?.1.graded.rmse))))),
+        Measure(|measured| path(measured, |by| Some(Time(by.slowest_with_every_pass()?.1.ms()))))),
+    ("worst_frame_rmse",
+        Measure(|measured| path(measured, |by| Some(Real(by.worst()?.1.graded.rmse))))),
     ("wrong_surface", Always(|_, run| Count(run.wrong_surface))),
-    ("light_in_umbra", Measure(|of| Real(of.graded.soft.light_in_umbra))),
-    ("dark_in_light", Measure(|of| Real(of.graded.soft.dark_in_light))),
-    ("penumbra_rmse", Measure(|of| penumbra(of, |soft| soft.penumbra_rmse))),
-    ("penumbra_bias", Measure(|of| penumbra(of, |soft| soft.penumbra_bias))),
-    ("edge_near", Measure(|of| Count(of.edges.all().near))),
-    ("edge_mean_pixels", Measure(|of| edge(of, |all| all.mean_pixels))),
-    ("edge_max_pixels", Measure(|of| edge(of, |all| all.max_pixels))),
-    ("edge_mean_world", Measure(|of| edge(of, |all| all.mean_world))),
-    ("edge_max_world", Measure(|of| edge(of, |all| all.max_world))),
-    ("texel_pixels", Measure(|of| texels(of, |by| Count(by.pixels)))),
-    ("texels_under_one", Measure(|of| texels(of, |by| Count(by.under_one)))),
-    ("texels_outside_map", Measure(|of| texels(of, |by| Count(by.outside_map)))),
-    ("texels_p5", Measure(|of| texels(of, |by| Real(by.texels.p5)))),
-    ("texels_median", Measure(|of| texels(of, |by| Real(by.texels.median)))),
-    ("texels_p95", Measure(|of| texels(of, |by| Real(by.texels.p95)))),
-    ("perspective_p5", Measure(|of| texels(of, |by| Real(by.perspective.p5)))),
-    ("perspective_median", Measure(|of| texels(of, |by| Real(by.perspective.median)))),
-    ("perspective_p95", Measure(|of| texels(of, |by| Real(by.perspective.p95)))),
-    ("projection_p5", Measure(|of| texels(of, |by| Real(by.projection.p5)))),
-    ("projection_median", Measure(|of| texels(of, |by| Real(by.projection.median)))),
-    ("projection_p95", Measure(|of| texels(of, |by| Real(by.projection.p95)))),
-    ("layer_pairs", Measure(|of| layers(of, |by| Count(by.pairs)))),
-    ("layer_differ", Measure(|of| layers(of, |by| Real(by.across)))),
-    ("layer_differ_elsewhere", Measure(|of| layers(of, |by| Real(by.elsewhere)))),
-    ("layer_jump", Measure(|of| layers(of, |by| Real(by.jump())))),
+    ("light_in_umbra", Measure(|measured| Real(measured.graded.soft.light_in_umbra))),
+    ("dark_in_light", Measure(|measured| Real(measured.graded.soft.dark_in_light))),
+    ("penumbra_rmse", Measure(|measured| penumbra(measured, |soft| soft.penumbra_rmse))),
+    ("penumbra_bias", Measure(|measured| penumbra(measured, |soft| soft.penumbra_bias))),
+    ("edge_near", Measure(|measured| Count(measured.edges.all().near))),
+    ("edge_mean_pixels", Measure(|measured| edge(measured, |distances| distances.mean_pixels))),
+    ("edge_max_pixels", Measure(|measured| edge(measured, |distances| distances.max_pixels))),
+    ("edge_mean_world", Measure(|measured| edge(measured, |distances| distances.mean_world))),
+    ("edge_max_world", Measure(|measured| edge(measured, |distances| distances.max_world))),
+    ("texel_pixels", Measure(|measured| texels(measured, |by| Count(by.pixels)))),
+    ("texels_under_one", Measure(|measured| texels(measured, |by| Count(by.under_one)))),
+    ("texels_outside_map", Measure(|measured| texels(measured, |by| Count(by.outside_map)))),
+    ("texels_p5", Measure(|measured| texels(measured, |by| Real(by.texels.p5)))),
+    ("texels_median", Measure(|measured| texels(measured, |by| Real(by.texels.median)))),
+    ("texels_p95", Measure(|measured| texels(measured, |by| Real(by.texels.p95)))),
+    ("perspective_p5", Measure(|measured| texels(measured, |by| Real(by.perspective.p5)))),
+    ("perspective_median", Measure(|measured| texels(measured, |by| Real(by.perspective.median)))),
+    ("perspective_p95", Measure(|measured| texels(measured, |by| Real(by.perspective.p95)))),
+    ("projection_p5", Measure(|measured| texels(measured, |by| Real(by.projection.p5)))),
+    ("projection_median", Measure(|measured| texels(measured, |by| Real(by.projection.median)))),
+    ("projection_p95", Measure(|measured| texels(measured, |by| Real(by.projection.p95)))),
+    ("layer_pairs", Measure(|measured| layers(measured, |by| Count(by.pairs)))),
+    ("layer_differ", Measure(|measured| layers(measured, |by| Real(by.across)))),
+    ("layer_differ_elsewhere", Measure(|measured| layers(measured, |by| Real(by.elsewhere)))),
+    ("layer_jump", Measure(|measured| layers(measured, |by| Real(by.jump())))),
     ("light", Always(|_, run| run.light.as_deref().map_or(Unknown, text))),
     ("params", Always(|_, run| Text(run.assignments()))),
     ("frames", Always(|results, _| Count(results.frames.into()))),
     ("warmup", Always(|results, _| Count(results.warmup.into()))),
     ("cached_frames", Always(|results, _| Count(results.cached_frames.into()))),
-    ("gpu_min_ms", Measure(|of| spread(of.frame.gpu_ms, |of| of.min))),
-    ("gpu_q1_ms", Measure(|of| spread(of.frame.gpu_ms, |of| of.q1))),
-    ("gpu_q3_ms", Measure(|of| spread(of.frame.gpu_ms, |of| of.q3))),
-    ("gpu_p95_ms", Measure(|of| spread(of.frame.gpu_ms, |of| of.p95))),
-    ("wall_min_ms", Measure(|of| spread(Some(of.frame.wall_ms), |of| of.min))),
-    ("wall_q1_ms", Measure(|of| spread(Some(of.frame.wall_ms), |of| of.q1))),
-    ("wall_q3_ms", Measure(|of| spread(Some(of.frame.wall_ms), |of| of.q3))),
-    ("wall_p95_ms", Measure(|of| spread(Some(of.frame.wall_ms), |of| of.p95))),
-    ("cached_gpu_q1_ms", Measure(|of| spread(cached(of, false), |of| of.q1))),
-    ("cached_gpu_q3_ms", Measure(|of| spread(cached(of, false), |of| of.q3))),
-    ("cached_wall_ms", Measure(|of| median(cached(of, true)))),
-    ("cached_wall_q1_ms", Measure(|of| spread(cached(of, true), |of| of.q1))),
-    ("cached_wall_q3_ms", Measure(|of| spread(cached(of, true), |of| of.q3))),
+    ("gpu_min_ms", Measure(|measured| spread(measured.frame.gpu_ms, |times| times.min))),
+    ("gpu_q1_ms", Measure(|measured| spread(measured.frame.gpu_ms, |times| times.q1))),
+    ("gpu_q3_ms", Measure(|measured| spread(measured.frame.gpu_ms, |times| times.q3))),
+    ("gpu_p95_ms", Measure(|measured| spread(measured.frame.gpu_ms, |times| times.p95))),
+    ("wall_min_ms", Measure(|measured| spread(Some(measured.frame.wall_ms), |times| times.min))),
+    ("wall_q1_ms", Measure(|measured| spread(Some(measured.frame.wall_ms), |times| times.q1))),
+    ("wall_q3_ms", Measure(|measured| spread(Some(measured.frame.wall_ms), |times| times.q3))),
+    ("wall_p95_ms", Measure(|measured| spread(Some(measured.frame.wall_ms), |times| times.p95))),
+    ("cached_gpu_q1_ms", Measure(|measured| spread(cached(measured, false), |times| times.q1))),
+    ("cached_gpu_q3_ms", Measure(|measured| spread(cached(measured, false), |times| times.q3))),
+    ("cached_wall_ms", Measure(|measured| median(cached(measured, true)))),
+    ("cached_wall_q1_ms", Measure(|measured| spread(cached(measured, true), |times| times.q1))),
+    ("cached_wall_q3_ms", Measure(|measured| spread(cached(measured, true), |times| times.q3))),
     ("backend", Always(|results, _| text(&results.adapter.backend))),
     ("driver", Always(|results, _| text(&results.adapter.driver))),
     ("device_type", Always(|results, _| text(&results.adapter.device_type))),
@@ -202,13 +207,13 @@ const CSV: &[Figure] = &[
 /// Figures that only tables show.
 #[rustfmt::skip]
 const IN_TABLES: &[Figure] = &[
-    ("certain_right", Measure(|of| Share(of.split.certain_right()))),
-    ("certain_wrong", Measure(|of| Share(of.split.certain_wrong()))),
+    ("certain_right", Measure(|measured| Share(measured.split.certain_right()))),
+    ("certain_wrong", Measure(|measured| Share(measured.split.certain_wrong()))),
     ("wrong_lit_percent", Always(|_, run| run.wrong_lit().map_or(Unknown, OfPicture))),
     ("wrong_shadow_percent", Always(|_, run| run.wrong_shadow().map_or(Unknown, OfPicture))),
-    ("steps_ms", Measure(|of| of.steps_ms().map_or(Unknown, Time))),
-    ("fps", Measure(|of| of.fps().map_or(Unknown, Rate))),
-    ("no_share", Measure(|of| Count(of.graded.invalid.total()))),
+    ("steps_ms", Measure(|measured| measured.steps_ms().map_or(Unknown, Time))),
+    ("fps", Measure(|measured| measured.fps().map_or(Unknown, Rate))),
+    ("no_share", Measure(|measured| Count(measured.graded.invalid.total()))),
 ];
 
 /// A column: its figure, its head, and what published figures of it are called, if there are any.
@@ -333,11 +338,11 @@ fn text(text: &str) -> Value {
 }
 
 fn median(times: Option<Spread>) -> Value {
-    spread(times, |of| of.median)
+    spread(times, |times| times.median)
 }
 
 fn spread(times: Option<Spread>, figure: fn(&Spread) -> f64) -> Value {
-    times.map_or(Unknown, |of| Time(figure(&of)))
+    times.map_or(Unknown, |times| Time(figure(&times)))
 }
 
 /// Times of frames in which only the camera moved, by the CPU's clock or the GPU's.
@@ -399,8 +404,8 @@ fn penumbra(measured: &Measured, figure: fn(&SoftErrors) -> f64) -> Value {
 /// A distance of wrong pixels from the edges of shadows, where there are any.
 fn edge(measured: &Measured, figure: fn(&Distances) -> f64) -> Value {
     match measured.edges.all() {
-        all if all.count == 0 => Unknown,
-        all => Real(figure(&all)),
+        distances if distances.count == 0 => Unknown,
+        distances => Real(figure(&distances)),
     }
 }
 
@@ -432,7 +437,7 @@ pub struct Column {
 impl Column {
     fn new((name, head, quantity): Entry) -> Option<Self> {
         let mut figures = CSV.iter().chain(IN_TABLES);
-        let (_, source) = figures.find(|(known, _)| *known == name)?;
+        let (_, source) = figures.find(|(figure, _)| *figure == name)?;
         Some(Self {
             head,
             quantity,
@@ -460,7 +465,7 @@ impl Column {
             Text(text) => text,
             Count(count) => thousands(count),
             Share(count) => share(count, run.pixels.facing_light),
-            OfPicture(Part { count, of }) => share(count, of),
+            OfPicture(Part { count, of: whole }) => share(count, whole),
             Time(time) => ms(time),
             Real(number) => format!("{number:.5}"),
             Rate(rate) => format!("{rate:.2}"),
@@ -505,7 +510,7 @@ fn is_shown<'a>(name: &str, runs: impl Iterator<Item = &'a Run> + Clone) -> bool
 /// True if any run has measurements along a camera path.
 pub fn are_paths<'a>(runs: impl IntoIterator<Item = &'a Run>) -> bool {
     let mut measured = runs.into_iter().filter_map(|run| run.measured.as_ref());
-    measured.any(|of| of.sequence.is_some())
+    measured.any(|measured| measured.sequence.is_some())
 }
 
 /// Returns the columns of a document's table of `runs` in two lists: those to the left and those to
@@ -529,8 +534,8 @@ pub fn document(runs: &[&Run], published: impl Fn(&str) -> bool) -> [Vec<Column>
 pub fn quantities() -> Vec<String> {
     let of_columns = DOCUMENT.iter().map(|(.., quantity)| quantity.to_string());
     let of_steps = STEPS.iter().map(|(step, _)| format!("ms.{step}"));
-    let all = of_columns.chain(of_steps);
-    all.filter(|quantity| !quantity.is_empty()).collect()
+    let names = of_columns.chain(of_steps);
+    names.filter(|quantity| !quantity.is_empty()).collect()
 }
 
 /// Returns the steps of a quantity that is a time of steps, each of them [`GBUFFER`] or one of
@@ -538,7 +543,7 @@ pub fn quantities() -> Vec<String> {
 /// other quantity.
 pub fn steps_of(quantity: &str) -> Option<&str> {
     let steps = quantity.strip_prefix("ms.")?;
-    let is_known = |step| step == GBUFFER || STEPS.iter().any(|(known, _)| *known == step);
+    let is_known = |step| step == GBUFFER || STEPS.iter().any(|(name, _)| *name == step);
     steps.split('+').all(is_known).then_some(steps)
 }
 
@@ -546,7 +551,7 @@ pub fn steps_of(quantity: &str) -> Option<&str> {
 /// if it has no column.
 pub fn head_of(quantity: &str) -> String {
     let mut entries = DOCUMENT.iter();
-    let entry = entries.find(|(.., known)| *known == quantity);
+    let entry = entries.find(|(.., name)| *name == quantity);
     match (steps_of(quantity), entry) {
         (Some(steps), _) => step_head(steps),
         (None, Some((_, head, _))) => (*head).to_owned(),
@@ -561,13 +566,13 @@ pub fn figure(quantity: &str, results: &Results, run: &Run) -> Option<f64> {
     if let Some(steps) = steps_of(quantity) {
         return run.measured.as_ref()?.step_ms(steps);
     }
-    let entry = DOCUMENT.iter().find(|(.., known)| *known == quantity)?;
-    let percent = |count: u64, of: u64| 100.0 * count as f64 / of as f64;
+    let entry = DOCUMENT.iter().find(|(.., name)| *name == quantity)?;
+    let percent = |count: u64, whole: u64| 100.0 * count as f64 / whole as f64;
     match Column::new(*entry)?.value(results, run) {
         Unknown | Text(_) => None,
         Count(count) => Some(count as f64),
         Share(count) => Some(percent(count, run.pixels.facing_light)),
-        OfPicture(Part { count, of }) => Some(percent(count, of)),
+        OfPicture(Part { count, of: whole }) => Some(percent(count, whole)),
         Time(number) | Real(number) | Rate(number) => Some(number),
     }
 }
@@ -581,14 +586,14 @@ mod tests {
     fn every_column_of_a_table_has_its_figure() {
         assert_eq!(csv().len(), CSV.len());
         let runs = sample().runs;
-        let all: Vec<&Run> = runs.iter().collect();
-        let of = |entries: &[Entry], names: &[&str]| {
-            let of = entries.iter().filter(|(name, ..)| names.contains(name));
-            of.count()
+        let mixed: Vec<&Run> = runs.iter().collect();
+        let count = |entries: &[Entry], names: &[&str]| {
+            let named = entries.iter().filter(|(name, ..)| names.contains(name));
+            named.count()
         };
-        let hidden = |entries: &[Entry]| of(entries, &[&OF_PATHS[..], &OF_GRADES].concat());
+        let hidden = |entries: &[Entry]| count(entries, &[&OF_PATHS[..], &OF_GRADES].concat());
         let with_maps = TERMINAL.len() - hidden(&TERMINAL);
-        assert_eq!(terminal(&all).len(), with_maps);
+        assert_eq!(terminal(&mixed).len(), with_maps);
         let without: Vec<&Run> = runs.iter().filter(|run| run.map_size.is_none()).collect();
         assert_eq!(terminal(&without).len(), with_maps - 1);
         let mut graded = runs.clone();
@@ -596,14 +601,14 @@ mod tests {
         let graded: Vec<&Run> = graded.iter().collect();
         assert_eq!(
             terminal(&graded).len(),
-            TERMINAL.len() - of(&TERMINAL, &OF_PATHS)
+            TERMINAL.len() - count(&TERMINAL, &OF_PATHS)
         );
         let parts = |runs, published| document(runs, |_| published).map(|part| part.len());
-        let whole = DOCUMENT.len() - of(&DOCUMENT, &OF_PATHS);
+        let whole = DOCUMENT.len() - count(&DOCUMENT, &OF_PATHS);
         assert_eq!(parts(&graded, true).iter().sum::<usize>(), whole);
         let fewer = DOCUMENT.len() - IF_PUBLISHED.len() - hidden(&DOCUMENT);
         // Only the frame is behind the steps.
-        assert_eq!(parts(&all, false), [fewer - 1, 1]);
+        assert_eq!(parts(&mixed, false), [fewer - 1, 1]);
         let mut names: Vec<_> = CSV.iter().chain(IN_TABLES).map(|(name, _)| name).collect();
         names.sort();
         assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");

@@ -106,7 +106,7 @@ impl Conditions {
         let names = old.params().chain(self.params()).map(|(name, _)| name);
         let names: BTreeSet<&str> = names.collect();
         let param = |conditions: &Self, name: &str| {
-            let value = conditions.params().find(|(known, _)| *known == name);
+            let value = conditions.params().find(|(key, _)| *key == name);
             value.map_or_else(|| "–".to_owned(), |(_, value)| value)
         };
         let params = names

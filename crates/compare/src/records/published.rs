@@ -43,9 +43,9 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
         let text = CSV_FILE
             .read_text(file)
             .map_err(|error| CompareError::Input(format!("{name}: {error}")))?;
-        let (read, mut found) = parse(label, &SourceFile::new(name, text));
+        let (read, mut mistakes) = parse(label, &SourceFile::new(name, text));
         rows.extend(read);
-        faults.append(&mut found);
+        faults.append(&mut mistakes);
     }
     if faults.is_empty() {
         return Ok(rows);
@@ -85,7 +85,7 @@ fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
         let line = Line { file, record };
         let Some(columns) = &columns else {
             match Columns::new(&line) {
-                Ok(found) => columns = Some(found),
+                Ok(header) => columns = Some(header),
                 Err(faults) => return (Vec::new(), faults),
             }
             continue;
@@ -101,7 +101,7 @@ fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
                     faults.push(line.fault(Code::DuplicateName, columns.at("quantity"), what));
                 }
             }
-            Err(mut found) => faults.append(&mut found),
+            Err(mut mistakes) => faults.append(&mut mistakes),
         }
     }
     if columns.is_none() {

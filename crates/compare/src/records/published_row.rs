@@ -90,11 +90,11 @@ impl Row {
         if self.preset.is_empty() {
             return vec![self];
         }
-        let of = |preset: &String| Self {
+        let row = |preset: &String| Self {
             preset: preset.clone(),
             ..self.clone()
         };
-        self.named.iter().map(of).collect()
+        self.named.iter().map(row).collect()
     }
 
     /// True if the figure was published for the scene named `scene`, the view and viewport of
@@ -242,14 +242,14 @@ impl<'a> Fields<'a> {
             let fault = line.fault(Code::UnknownVariant, place, what);
             let of_run = quantities();
             let of_run = of_run.iter().map(String::as_str);
-            let known = OF_REFERENCE.into_iter().chain(of_run);
-            self.faults.push(fault.suggest(quantity, known));
+            let names = OF_REFERENCE.into_iter().chain(of_run);
+            self.faults.push(fault.suggest(quantity, names));
         }
     }
 }
 
 fn is_of_run(quantity: &str) -> bool {
-    steps_of(quantity).is_some() || quantities().iter().any(|known| known == quantity)
+    steps_of(quantity).is_some() || quantities().iter().any(|name| name == quantity)
 }
 
 fn is_known(quantity: &str) -> bool {
@@ -294,7 +294,7 @@ impl Columns {
     /// any other name.
     pub fn at(&self, name: &str) -> usize {
         let mut columns = HEADER.into_iter().zip(self.0);
-        let column = columns.find(|(known, _)| *known == name);
+        let column = columns.find(|(head, _)| *head == name);
         column.map_or(0, |(_, index)| index)
     }
 }

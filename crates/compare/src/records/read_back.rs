@@ -134,8 +134,8 @@ pub fn kept(place: &Path) -> Result<Results, CompareError> {
     } else {
         return Err(refused(format!("there is no folder {shown}")));
     };
-    let found = read(&KEPT, &file).map_err(refused)?;
-    let file = found.ok_or_else(|| refused(missing))?;
+    let source = read(&KEPT, &file).map_err(refused)?;
+    let file = source.ok_or_else(|| refused(missing))?;
     let advice = [COMPARE_FIRST, "the results cannot be used"];
     checked(&file, parse_results, "results.json", advice)
 }
@@ -252,8 +252,8 @@ fn parse_results(text: &str) -> Result<Results, Mistake> {
     let results: Results = parse(text)?;
     // A mistake in a run's measurements reads as a run without any.
     let is_broken = |run: &&Run| run.measured.is_none() && run.unavailable.is_none();
-    let others = results.others.iter().flat_map(|of| &of.runs);
-    match results.runs.iter().chain(others).find(is_broken) {
+    let other_runs = results.others.iter().flat_map(|other| &other.runs);
+    match results.runs.iter().chain(other_runs).find(is_broken) {
         None => Ok(results),
         Some(run) => {
             let what = format!(
@@ -279,14 +279,14 @@ mod tests {
         good: &str,
         texts: &[String],
     ) -> String {
-        let said = texts.iter().map(|text| {
+        let messages = texts.iter().map(|text| {
             assert_ne!(text, good);
             let error = read(&SourceFile::new(name, text.clone()));
             let error = error.err().expect("refused");
             assert!(matches!(error, CompareError::Diagnostics { .. }), "{error}");
             error.to_string()
         });
-        said.collect::<Vec<_>>().join("\n")
+        messages.collect::<Vec<_>>().join("\n")
     }
 
     #[test]
@@ -317,8 +317,8 @@ mod tests {
         joined.others = vec![results::tests::sample()];
         joined.others[0].runs[1].measured = None;
         let file = SourceFile::new("all.json", to_text(&joined));
-        let told = results_of(&file).unwrap_err().to_string();
-        assert!(told.contains("rt on main 512x256 has neither"), "{told}");
+        let error = results_of(&file).unwrap_err().to_string();
+        assert!(error.contains("rt on main 512x256 has neither"), "{error}");
     }
 
     #[test]

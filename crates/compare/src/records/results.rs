@@ -84,15 +84,15 @@ pub struct Results {
 impl Results {
     /// Splits joined results: returns these without `others`, and behind them each of `others`.
     pub fn each(mut self) -> Vec<Self> {
-        let others = std::mem::take(&mut self.others);
-        let others = others.into_iter().flat_map(Self::each);
-        [self].into_iter().chain(others).collect()
+        let parts = std::mem::take(&mut self.others);
+        let parts = parts.into_iter().flat_map(Self::each);
+        [self].into_iter().chain(parts).collect()
     }
 
     /// True if runs on both machines belong together in these results: it is the same one, or of
     /// cells of a plan one of the same kind, whatever its name.
     pub fn joins(&self, one: &Machine, other: &Machine) -> bool {
-        let kind = |of: &Machine| (of.processor.clone(), of.cores);
+        let kind = |machine: &Machine| (machine.processor.clone(), machine.cores);
         one.is_same(other) || (self.plan.is_some() && kind(one) == kind(other))
     }
 
@@ -299,13 +299,13 @@ impl Run {
     /// or in shadow, and right or wrong. Without measurements only the light counts.
     pub fn is_hard(&self) -> bool {
         let measured = self.measured.as_ref();
-        self.area.is_none() && measured.is_none_or(|of| of.answer == Answer::Hard)
+        self.area.is_none() && measured.is_none_or(|measured| measured.answer == Answer::Hard)
     }
 
     /// False if the work ended early, after a single timed frame of this run; otherwise true.
     pub fn is_whole(&self) -> bool {
         let measured = self.measured.as_ref();
-        measured.is_none_or(|of| of.sequence.is_some() || of.turns.is_some())
+        measured.is_none_or(|measured| measured.sequence.is_some() || measured.turns.is_some())
     }
 
     /// Returns method, view, viewport and map size as text: `nsm on main 512x256, map 1024`.
@@ -321,16 +321,22 @@ impl Run {
     /// without measurements.
     pub fn wrong_lit(&self) -> Option<Part> {
         let WrongCounts { lit, shadow, .. } = self.measured.as_ref()?.wrong;
-        let of = (self.pixels.lit + lit).saturating_sub(shadow);
-        Some(Part { count: lit, of })
+        let total = (self.pixels.lit + lit).saturating_sub(shadow);
+        Some(Part {
+            count: lit,
+            of: total,
+        })
     }
 
     /// Returns the number of pixels that the method has wrongly in shadow, of all that it has in
     /// shadow; `None` without measurements.
     pub fn wrong_shadow(&self) -> Option<Part> {
         let WrongCounts { lit, shadow, .. } = self.measured.as_ref()?.wrong;
-        let of = (self.pixels.shadow + shadow).saturating_sub(lit);
-        Some(Part { count: shadow, of })
+        let total = (self.pixels.shadow + shadow).saturating_sub(lit);
+        Some(Part {
+            count: shadow,
+            of: total,
+        })
     }
 
     /// True if `self` and `other` have the same preset, view, viewport and map size. Results keep
@@ -908,13 +914,13 @@ pub(crate) mod tests {
 
     #[test]
     fn a_step_is_what_stands_before_the_first_dot_but_no_repeat() {
-        for (pass, of) in [
+        for (pass, name) in [
             ("trace_rays", "trace_rays"),
             ("fill_rays.compact", "fill_rays"),
             ("turn[0].fill_rays.compact", "fill_rays"),
             ("fill[3]", "fill[3]"),
         ] {
-            assert_eq!(step(pass), of);
+            assert_eq!(step(pass), name);
         }
     }
 

@@ -143,13 +143,13 @@ impl Baseline {
     /// The errors of [`read_back::kept`]; results of an older version, whose runs have no ids of
     /// cells.
     pub fn read(place: &Path) -> Result<Self, CompareError> {
-        let mut all = Vec::new();
+        let mut parts = Vec::new();
         for place in read_back::with_scenes(&[place.to_path_buf()]) {
-            all.extend(read_back::kept(&place)?.each());
+            parts.extend(read_back::kept(&place)?.each());
         }
         let baseline = Self {
             name: place.display().to_string(),
-            all,
+            all: parts,
         };
         if baseline.runs().all(|(_, run)| run.cell.is_empty()) {
             return Err(CompareError::Input(format!(
@@ -161,8 +161,8 @@ impl Baseline {
     }
 
     fn runs(&self) -> impl Iterator<Item = (&Results, &Run)> {
-        let all = self.all.iter();
-        all.flat_map(|results| results.runs.iter().map(move |run| (results, run)))
+        let parts = self.all.iter();
+        parts.flat_map(|results| results.runs.iter().map(move |run| (results, run)))
     }
 
     /// Checks that the baseline has a cell (method, view, viewport and protocol) of a comparison.
@@ -175,8 +175,8 @@ impl Baseline {
         if planned.iter().any(is_known) {
             return Ok(());
         }
-        let here = planned.iter().map(|run| (now, run));
-        let lines = differences(self.runs().map(facts), here.map(facts));
+        let pairs = planned.iter().map(|run| (now, run));
+        let lines = differences(self.runs().map(facts), pairs.map(facts));
         Err(CompareError::Input(format!(
             "the baseline {} has no cell of this comparison\n  {}\n  measure it anew, or name \
              another one",
@@ -199,7 +199,7 @@ impl Baseline {
             began: self
                 .all
                 .iter()
-                .map(|of| of.began.clone())
+                .map(|results| results.began.clone())
                 .max()
                 .unwrap_or_default(),
             cells: Vec::new(),
@@ -219,13 +219,13 @@ impl Baseline {
             changes.cells.push(cell);
         }
         let is_now = |then: &Run| now.runs.iter().any(|run| run.cell == then.cell);
-        let here = self.runs().filter(|(of, _)| of.scene == now.scene);
-        let gone = here.filter(|(_, then)| !then.cell.is_empty() && !is_now(then));
+        let same_scene = self.runs().filter(|(old, _)| old.scene == now.scene);
+        let gone = same_scene.filter(|(_, then)| !then.cell.is_empty() && !is_now(then));
         changes.only_then = gone.unique_by(|(_, then)| &then.cell).count();
-        for (note, of) in notes.iter().counts().into_iter().sorted() {
+        for (note, count) in notes.iter().counts().into_iter().sorted() {
             changes
                 .notes
-                .push(format!("{note} ({})", plural(of, "cell")));
+                .push(format!("{note} ({})", plural(count, "cell")));
         }
         Ok(changes)
     }
@@ -300,16 +300,16 @@ impl Baseline {
         now: Measurement,
         tolerance: Tolerance,
     ) -> Result<(), CompareError> {
-        let counts = |of: Measurement| {
-            let pixels = &of.run.pixels;
+        let counts = |measurement: Measurement| {
+            let pixels = &measurement.run.pixels;
             [pixels.facing_light, pixels.lit, pixels.shadow]
         };
         let mut pairs = counts(then).into_iter().zip(counts(now));
         if pairs.all(|(then, now)| then.abs_diff(now) <= tolerance.pixels) {
             return Ok(());
         }
-        let text = |of| {
-            let [facing, lit, shadow] = counts(of).map(thousands);
+        let text = |measurement| {
+            let [facing, lit, shadow] = counts(measurement).map(thousands);
             format!("{facing} pixels face the light, {lit} lit and {shadow} in shadow")
         };
         Err(CompareError::Input(format!(
@@ -402,26 +402,26 @@ impl Measurement<'_> {
 
 /// The ratio of the new times to the old ones, or why there is none.
 fn ratio(then: Measurement, now: Measurement) -> Result<Ratio, String> {
-    let machines = [then, now].map(|of| of.results.machine_of(of.run));
+    let machines = [then, now].map(|measurement| measurement.results.machine_of(measurement.run));
     if !machines[0].is_same(machines[1]) {
-        let [there, here] = machines;
-        return Err(format!("another machine ({there} then, {here} now)"));
+        let [old, new] = machines;
+        return Err(format!("another machine ({old} then, {new} now)"));
     }
     if !then.is_on_adapter_of(now.results) {
         return Err("another adapter or driver".into());
     }
-    for (of, when) in machines.into_iter().zip(["then", "now"]) {
-        if of.is_loaded() {
-            let cores = plural(of.cores as usize, "core");
-            let load = of.load.unwrap_or_default();
+    for (machine, when) in machines.into_iter().zip(["then", "now"]) {
+        if machine.is_loaded() {
+            let cores = plural(machine.cores as usize, "core");
+            let load = machine.load.unwrap_or_default();
             return Err(format!(
                 "the machine was busy {when} (load {load:.1} on {cores})"
             ));
         }
     }
     let times = [then.measured, now.measured].map(Measured::full_times);
-    let by_wall = times.iter().any(|of| of.gpu_frames.is_none());
-    let [then, now] = times.map(|of| of.frames(by_wall).unwrap_or(&[]));
+    let by_wall = times.iter().any(|times| times.gpu_frames.is_none());
+    let [then, now] = times.map(|times| times.frames(by_wall).unwrap_or(&[]));
     unpaired::ratio(now, then).ok_or_else(|| {
         format!(
             "{} then and {} now, and both must be {LEAST_TURNS} or more",
@@ -445,8 +445,8 @@ fn facts((results, run): (&Results, &Run)) -> Vec<Fact> {
         ("viewports", size(run.viewport)),
         ("methods", run.method_label()),
     ];
-    let of = format!("params of {}", run.method_label());
-    facts.push((&of, run.assignments()));
+    let name = format!("params of {}", run.method_label());
+    facts.push((&name, run.assignments()));
     let facts = facts.into_iter();
     facts
         .map(|(what, value)| (what.to_owned(), value))
@@ -456,21 +456,21 @@ fn facts((results, run): (&Results, &Run)) -> Vec<Fact> {
 /// Lists the facts of which both sides have no value in common.
 fn differences(
     there: impl Iterator<Item = Vec<Fact>>,
-    here: impl Iterator<Item = Vec<Fact>>,
+    own: impl Iterator<Item = Vec<Fact>>,
 ) -> Vec<String> {
-    let (there, here) = (unique(there.flatten()), unique(here.flatten()));
-    let values = |of: &[Fact], what: &str| -> Vec<String> {
-        let of = of.iter().filter(|(known, _)| known == what);
-        of.map(|(_, value)| value.clone()).collect()
+    let (there, own) = (unique(there.flatten()), unique(own.flatten()));
+    let values = |facts: &[Fact], what: &str| -> Vec<String> {
+        let facts = facts.iter().filter(|(name, _)| name == what);
+        facts.map(|(_, value)| value.clone()).collect()
     };
     let mut lines = Vec::new();
-    for what in unique(here.iter().map(|(what, _)| what.clone())) {
-        let [there, here] = [&there, &here].map(|of| values(of, &what));
-        if !there.is_empty() && !here.iter().any(|value| there.contains(value)) {
+    for what in unique(own.iter().map(|(what, _)| what.clone())) {
+        let [there, own] = [&there, &own].map(|facts| values(facts, &what));
+        if !there.is_empty() && !own.iter().any(|value| there.contains(value)) {
             lines.push(format!(
                 "{what}: there {}, here {}",
                 there.join(", "),
-                here.join(", ")
+                own.join(", ")
             ));
         }
     }
@@ -533,18 +533,21 @@ mod tests {
         use Change::{Better, Same, Worse};
         let errors = |change: fn(&mut Measured)| first(timed(10.0), |now| change(measured(now))).0;
         assert_eq!(errors(|_| ()), Same);
-        assert_eq!(errors(|of| of.wrong.total += 1), Worse);
-        assert_eq!(errors(|of| of.wrong.total -= 1), Better);
+        assert_eq!(errors(|measured| measured.wrong.total += 1), Worse);
+        assert_eq!(errors(|measured| measured.wrong.total -= 1), Better);
         assert_eq!(
-            errors(|of| (of.wrong.total, of.wrong.in_band) = (504, 7)),
+            errors(|measured| (measured.wrong.total, measured.wrong.in_band) = (504, 7)),
             Same,
             "in the band"
         );
-        assert_eq!(errors(|of| of.graded.rmse_outside_band += 1e-6), Worse);
+        assert_eq!(
+            errors(|measured| measured.graded.rmse_outside_band += 1e-6),
+            Worse
+        );
         // Fewer wrong pixels, but worse shades: no trade.
-        let both = |of: &mut Measured| {
-            (of.answer, of.wrong.total) = (Answer::Graded, 400);
-            of.graded.rmse_outside_band += 0.1;
+        let both = |measured: &mut Measured| {
+            (measured.answer, measured.wrong.total) = (Answer::Graded, 400);
+            measured.graded.rmse_outside_band += 0.1;
         };
         assert_eq!(errors(both), Worse);
     }
@@ -585,15 +588,15 @@ mod tests {
         type Spoil = fn(&mut Results);
         let spoils: [(Spoil, &str); 3] = [
             (
-                |of| of.runs[0].machine.as_mut().unwrap().host = Some("far".into()),
+                |now| now.runs[0].machine.as_mut().unwrap().host = Some("far".into()),
                 "another machine (bench, Some CPU, 8 cores then, far, Some CPU, 8 cores now)",
             ),
             (
-                |of| of.runs[0].machine.as_mut().unwrap().load = Some(6.0),
+                |now| now.runs[0].machine.as_mut().unwrap().load = Some(6.0),
                 "the machine was busy now (load 6.0 on 8 cores)",
             ),
             (
-                |of| measured(of).frame.gpu_frames = Some(vec![1.0; 3]),
+                |now| measured(now).frame.gpu_frames = Some(vec![1.0; 3]),
                 "10 frames then and 3 now, and both must be 8 or more",
             ),
         ];
@@ -674,19 +677,19 @@ mod tests {
             ),
         ];
         for (change, part) in changes {
-            let told = refused(change);
+            let message = refused(change);
             assert!(
-                told.contains(part) && told.contains("measure it anew"),
-                "{told}"
+                message.contains(part) && message.contains("measure it anew"),
+                "{message}"
             );
         }
         assert!(baseline(sample()).check(&sample(), &sample().runs).is_ok());
         let mut moved = sample();
         moved.runs[0].pixels.lit += 1;
-        let told = baseline(sample()).against(&moved).unwrap_err().to_string();
+        let message = baseline(sample()).against(&moved).unwrap_err().to_string();
         assert!(
-            told.contains("is of another scene: on main at 512x256"),
-            "{told}"
+            message.contains("is of another scene: on main at 512x256"),
+            "{message}"
         );
     }
 }

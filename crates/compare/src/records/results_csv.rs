@@ -26,15 +26,15 @@ use std::path::Path;
 fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
     let columns = columns::csv();
     let heads = columns.iter().map(|column| column.head);
-    let all = [results].into_iter().chain(&results.others);
-    let all = all.flat_map(|of| of.runs.iter().map(move |run| (of, run)));
-    let row = |(of, run)| {
+    let parts = [results].into_iter().chain(&results.others);
+    let runs = parts.flat_map(|results| results.runs.iter().map(move |run| (results, run)));
+    let row = |(results, run)| {
         columns
             .iter()
-            .map(|column| column.csv_cell(of, run))
+            .map(|column| column.csv_cell(results, run))
             .collect()
     };
-    Table::new(heads, 0, all.map(row)).csv()
+    Table::new(heads, 0, runs.map(row)).csv()
 }
 
 /// Writes `results.json` and `results.csv` into `folder`, each whole or not at all. Returns the

@@ -65,8 +65,8 @@ impl Samples {
             samples.gpu.push(timing.gpu());
             samples.cpu.push(timing.cpu());
             for pass in &timing.passes {
-                let known = |samples: &PassSamples| samples.name == pass.name;
-                let own = find_or_push(&mut samples.passes, known, || PassSamples {
+                let is_own = |samples: &PassSamples| samples.name == pass.name;
+                let own = find_or_push(&mut samples.passes, is_own, || PassSamples {
                     name: pass.name.clone(),
                     gpu: Vec::new(),
                     cpu: Vec::new(),

@@ -135,17 +135,17 @@ impl Sequence {
     /// frames: name, `made` or `refitted`, number of frames, and median time in milliseconds. They
     /// are sorted by name.
     pub fn remade<'s>(&'s self) -> Vec<(&'s str, &'s str, usize, f64)> {
-        let all = self.frames.iter().flat_map(|frame| &frame.remade);
+        let remade = self.frames.iter().flat_map(|frame| &frame.remade);
         let mut times: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
-        for Remade { name, how, ms } in all {
+        for Remade { name, how, ms } in remade {
             times.entry((name, how)).or_default().push(*ms);
         }
         let median = |((name, how), mut times): ((&'s str, &'s str), Vec<f64>)| {
             times.sort_by(f64::total_cmp);
             (name, how, times.len(), times[times.len() / 2])
         };
-        let all = times.into_iter().map(median);
-        all.filter(|(.., ms)| *ms >= 0.1).collect()
+        let medians = times.into_iter().map(median);
+        medians.filter(|(.., ms)| *ms >= 0.1).collect()
     }
 }
 

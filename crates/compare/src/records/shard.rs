@@ -110,18 +110,18 @@ mod tests {
 
     #[test]
     fn a_shard_that_is_not_there_is_told_with_those_that_are() {
-        let told = |text: &str| text.parse::<Shard>().unwrap_err();
+        let message = |text: &str| text.parse::<Shard>().unwrap_err();
         assert_eq!(
-            told("0/3"),
+            message("0/3"),
             "shards are counted from 1; there are 1/3 to 3/3"
         );
         assert_eq!(
-            told("4/3"),
+            message("4/3"),
             "there is no shard 4 of 3; there are 1/3 to 3/3"
         );
-        assert_eq!(told("1/0"), "there is at least one shard: 1/1");
+        assert_eq!(message("1/0"), "there is at least one shard: 1/1");
         for text in ["", "3", "a/3", "1/", "-1/3", "1/3/5", "1/99999999999"] {
-            assert!(told(text).contains("for example 3/10"), "{text}");
+            assert!(message(text).contains("for example 3/10"), "{text}");
         }
     }
 }

@@ -117,10 +117,12 @@ impl Source {
     }
 
     fn is_like(&self, other: &Results) -> bool {
-        let conditions = |of: &Results| {
-            let adapter = (of.adapter.to_string(), of.adapter.gpu_unavailable.is_some());
-            let protocol = (of.oracle.clone(), of.frames, of.warmup, of.cached_frames);
-            (of.program.clone(), adapter, of.scene.clone(), protocol)
+        let conditions = |results: &Results| {
+            let (adapter, scene) = (&results.adapter, results.scene.clone());
+            let adapter = (adapter.to_string(), adapter.gpu_unavailable.is_some());
+            let counts = (results.frames, results.warmup, results.cached_frames);
+            let protocol = (results.oracle.clone(), counts);
+            (results.program.clone(), adapter, scene, protocol)
         };
         let results = &self.results;
         let joins = if results.plan == other.plan {
@@ -134,11 +136,10 @@ impl Source {
     /// True if one of the runs has the label of a run of this source and is another cell, of other
     /// params for example. Under one label a table could not tell them apart.
     fn is_at_odds(&self, other: &Results) -> bool {
-        let at_odds =
-            |known: &Run, run: &Run| known.is_in_place_of(run) && !known.is_same_cell(run);
-        let known = &self.results.runs;
+        let at_odds = |own: &Run, run: &Run| own.is_in_place_of(run) && !own.is_same_cell(run);
+        let own_runs = &self.results.runs;
         let mut runs = other.runs.iter();
-        runs.any(|run| known.iter().any(|known| at_odds(known, run)))
+        runs.any(|run| own_runs.iter().any(|own| at_odds(own, run)))
     }
 
     /// Names all machines of the runs, where they are several of one kind.
@@ -148,8 +149,8 @@ impl Source {
         let hosts = unique(hosts);
         if self.results.plan.is_some() && hosts.len() > 1 {
             self.results.machine.host = Some(match &hosts[..] {
-                [first, others @ ..] if others.len() > 3 => {
-                    format!("{first} and {} others", others.len())
+                [first, other_hosts @ ..] if other_hosts.len() > 3 => {
+                    format!("{first} and {} others", other_hosts.len())
                 }
                 hosts => hosts.join(", "),
             });
@@ -174,16 +175,16 @@ impl Source {
             run.machine.get_or_insert_with(|| machine.clone());
             // Times are written so that they sort.
             let when = |run: &Run| (run.session.clone(), run.date.clone());
-            let known = &mut self.results.runs;
-            match known.iter().position(|known| known.is_same_cell(&run)) {
+            let runs = &mut self.results.runs;
+            match runs.iter().position(|own| own.is_same_cell(&run)) {
                 Some(at) => {
                     self.replaced += 1;
-                    if when(&known[at]) <= when(&run) {
-                        (known[at], self.places[at]) = (run, place);
+                    if when(&runs[at]) <= when(&run) {
+                        (runs[at], self.places[at]) = (run, place);
                     }
                 }
                 None => {
-                    known.push(run);
+                    runs.push(run);
                     self.places.push(place);
                 }
             }
@@ -198,7 +199,7 @@ impl Source {
 pub fn sources(kept: Vec<Kept>) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::new();
     for Kept { folder, results } in kept {
-        let fits = |of: &Source| of.is_like(&results) && !of.is_at_odds(&results);
+        let fits = |source: &Source| source.is_like(&results) && !source.is_at_odds(&results);
         find_or_push(&mut sources, fits, || Source::new(&results)).add(folder, results);
     }
     sources.iter_mut().for_each(Source::name_machines);
@@ -253,8 +254,8 @@ mod tests {
         for order in [[0, 1], [1, 0]] {
             let both = [("old", sample()), ("new", later())];
             let both = order.map(|index| both[index].clone());
-            let all = both.map(|(folder, results)| kept(folder, results));
-            let [source] = &sources(all.into())[..] else {
+            let kept = both.map(|(folder, results)| kept(folder, results));
+            let [source] = &sources(kept.into())[..] else {
                 panic!("one machine, scene and protocol")
             };
             let runs = &source.results.runs;
@@ -331,11 +332,11 @@ mod tests {
         assert_eq!((joined.len(), joined[0].results.runs.len()), (1, 4));
         type Change = fn(&mut Results);
         let changes: [Change; 5] = [
-            |of| of.machine.host = Some("far".into()),
-            |of| of.adapter.driver = "driver 2".into(),
-            |of| of.scene.name = "sponza".into(),
-            |of| of.oracle = "offset:1".into(),
-            |of| of.frames = 3,
+            |other| other.machine.host = Some("far".into()),
+            |other| other.adapter.driver = "driver 2".into(),
+            |other| other.scene.name = "sponza".into(),
+            |other| other.oracle = "offset:1".into(),
+            |other| other.frames = 3,
         ];
         for change in changes {
             let mut other = sample();
@@ -343,7 +344,7 @@ mod tests {
             let joined = sources(vec![kept("a", sample()), kept("b", other.clone())]);
             assert_eq!(joined.len(), 2);
             let whole = merged(&joined, Path::new("a")).unwrap();
-            let images = |of: &Results| of.runs[0].measured.as_ref().unwrap().images.is_some();
+            let images = |part: &Results| part.runs[0].measured.as_ref().unwrap().images.is_some();
             assert!(images(&whole) && !images(&whole.others[0]));
             assert_eq!(whole.each().len(), 2);
         }

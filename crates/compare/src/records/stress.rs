@@ -265,8 +265,8 @@ impl Case {
     /// True if a method with a shadow map called all pixels facing the light uncertain, so that a
     /// right answer does not test its map.
     pub fn is_left_to_rays(&self, cell: &Cell) -> bool {
-        let all = self.pixels.facing_light;
-        let of_all = |counts: &Counts| all > 0 && counts.uncertain == all;
+        let facing = self.pixels.facing_light;
+        let of_all = |counts: &Counts| facing > 0 && counts.uncertain == facing;
         cell.map_size.is_some() && cell.counts.as_ref().is_some_and(of_all)
     }
 }
@@ -461,15 +461,15 @@ pub(crate) mod tests {
             (only_certain, false, Casters::Open, certain, Fail),
             (only_certain, true, Casters::Open, certain, Open),
         ] {
-            let found = Verdict::new(guarantee, culls, casters, 7, &outside);
+            let judged = Verdict::new(guarantee, culls, casters, 7, &outside);
             assert_eq!(
-                found, verdict,
+                judged, verdict,
                 "{guarantee:?} {culls} {casters:?} {outside:?}"
             );
         }
         for (guarantee, verdict) in [(exact, Pass), (only_certain, Unjudged)] {
-            let found = Verdict::new(guarantee, true, Casters::Closed, 0, &right);
-            assert_eq!(found, verdict, "nothing is certain, {guarantee:?}");
+            let judged = Verdict::new(guarantee, true, Casters::Closed, 0, &right);
+            assert_eq!(judged, verdict, "nothing is certain, {guarantee:?}");
         }
     }
 

@@ -59,8 +59,8 @@ impl Tuned {
     /// Returns the tuned method as an argument of `compare`, with all params that it needs to be
     /// the same again: `nsm@cull=none,slope_bias=2`.
     pub fn argument(&self) -> String {
-        let all = assignments(&self.given).chain(assignments(&self.set));
-        named(&self.of, &all.sorted().join(","))
+        let params = assignments(&self.given).chain(assignments(&self.set));
+        named(&self.of, &params.sorted().join(","))
     }
 }
 

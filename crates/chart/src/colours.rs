@@ -33,11 +33,11 @@ const VARIABLES: &str = "s0 s1 s2 s3 s4 s5 s6 s7 ink quiet quiet front line fain
 
 /// Replaces the colours of an SVG picture by the variables of a web page's style.
 pub(crate) fn as_variables(svg: String) -> String {
-    let others = [INK, AXIS, GUIDE, FRONT, GRID[0], GRID[1], STRIP, WHITE];
-    let all = LOOKS.into_iter().chain(others).zip(VARIABLES.split(' '));
+    let furniture = [INK, AXIS, GUIDE, FRONT, GRID[0], GRID[1], STRIP, WHITE];
+    let colours = LOOKS.into_iter().chain(furniture).zip(VARIABLES.split(' '));
     // Words are escaped: a colour between quotes is one.
-    all.fold(svg, |svg, (RGBColor(red, green, blue), name)| {
-        let known = format!("\"#{red:02X}{green:02X}{blue:02X}\"");
-        svg.replace(&known, &format!("\"var(--{name})\""))
+    colours.fold(svg, |svg, (RGBColor(red, green, blue), name)| {
+        let quoted = format!("\"#{red:02X}{green:02X}{blue:02X}\"");
+        svg.replace(&quoted, &format!("\"var(--{name})\""))
     })
 }

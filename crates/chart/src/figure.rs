@@ -149,10 +149,10 @@ impl Figure {
 
     /// Returns the look of a series: by its place in the list of looks, the others' behind these.
     fn look(&self, names: &[&str], name: &str) -> Look {
-        let is_listed = |name: &str| self.looks.iter().any(|known| known == name);
-        let others = names.iter().copied().filter(|name| !is_listed(name));
-        let mut all = self.looks.iter().map(String::as_str).chain(others);
-        let place = all.position(|known| known == name);
+        let is_listed = |name: &str| self.looks.iter().any(|listed| listed == name);
+        let unlisted = names.iter().copied().filter(|name| !is_listed(name));
+        let mut ordered = self.looks.iter().map(String::as_str).chain(unlisted);
+        let place = ordered.position(|series| series == name);
         place.map_or(Look::neutral(), Look::new)
     }
 

@@ -41,12 +41,12 @@ mod tests {
         ) {
             let points: Vec<(f64, f64)> =
                 points.into_iter().map(|(x, y)| (x.into(), y.into())).collect();
-            let found = front(&points);
+            let best = front(&points);
             for (index, &(x, y)) in points.iter().enumerate() {
                 let beaten = points.iter().enumerate().any(|(other, &(u, v))| {
                     u <= x && v <= y && (u < x || v < y || other < index)
                 });
-                prop_assert_eq!(found.contains(&index), !beaten, "{} of {:?}", index, &points);
+                prop_assert_eq!(best.contains(&index), !beaten, "{} of {:?}", index, &points);
             }
         }
     }

@@ -176,8 +176,8 @@ pub(crate) fn draw_line(
     opacity: f64,
 ) -> Result<(), Error> {
     let line = PathElement::new(places.to_vec(), look.colour.mix(opacity).stroke_width(2));
-    let of = format!("data-series=\"{}\"", xml(&series.name));
-    canvas.group(&of, "", |root| Ok(root.draw(&line)?))
+    let attributes = format!("data-series=\"{}\"", xml(&series.name));
+    canvas.group(&attributes, "", |root| Ok(root.draw(&line)?))
 }
 
 /// Draws a mark of a series as a group that a page's script can find. `name` is an SVG text element
@@ -188,13 +188,13 @@ pub(crate) fn draw_mark(
     name: &str,
     draw: impl FnOnce(&Root) -> Result<(), Error>,
 ) -> Result<(), Error> {
-    let of = format!(
+    let attributes = format!(
         "class=\"mark\" data-series=\"{}\" data-name=\"{}\" aria-label=\"{}\"",
         xml(&series.name),
         xml(mark.name()),
         xml(&mark.about)
     );
-    canvas.group(&of, name, draw)
+    canvas.group(&attributes, name, draw)
 }
 
 /// Ends of the error bar of each mark, in pixels from the left border.
@@ -215,8 +215,8 @@ fn names(
     };
     taken.extend(places.iter().zip(bars).filter_map(bar));
     let mut names = vec![String::new(); marks.len()];
-    let others = (0..marks.len()).filter(|index| !best.contains(index));
-    for index in best.iter().copied().chain(others) {
+    let beaten = (0..marks.len()).filter(|index| !best.contains(index));
+    for index in best.iter().copied().chain(beaten) {
         let (x, y) = places[index];
         let name = marks[index].1.name();
         let wide = width(name, BODY);

@@ -79,9 +79,9 @@ impl Scale {
     /// Where labels stand: decades, or 1, 2, 5 where there are few of them, or 1 to 9.
     fn labelled(&self) -> Vec<f64> {
         let leads: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &LEADS];
-        let all = leads.map(|leads| self.ticks(leads));
-        let enough = all.iter().find(|ticks| ticks.len() >= 3);
-        let mut ticks = enough.unwrap_or(&all[2]).clone();
+        let candidates = leads.map(|leads| self.ticks(leads));
+        let enough = candidates.iter().find(|ticks| ticks.len() >= 3);
+        let mut ticks = enough.unwrap_or(&candidates[2]).clone();
         // No more than ten of them.
         let step = ticks.len().div_ceil(10).max(1);
         let mut index = 0;
@@ -146,7 +146,7 @@ impl ReversibleRanged for Scale {
 impl ValueFormatter<f64> for Scale {
     fn format_ext(&self, value: &f64) -> String {
         let mut named = self.named.iter();
-        match named.find(|(known, _)| known == value) {
+        match named.find(|(tick, _)| tick == value) {
             Some((_, name)) => clean(name),
             None => number(*value),
         }

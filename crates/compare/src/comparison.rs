@@ -222,16 +222,16 @@ impl Comparison {
     /// the protocol's rays and jitter.
     pub(crate) fn fingerprint(&self) -> Fingerprint {
         let scene = &self.scene;
-        let mut of = self
+        let mut fingerprint = self
             .primary
             .fingerprint
             .with_scene(&scene.mesh, &scene.lights);
         if self.views.iter().any(|view| view.light(scene).has_extent()) {
-            of = of.with_text(&self.protocol.reference_samples.to_string());
+            fingerprint = fingerprint.with_text(&self.protocol.reference_samples.to_string());
         }
         match self.protocol.jitter {
-            Some(count) => of.with_text(&format!("jitter {count}")),
-            None => of,
+            Some(count) => fingerprint.with_text(&format!("jitter {count}")),
+            None => fingerprint,
         }
     }
 

@@ -165,7 +165,7 @@ pub fn causes<'e>(
         let cause = (*cause)?;
         Some((cause.source(), cause.to_string()))
     });
-    pairs.filter_map(|(cause, said)| cause.filter(|cause| !said.contains(&cause.to_string())))
+    pairs.filter_map(|(cause, message)| cause.filter(|cause| !message.contains(&cause.to_string())))
 }
 
 /// Returns an error and its causes in one line, separated by colons.

@@ -20,8 +20,8 @@ pub fn unique<T: PartialEq>(list: impl IntoIterator<Item = T>) -> Vec<T> {
 /// Returns the index of the first item of `list` that equals `item`. If there is none, `item` is
 /// added at the end.
 pub fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
-    let known = list.iter().position(|known| *known == item);
-    known.unwrap_or_else(|| {
+    let index = list.iter().position(|listed| *listed == item);
+    index.unwrap_or_else(|| {
         list.push(item);
         list.len() - 1
     })
@@ -43,8 +43,8 @@ pub fn find_or_push<T>(
 /// Returns the value beside the first `key` in a list of pairs. If there is none, `key` is added at
 /// the end with the default value.
 pub fn entry<K: PartialEq, V: Default>(list: &mut Vec<(K, V)>, key: K) -> &mut V {
-    let known = list.iter().position(|(known, _)| *known == key);
-    let place = known.unwrap_or_else(|| {
+    let index = list.iter().position(|(listed, _)| *listed == key);
+    let place = index.unwrap_or_else(|| {
         list.push((key, V::default()));
         list.len() - 1
     });

@@ -153,16 +153,16 @@ impl OwnScene {
                 outside: options.ground,
                 subject: Some(subject),
             };
-            let found = match camera.eye {
+            let defaults = match camera.eye {
                 None => default_views(&mesh, &request),
                 Some(_) => None,
             };
-            if let Some(found) = found {
+            if let Some(defaults) = defaults {
                 if chosen.light {
-                    lights = vec![Light::only(found.light)];
+                    lights = vec![Light::only(defaults.light)];
                 }
-                chosen.places = found.views.iter().map(|view| view.place).collect();
-                views = found.views.into_iter().map(|view| view.view).collect();
+                chosen.places = defaults.views.iter().map(|view| view.place).collect();
+                views = defaults.views.into_iter().map(|view| view.view).collect();
             } else {
                 views.push(towards(&mesh, camera.eye.unwrap_or_default()));
             }

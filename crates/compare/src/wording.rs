@@ -106,11 +106,11 @@ pub fn did_you_mean<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> S
     closest(wanted, names).map_or(String::new(), hint)
 }
 
-/// Returns a message about the unknown name `wanted`: the text `what`, the name in `known` that is
-/// closest to it, and a line with `nouns` (such as `views`) and all of `known`.
-pub fn unknown(what: &str, wanted: &str, nouns: &str, known: &[&str]) -> String {
-    let hint = did_you_mean(wanted, known.iter().copied());
-    format!("{what}{hint}\n  {nouns}: {}", known.join(", "))
+/// Returns a message about the unknown name `wanted`: the text `what`, the name in `names` that is
+/// closest to it, and a line with `nouns` (such as `views`) and all of `names`.
+pub fn unknown(what: &str, wanted: &str, nouns: &str, names: &[&str]) -> String {
+    let hint = did_you_mean(wanted, names.iter().copied());
+    format!("{what}{hint}\n  {nouns}: {}", names.join(", "))
 }
 
 /// Returns the command line of this process as it can be typed again, with `skiagraph` instead of

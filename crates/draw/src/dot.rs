@@ -136,14 +136,14 @@ fn material_node(material: &Material) -> String {
 
 /// Returns the edge of an access, with the part if it is not the whole.
 fn link(access: &Access, material: Option<&&Material>) -> String {
-    let (pass, of) = (id("pass", &access.pass), id("material", &access.material));
+    let (pass, resource) = (id("pass", &access.pass), id("material", &access.material));
     let ends = match (access.reads, access.writes) {
-        (false, true) => format!("{pass} -> {of}"),
-        _ => format!("{of} -> {pass}"),
+        (false, true) => format!("{pass} -> {resource}"),
+        _ => format!("{resource} -> {pass}"),
     };
     let both = (access.reads && access.writes).then(|| "dir=both".to_owned());
     let part = access.part.as_ref().zip(material);
-    let part = part.map(|(part, of)| format!("label={}", quoted(&words::part(part, of))));
+    let part = part.map(|(part, whole)| format!("label={}", quoted(&words::part(part, whole))));
     let attributes: Vec<String> = both.into_iter().chain(part).collect();
     format!("  {ends} [{}];", attributes.join(", "))
 }

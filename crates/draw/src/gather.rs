@@ -53,7 +53,7 @@ fn shaders(pass: &LinkedPass) -> Vec<String> {
     let mut files: Vec<String> = Vec::new();
     for program in pass.steps.iter().filter_map(Step::program) {
         let file = program.shader.file();
-        if !files.iter().any(|known| known == file) {
+        if !files.iter().any(|path| path == file) {
             files.push(file.to_owned());
         }
     }
@@ -75,8 +75,8 @@ fn materials(plan: &Plan) -> Vec<Material> {
     for id in &schedule.ping_pong {
         let material = &mut materials[id.index()];
         material.versions = plan.versions(*id);
-        let all = |bytes: u64| bytes.saturating_mul(material.versions as u64);
-        material.bytes = material.bytes.map(all);
+        let total = |bytes: u64| bytes.saturating_mul(material.versions as u64);
+        material.bytes = material.bytes.map(total);
     }
     for (name, target) in plan.readable() {
         materials[target.id.index()].outputs.push(name.clone());
@@ -146,13 +146,13 @@ fn accesses(pass: &LinkedPass, plan: &Plan) -> Vec<Access> {
     for access in uses.filter(|access| access.reads || access.writes) {
         let resource = plan.resource(access.resource);
         let part = part(&access.part, &resource.kind);
-        let known = drawn
+        let earlier = drawn
             .iter_mut()
             .find(|other| other.material == resource.name && other.part == part);
-        match known {
-            Some(known) => {
-                known.reads |= access.reads;
-                known.writes |= access.writes;
+        match earlier {
+            Some(earlier) => {
+                earlier.reads |= access.reads;
+                earlier.writes |= access.writes;
             }
             None => drawn.push(Access {
                 pass: pass.name.value.clone(),
@@ -168,7 +168,7 @@ fn accesses(pass: &LinkedPass, plan: &Plan) -> Vec<Access> {
 
 /// Returns the part that a range selects; `None` if it leaves nothing out.
 fn part(range: &SubresourceRange, kind: &ResourceKind) -> Option<Part> {
-    let some = |range: &Range<u32>, all: u32| (*range != (0..all)).then(|| range.clone());
+    let some = |range: &Range<u32>, count: u32| (*range != (0..count)).then(|| range.clone());
     let part = match kind {
         ResourceKind::Texture(texture) => Part {
             mips: some(&range.mips, texture.mips),
@@ -190,17 +190,17 @@ fn part(range: &SubresourceRange, kind: &ResourceKind) -> Option<Part> {
 
 fn edges(plan: &Plan, positions: &[Option<usize>]) -> Vec<Edge> {
     let runs = |pass: PassId| positions[pass.index()].is_some();
-    let mut found = plan.dependences(runs);
+    let mut dependences = plan.dependences(runs);
     if positions.contains(&None) {
         // A pass that does not run delays no other; only its reads are of interest.
-        let mut all = plan.dependences(|_| true);
-        all.retain(|&(from, to, hazard), _| {
+        let mut reads = plan.dependences(|_| true);
+        reads.retain(|&(from, to, hazard), _| {
             hazard == Hazard::ReadAfterWrite && !(runs(from) && runs(to))
         });
-        found.append(&mut all);
+        dependences.append(&mut reads);
     }
     let mut reasons: BTreeMap<[PassId; 2], Vec<Reason>> = BTreeMap::new();
-    for ((from, to, hazard), resources) in found {
+    for ((from, to, hazard), resources) in dependences {
         let names = resources.iter().map(|id| plan.resource(*id).name.clone());
         reasons.entry([from, to]).or_default().push(Reason {
             hazard,

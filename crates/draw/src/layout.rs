@@ -176,8 +176,8 @@ fn columns(drawing: &Drawing) -> Vec<Column<'_>> {
     let mut opened: HashMap<usize, usize> = HashMap::new();
     for material in &drawing.materials {
         if let Some(memory) = material.memory {
-            let known = opened.entry(memory).or_insert(usize::MAX);
-            *known = first(material).min(*known);
+            let start = opened.entry(memory).or_insert(usize::MAX);
+            *start = first(material).min(*start);
         }
     }
     let mut materials: Vec<&Material> = drawing.materials.iter().collect();

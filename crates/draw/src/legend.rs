@@ -120,8 +120,8 @@ fn items(drawing: &Drawing) -> BTreeSet<Item> {
     let mut uses: HashMap<[&str; 2], (bool, bool)> = HashMap::new();
     let materials = drawing.by_name();
     for access in &drawing.accesses {
-        if let Some((part, of)) = access.part.as_ref().zip(materials.get(&*access.material)) {
-            items.extend(words::narrowed(part, of).map(|(unit, _)| Item::Note(unit)));
+        if let Some((part, whole)) = access.part.as_ref().zip(materials.get(&*access.material)) {
+            items.extend(words::narrowed(part, whole).map(|(unit, _)| Item::Note(unit)));
         }
         let (reads, writes) = uses.entry([&access.pass, &access.material]).or_default();
         (*reads, *writes) = (*reads || access.reads, *writes || access.writes);

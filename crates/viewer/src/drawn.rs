@@ -309,14 +309,14 @@ fn table(text: &str) -> Drawn {
 }
 
 /// Names of the mips and layers of a texture or of a part of one; empty where there is only one.
-fn part_names(content: &Content, of: Option<&PartSummary>) -> Vec<String> {
+fn part_names(content: &Content, summary: Option<&PartSummary>) -> Vec<String> {
     let Content::Texture { parts, .. } = content else {
         return Vec::new();
     };
     if parts.len() < 2 {
         return Vec::new();
     }
-    let first = of.map_or([0, 0], |part| [part.mips.start, part.layers.start]);
+    let first = summary.map_or([0, 0], |part| [part.mips.start, part.layers.start]);
     let [mut mip, mut layer] = first;
     let name = |(index, size): (usize, &[u32; 2])| {
         match index.checked_sub(1).map(|before| parts[before]) {

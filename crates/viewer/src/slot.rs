@@ -67,7 +67,7 @@ impl Slot {
         let recorded = RecordedSources::new(sources);
         let read = preset::load(&self.name, &recorded)
             .map_err(|error| error.to_string())
-            .and_then(|(graph, _)| graph.map_err(|found| found.render(false)));
+            .and_then(|(graph, _)| graph.map_err(|diagnostics| diagnostics.render(false)));
         let texts = Some(recorded.fingerprint());
         let faults = read.as_ref().err().cloned();
         if texts == self.texts && faults == self.faults {
@@ -234,7 +234,7 @@ impl From<ExecuteError> for Refusal {
     fn from(error: ExecuteError) -> Self {
         Self {
             text: match &error {
-                ExecuteError::Plan(found) => found.render(false),
+                ExecuteError::Plan(diagnostics) => diagnostics.render(false),
                 error => explain(error),
             },
             is_fatal: is_fatal(&error),
@@ -245,7 +245,7 @@ impl From<ExecuteError> for Refusal {
 impl PlannedFor {
     /// True if the next plan is this one with other values of params, and no default comes back.
     fn only_sets_params(&self, next: &Self) -> bool {
-        let known = |name| next.desired.params.contains_key(name);
+        let is_kept = |name| next.desired.params.contains_key(name);
         let with_params = Self {
             desired: DesiredMethod {
                 params: next.desired.params.clone(),
@@ -253,7 +253,7 @@ impl PlannedFor {
             },
             ..self.clone()
         };
-        with_params == *next && self.desired.params.keys().all(known)
+        with_params == *next && self.desired.params.keys().all(is_kept)
     }
 }
 
@@ -273,8 +273,8 @@ fn plan(
         request.outputs = Some(judged.into_iter().map(str::to_owned).collect());
     }
     let plan = preset.graph.plan(&request);
-    plan.map_err(|found| Refusal {
-        text: found.render(false),
+    plan.map_err(|diagnostics| Refusal {
+        text: diagnostics.render(false),
         is_fatal: false,
     })
 }

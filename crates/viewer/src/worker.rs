@@ -187,9 +187,9 @@ impl Worker {
         match (self.load_scene)(&desired.scene) {
             Ok((scene, views)) => {
                 let scene = Arc::new(scene);
-                let is_other = |view: &&View| views.iter().all(|known| known.name != view.name);
-                let others: Vec<View> = scene.views.iter().filter(is_other).cloned().collect();
-                let views = [views, others].concat();
+                let is_other = |view: &&View| views.iter().all(|listed| listed.name != view.name);
+                let other_views: Vec<View> = scene.views.iter().filter(is_other).cloned().collect();
+                let views = [views, other_views].concat();
                 let loaded = Loaded { scene, views };
                 (self.tell)(Event::Scene(desired.scene.clone(), Ok(loaded.clone())));
                 self.slots.iter_mut().for_each(Slot::forget_device);
@@ -215,9 +215,9 @@ impl Worker {
     fn fill_slots(&mut self, desired: &DesiredState) -> Result<(), CompareError> {
         let mut before = std::mem::take(&mut self.slots);
         for method in &desired.methods {
-            let known = before.iter().position(|slot| slot.name == method.name);
-            self.slots.push(match known {
-                Some(known) => before.swap_remove(known),
+            let index = before.iter().position(|slot| slot.name == method.name);
+            self.slots.push(match index {
+                Some(index) => before.swap_remove(index),
                 None => {
                     let mut slot = Slot::new(&method.name);
                     slot.read(&*self.sources);
@@ -226,7 +226,7 @@ impl Worker {
             });
         }
         let graphs = self.slots.iter().filter_map(Slot::graph);
-        let useful = graphs.fold(wgpu::Features::empty(), |all, it| all | it.features());
+        let useful = graphs.fold(wgpu::Features::empty(), |useful, it| useful | it.features());
         let experimental = wgpu::Features::all_experimental_mask();
         let missing = (useful & self.gpu.adapter.features()) - self.gpu.device.features();
         if (missing - experimental).is_empty() {
@@ -308,7 +308,8 @@ impl Stage {
     ) -> Result<Vec<u32>, CompareError> {
         let wrong = |why: String| CompareError::Input(format!("no picture of the scene: {why}"));
         let provider = &mut self.provider;
-        if self.primitives.as_ref().is_none_or(|(_, of)| *of != size) {
+        let is_stale = |(_, planned): &(_, [u32; 2])| *planned != size;
+        if self.primitives.as_ref().is_none_or(is_stale) {
             let plan = PrimaryVisibility::load(sources)?.plan(session, size, provider)?;
             let executor = frame::executor(session, plan, provider);
             self.primitives = Some((executor.map_err(|error| wrong(explain(&error)))?, size));

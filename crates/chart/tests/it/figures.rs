@@ -266,15 +266,15 @@ fn a_page_finds_marks_their_names_and_what_they_tell() {
             .find(|mark| mark.attribute("data-series") == Some("rt"))
             .unwrap();
         assert_eq!(rt.attribute("data-name"), Some("rt 0"));
-        let told = rt.attribute("aria-label").unwrap();
-        assert_eq!(told, "rt 0\n1205 <ms> & \"more\"");
+        let label = rt.attribute("aria-label").unwrap();
+        assert_eq!(label, "rt 0\n1205 <ms> & \"more\"");
         // Names stand in their marks' groups, cover nothing and leave the picture nowhere.
         let is_name = |node: &Node| node.attribute("class") == Some("name");
         let names: Vec<Node> = svg.descendants().filter(is_name).collect();
         assert!(names.len() > 6, "{}", names.len());
         for (index, name) in names.iter().enumerate() {
-            let of = name.parent().and_then(|mark| mark.attribute("data-name"));
-            assert_eq!(name.text(), of);
+            let mark_name = name.parent().and_then(|mark| mark.attribute("data-name"));
+            assert_eq!(name.text(), mark_name);
             let [left, top, right, bottom] = text_box(*name);
             assert!(left >= 0.0 && right <= f64::from(width) && top >= 0.0);
             for other in &names[..index] {
@@ -296,8 +296,8 @@ fn ticks_may_have_names() {
     figure.ticks = vec![(1e4, "small".into()), (1e6, "<large>".into())];
     let svg = svg(&figure);
     let svg = Document::parse(&svg).unwrap();
-    let of = |name: &str| texts(&svg).iter().filter(|(text, _)| *text == name).count();
-    assert_eq!((of("small"), of("<large>"), of("10⁷")), (3, 3, 0));
+    let count = |name: &str| texts(&svg).iter().filter(|(text, _)| *text == name).count();
+    assert_eq!((count("small"), count("<large>"), count("10⁷")), (3, 3, 0));
     let sign = figure.sign("nsm").unwrap();
     assert!(sign.contains("\"var(--s1)\"") && Document::parse(&sign).is_ok());
 }
@@ -442,12 +442,12 @@ fn a_series_looks_the_same_whatever_else_is_drawn() {
         colours.dedup();
         colours
     };
-    let all = colours(&Figure { looks, ..bars() });
+    let listed = colours(&Figure { looks, ..bars() });
     let unlisted = colours(&bars());
-    assert_eq!(all.len(), 6, "three series in two panels");
+    assert_eq!(listed.len(), 6, "three series in two panels");
     assert_eq!(
         unlisted[1..3],
-        all[..2],
+        listed[..2],
         "one place on, since nsm is not drawn"
     );
     let mut fewer = bars();
@@ -455,7 +455,7 @@ fn a_series_looks_the_same_whatever_else_is_drawn() {
     for panel in &mut fewer.panels {
         panel.series.remove(0);
     }
-    assert_eq!(colours(&fewer)[..2], all[1..3]);
+    assert_eq!(colours(&fewer)[..2], listed[1..3]);
 }
 
 #[test]
@@ -464,7 +464,7 @@ fn error_bars_reach_from_end_to_end_within_the_axes() {
         spread: Some([20.0, 80.0]),
         ..Mark::new(40.0, 3.0)
     };
-    let of = |mark: Mark, kind: Kind| Figure {
+    let figure = |mark: Mark, kind: Kind| Figure {
         panels: vec![Panel {
             title: "park".into(),
             kind,
@@ -477,7 +477,7 @@ fn error_bars_reach_from_end_to_end_within_the_axes() {
         }],
         ..Figure::default()
     };
-    let drawn = svg(&of(mark.clone(), Kind::Front));
+    let drawn = svg(&figure(mark.clone(), Kind::Front));
     let parsed = Document::parse(&drawn).unwrap();
     let thin = parsed.descendants().filter(|node| {
         let is_of_series = node.attribute("stroke") == Some("#0072B2");
@@ -499,13 +499,13 @@ fn error_bars_reach_from_end_to_end_within_the_axes() {
         "{left} {middle} {right}"
     );
     assert!(left > 60.0 && right < 800.0 && right - left > 100.0);
-    assert!(!svg(&of(mark.clone(), Kind::Growth)).contains("quartiles"));
+    assert!(!svg(&figure(mark.clone(), Kind::Growth)).contains("quartiles"));
     for spread in [[0.0, 1.0], [3.0, 2.0], [1.0, f64::NAN]] {
         let mark = Mark {
             spread: Some(spread),
             ..mark.clone()
         };
-        let error = of(mark, Kind::Front).to_svg().unwrap_err().to_string();
+        let error = figure(mark, Kind::Front).to_svg().unwrap_err().to_string();
         assert!(error.contains("an error bar from"), "{error}");
     }
 }
@@ -576,14 +576,14 @@ fn what_has_no_place_is_refused_by_name() {
         size,
         ..Mark::new(x, y)
     };
-    let told = |result: Result<String, Error>| result.unwrap_err().to_string();
+    let refusal = |result: Result<String, Error>| result.unwrap_err().to_string();
     for (x, y) in [
         (0.0, 1.0),
         (1.0, -1.0),
         (f64::NAN, 1.0),
         (1.0, f64::INFINITY),
     ] {
-        let message = told(with(mark(x, y, 0), Kind::Front));
+        let message = refusal(with(mark(x, y, 0), Kind::Front));
         assert!(
             message.contains("\"city\"") && message.contains("\"nsm\""),
             "{message}"
@@ -591,10 +591,10 @@ fn what_has_no_place_is_refused_by_name() {
     }
     assert!(with(mark(1.0, 0.0, 0), Kind::Front).is_ok());
     assert!(with(mark(1.0, 0.0, 0), Kind::Growth).is_err());
-    assert!(told(with(mark(1.0, 1.0, 1), Kind::Growth)).contains("size 1"));
+    assert!(refusal(with(mark(1.0, 1.0, 1), Kind::Growth)).contains("size 1"));
     let mut empty = growth();
     empty.panels[2].series.clear();
-    assert!(told(empty.to_svg()).contains("\"forest\" has no marks"));
+    assert!(refusal(empty.to_svg()).contains("\"forest\" has no marks"));
     assert!(with(mark(0.0, 0.0, 0), Kind::Frames).is_ok());
     assert!(with(mark(1.0, -0.5, 0), Kind::Frames).is_err());
     // A single mark still has axes around it.

@@ -49,8 +49,8 @@ fn joined(mesh: &Mesh, subject: usize, min: Vec3, (size, cell): (Vec3, f32)) -> 
     let counts = (size / cell).as_uvec3() + UVec3::ONE;
     let mut numbers = vec![0u32; counts.element_product() as usize];
     let mut coarse = Mesh::default();
-    let others = mesh.triangles[subject..].iter().flatten().min();
-    let first_other = others.map_or(u32::MAX, |corner| *corner);
+    let least_corner = mesh.triangles[subject..].iter().flatten().min();
+    let first_other = least_corner.map_or(u32::MAX, |corner| *corner);
     let position = |(index, position): (u32, &Vec3)| {
         if index >= first_other {
             coarse.positions.push(*position);

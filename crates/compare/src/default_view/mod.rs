@@ -325,11 +325,11 @@ impl Search<'_> {
     }
 
     /// The first that is plenty of the groups' best views, or the best of all.
-    fn first_plenty(&self, found: impl Iterator<Item = Option<Found>>) -> Option<Found> {
+    fn first_plenty(&self, candidates: impl Iterator<Item = Option<Found>>) -> Option<Found> {
         let mut best: Option<Found> = None;
-        for found in found.flatten() {
-            if best.as_ref().is_none_or(|best| found.rank > best.rank) {
-                best = Some(found);
+        for candidate in candidates.flatten() {
+            if best.as_ref().is_none_or(|best| candidate.rank > best.rank) {
+                best = Some(candidate);
             }
             if best.as_ref().is_some_and(Found::is_plenty) {
                 break;
@@ -349,10 +349,10 @@ impl Search<'_> {
             None => self.suns_inside(&places),
         };
         let groups = || groups.iter();
-        let found = groups().map(|group| self.best(group, &lights, Place::Inside));
-        let found = self.first_plenty(found);
-        if self.request.light.is_some() || found.as_ref().is_some_and(|it| it.view.holds) {
-            return found;
+        let candidates = groups().map(|group| self.best(group, &lights, Place::Inside));
+        let best = self.first_plenty(candidates);
+        if self.request.light.is_some() || best.as_ref().is_some_and(|it| it.view.holds) {
+            return best;
         }
         // Where no light comes in, that of a lamp tells the views apart.
         let lit = |picture: &Picture| {
@@ -360,7 +360,7 @@ impl Search<'_> {
             self.best(std::slice::from_ref(picture), &[lamp], Place::Inside)
         };
         let lamps = self.first_plenty(groups().flatten().map(lit));
-        self.first_plenty([found, lamps].into_iter())
+        self.first_plenty([best, lamps].into_iter())
     }
 
     fn street(&self, eyes: &[DVec3], height: f64) -> Option<Found> {
@@ -379,8 +379,8 @@ impl Search<'_> {
         let lights = light.into_iter().chain(self.lights()).dedup().collect_vec();
         let mut best = None;
         for slope in ABOVE {
-            let found = self.outside_from(slope, &lights);
-            best = self.first_plenty([best, found].into_iter());
+            let candidate = self.outside_from(slope, &lights);
+            best = self.first_plenty([best, candidate].into_iter());
             if best
                 .as_ref()
                 .is_some_and(|best| best.is_plenty() || best.rank < NO_SHADOW)
@@ -405,8 +405,8 @@ impl Search<'_> {
         for group in std::iter::once(framed.clone()).chain(nearer) {
             filled += usize::from(group.iter().any(Picture::is_filled));
             let lights = if filled > 0 { lights } else { &lights[..1] };
-            let found = self.best(&group, lights, Place::Outside);
-            best = self.first_plenty([best, found].into_iter());
+            let candidate = self.best(&group, lights, Place::Outside);
+            best = self.first_plenty([best, candidate].into_iter());
             if filled >= LIT_GROUPS || best.as_ref().is_some_and(Found::is_plenty) {
                 break;
             }

@@ -251,17 +251,17 @@ fn neighbours(number: usize) -> impl Iterator<Item = usize> {
 }
 
 /// The least or greatest value near each column.
-fn extremes(values: &[f64], of: fn(f64, f64) -> f64) -> Vec<f64> {
+fn extremes(values: &[f64], extreme: fn(f64, f64) -> f64) -> Vec<f64> {
     let near = |at: usize| at.saturating_sub(NEAR)..(at + NEAR + 1).min(COLUMNS);
     let numbers = || (0..COLUMNS).cartesian_product(0..COLUMNS);
     let rows = numbers().map(|(z, x)| {
         let row = near(x).map(|x| values[z * COLUMNS + x]);
-        row.reduce(of).unwrap_or_default()
+        row.reduce(extreme).unwrap_or_default()
     });
     let rows = rows.collect_vec();
     let columns = numbers().map(|(z, x)| {
         let column = near(z).map(|z| rows[z * COLUMNS + x]);
-        column.reduce(of).unwrap_or_default()
+        column.reduce(extreme).unwrap_or_default()
     });
     columns.collect()
 }

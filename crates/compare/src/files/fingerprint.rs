@@ -119,8 +119,8 @@ impl<'a> RecordedSources<'a> {
     /// Returns one hash of the paths and contents of everything that was read.
     pub fn fingerprint(&self) -> Fingerprint {
         let texts = self.texts.lock().unwrap_or_else(PoisonError::into_inner);
-        let with = |all: Fingerprint, (path, text): (&String, &Fingerprint)| {
-            all.with_text(path).with_all(*text)
+        let with = |hash: Fingerprint, (path, text): (&String, &Fingerprint)| {
+            hash.with_text(path).with_all(*text)
         };
         texts.iter().fold(Fingerprint::EMPTY, with)
     }
@@ -180,13 +180,13 @@ mod tests {
 
     #[test]
     fn words_do_not_move_from_text_to_text_unseen() {
-        let of = |texts: [&str; 2]| {
+        let fingerprint = |texts: [&str; 2]| {
             texts
                 .into_iter()
                 .fold(Fingerprint::EMPTY, Fingerprint::with_text)
         };
-        assert_ne!(of(["ab", "c"]), of(["a", "bc"]));
-        assert_ne!(of(["ab", "c"]), of(["c", "ab"]));
+        assert_ne!(fingerprint(["ab", "c"]), fingerprint(["a", "bc"]));
+        assert_ne!(fingerprint(["ab", "c"]), fingerprint(["c", "ab"]));
     }
 
     #[test]

@@ -53,10 +53,10 @@ mod tests {
         let texels = vec![0u8, 255, 1, 255, 2, 3, 4, 5];
         let picture: ImageBuffer<Rgba<u8>, _> = ImageBuffer::from_raw(2, 1, texels).unwrap();
         picture.save(folder.path().join("a.png")).unwrap();
-        let found = sources.picture("a.png").unwrap().unwrap();
-        assert_eq!(found.size, [2, 1]);
+        let decoded = sources.picture("a.png").unwrap().unwrap();
+        assert_eq!(decoded.size, [2, 1]);
         assert_eq!(
-            *found.texels,
+            *decoded.texels,
             [[0, 65_535, 257, 65_535], [514, 771, 1028, 1285]]
         );
     }

@@ -42,9 +42,9 @@ pub fn write_scene(
     if !is_scene {
         return Err(refused("a scene file is called NAME.ron".into()));
     }
-    let others = std::mem::take(&mut scene.views).into_iter();
-    let others = others.filter(|view| first.iter().all(|chosen| chosen.name != view.name));
-    scene.views = first.iter().cloned().chain(others).collect();
+    let own_views = std::mem::take(&mut scene.views).into_iter();
+    let own_views = own_views.filter(|view| first.iter().all(|chosen| chosen.name != view.name));
+    scene.views = first.iter().cloned().chain(own_views).collect();
     if let MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. } = &mut scene.mesh {
         *file = mesh_beside(path, file).map_err(refused)?;
     }
@@ -64,8 +64,8 @@ pub fn write_scene(
 /// from the root.
 fn mesh_beside(scene: &Path, mesh: &str) -> Result<String, String> {
     let absolute = |path: &Path| {
-        let found = path.canonicalize();
-        found.map_err(|why| format!("{}: {why}", path.display()))
+        let canonical = path.canonicalize();
+        canonical.map_err(|why| format!("{}: {why}", path.display()))
     };
     let (folder, mesh) = (absolute(folder_of(scene))?, absolute(Path::new(mesh))?);
     let below = mesh.strip_prefix(&folder).map(PathBuf::from);

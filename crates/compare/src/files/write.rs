@@ -79,7 +79,7 @@ fn try_out(folder: &Path) -> io::Result<()> {
 /// True if a path holds a file, or nothing yet. Devices and pipes (`/dev/stdout`) are written into;
 /// a file in their place would take them away from all other processes.
 fn is_replaced(path: &Path) -> bool {
-    fs::metadata(path).map_or(true, |found| found.is_file())
+    fs::metadata(path).map_or(true, |metadata| metadata.is_file())
 }
 
 /// Returns the folder that a file is in; `.` for a bare name.

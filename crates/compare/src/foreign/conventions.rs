@@ -269,7 +269,7 @@ fn projection(
         DVec4::new(0.0, 0.0, b, 0.0),
     );
     let name = format!("{space}_{side}_{word}");
-    let used_by = USED_BY.iter().find(|(of, _)| *of == name);
+    let used_by = USED_BY.iter().find(|(projection, _)| *projection == name);
     Projection {
         used_by: used_by.map_or(String::new(), |(_, by)| (*by).to_owned()),
         camera_space: format!("looks_along_{space}"),
@@ -300,35 +300,40 @@ mod tests {
     fn every_matrix_takes_pixels_to_where_it_says() {
         let (camera, record) = record();
         assert_eq!(record.projections.len(), 16);
-        for of in &record.projections {
-            let matrix = DMat4::from_cols_array(&of.world_to_clip.column_major);
+        for projection in &record.projections {
+            let matrix = DMat4::from_cols_array(&projection.world_to_clip.column_major);
             for (x, y) in [(0, 0), (39, 19), (7, 12)] {
                 for distance in [camera.near, camera.far, (camera.near * camera.far).sqrt()] {
                     let point = camera.eye + camera.pixel_direction(x, y) * distance;
                     let clip = matrix.project_point3(point);
                     let across = (f64::from(x) + 0.5) / 20.0 - 1.0;
                     let up = 1.0 - (f64::from(y) + 0.5) / 10.0;
-                    let up = if of.clip_y == "up" { up } else { -up };
-                    assert!((clip.x - across).abs() < 1e-9, "{}", of.name);
-                    assert!((clip.y - up).abs() < 1e-9, "{}", of.name);
+                    let up = if projection.clip_y == "up" { up } else { -up };
+                    assert!((clip.x - across).abs() < 1e-9, "{}", projection.name);
+                    assert!((clip.y - up).abs() < 1e-9, "{}", projection.name);
                     let share = (1.0 / distance - 1.0 / camera.far)
                         / (1.0 / camera.near - 1.0 / camera.far);
-                    let share = if of.is_infinite {
+                    let share = if projection.is_infinite {
                         camera.near / distance
                     } else {
                         share
                     };
-                    let depth = of.depth_far + (of.depth_near - of.depth_far) * share;
+                    let depth = projection.depth_far
+                        + (projection.depth_near - projection.depth_far) * share;
                     assert!(
                         (clip.z - depth).abs() < 1e-9,
                         "{}: {} {depth}",
-                        of.name,
+                        projection.name,
                         clip.z
                     );
                 }
             }
-            let rows = of.world_to_clip.rows.concat();
-            assert_eq!(rows, of.world_to_clip.row_major, "{}", of.name);
+            let rows = projection.world_to_clip.rows.concat();
+            assert_eq!(
+                rows, projection.world_to_clip.row_major,
+                "{}",
+                projection.name
+            );
         }
         let own = &record.projections[0].world_to_clip.column_major;
         let expected = camera.view_projection().to_cols_array();
@@ -345,7 +350,7 @@ mod tests {
         let used = record
             .projections
             .iter()
-            .filter(|of| !of.used_by.is_empty());
+            .filter(|projection| !projection.used_by.is_empty());
         assert_eq!(used.count(), USED_BY.len());
     }
 }

@@ -32,20 +32,20 @@ pub(crate) fn elsewhere(
     is_camera_known: bool,
     sink: &dyn Sink,
 ) -> Result<Option<String>, CompareError> {
-    let others = scene.views.iter().flat_map(|other| {
+    let views = scene.views.iter().flat_map(|other| {
         let lights = scene.lights_of(other).into_iter();
         lights.map(move |light| (other, light))
     });
-    let seen = |of: &View| (of.eye, of.direction, of.fov_y_degrees);
+    let seen = |camera: &View| (camera.eye, camera.direction, camera.fov_y_degrees);
     let own = (seen(view), scene.light_of(view));
-    let others = others.filter(|(other, light)| {
+    let views = views.filter(|(other, light)| {
         (seen(other), light.kind) != own && (!is_camera_known || seen(other) == own.0)
     });
-    let others: Vec<_> = others.take(MOST).collect();
-    let step = Step::begin(sink, "other views and lights", others.len() as u64, "views");
+    let views: Vec<_> = views.take(MOST).collect();
+    let step = Step::begin(sink, "other views and lights", views.len() as u64, "views");
     let oracle = Oracle::new(&scene.mesh);
     let mut best: Option<(f64, String)> = None;
-    for (index, (other, light)) in others.iter().enumerate() {
+    for (index, (other, light)) in views.iter().enumerate() {
         let camera = other.camera(viewport);
         let progress = heard(sink, &|_| ());
         let truth = oracle.primary(&camera, progress).and_then(|primitives| {

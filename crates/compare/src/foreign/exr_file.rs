@@ -11,9 +11,9 @@ use std::io::Cursor;
 /// # Errors
 /// The reason, as the rest of a message that begins with the file.
 pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
-    let told = |why: exr::error::Error| format!("it cannot be decoded: {why}; save it anew");
+    let refused = |why: exr::error::Error| format!("it cannot be decoded: {why}; save it anew");
     let meta = guarded("exr", || {
-        MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(told)
+        MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(refused)
     })?;
     let [header] = &meta.headers[..] else {
         return Err(format!("it has {} layers; save one", meta.headers.len()));
@@ -22,35 +22,43 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
     let count = header.channels.list.len() as u64;
     let size = checked([size.x() as u64, size.y() as u64], count)?;
     check_window(header)?;
-    let names = header.channels.list.iter().map(|of| of.name.to_string());
+    let names = header
+        .channels
+        .list
+        .iter()
+        .map(|channel| channel.name.to_string());
     let names: Vec<String> = names.collect();
     let chosen = channels(&names)?;
     let picture = guarded("exr", || {
         let reader = exr::prelude::read().no_deep_data();
         let reader = reader.largest_resolution_level().all_channels();
         let reader = reader.first_valid_layer().all_attributes();
-        reader.from_buffered(Cursor::new(bytes)).map_err(told)
+        reader.from_buffered(Cursor::new(bytes)).map_err(refused)
     })?;
     let list = &picture.layer_data.channel_data.list;
-    let find = |name: &&String| list.iter().find(|of| of.name.to_string() == **name);
-    let found: Vec<_> = chosen.iter().filter_map(find).collect();
+    let find = |name: &&String| {
+        list.iter()
+            .find(|channel| channel.name.to_string() == **name)
+    };
+    let channels = chosen.iter().filter_map(find);
+    let planes: Vec<&FlatSamples> = channels.map(|channel| &channel.sample_data).collect();
     let pixels = size[0] as usize * size[1] as usize;
-    if found.iter().any(|of| of.sample_data.len() != pixels) {
+    if planes.iter().any(|plane| plane.len() != pixels) {
         return Err("a channel has fewer pixels than the picture; save all at full size".into());
     }
-    let mut values = Vec::with_capacity(pixels * found.len());
+    let mut values = Vec::with_capacity(pixels * planes.len());
     for pixel in 0..pixels {
-        values.extend(found.iter().map(|of| number(&of.sample_data, pixel)));
+        values.extend(planes.iter().map(|plane| number(plane, pixel)));
     }
-    let kind = match found.first().map(|of| &of.sample_data) {
+    let kind = match planes.first() {
         Some(FlatSamples::F16(_)) => "half",
         Some(FlatSamples::U32(_)) => "uint",
         _ => "float",
     };
     Ok(Decoded {
         size,
-        channels: found.len(),
-        has_alpha: chosen.last().is_some_and(|name| last_part(name) == "A") && found.len() > 1,
+        channels: planes.len(),
+        has_alpha: chosen.last().is_some_and(|name| last_part(name) == "A") && planes.len() > 1,
         values,
         whole: None,
         precision: if kind == "half" { HALF } else { FLOAT },
@@ -60,9 +68,9 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
 
 fn number(samples: &FlatSamples, pixel: usize) -> f64 {
     match samples {
-        FlatSamples::F16(all) => all[pixel].into(),
-        FlatSamples::F32(all) => all[pixel].into(),
-        FlatSamples::U32(all) => all[pixel].into(),
+        FlatSamples::F16(halves) => halves[pixel].into(),
+        FlatSamples::F32(floats) => floats[pixel].into(),
+        FlatSamples::U32(integers) => integers[pixel].into(),
     }
 }
 
@@ -96,20 +104,20 @@ fn last_part(name: &str) -> &str {
 
 /// The channels that are read, of these.
 fn channels(names: &[String]) -> Result<Vec<&String>, String> {
-    let of = |wanted: &str| {
-        let mut found = names.iter().filter(|name| last_part(name) == wanted);
-        found.next().filter(|_| found.next().is_none())
+    let unique = |wanted: &str| {
+        let mut matches = names.iter().filter(|name| last_part(name) == wanted);
+        matches.next().filter(|_| matches.next().is_none())
     };
-    let all = |wanted: &[&str]| {
+    let group = |wanted: &[&str]| {
         wanted
             .iter()
-            .map(|name| of(name))
+            .map(|name| unique(name))
             .collect::<Option<Vec<_>>>()
     };
     let alone = || <[&String; 1]>::try_from(names.iter().collect::<Vec<_>>()).ok();
-    let colours = all(&["Y"])
-        .or_else(|| all(&["R", "G", "B"]))
-        .or_else(|| all(&["R"]));
+    let colours = group(&["Y"])
+        .or_else(|| group(&["R", "G", "B"]))
+        .or_else(|| group(&["R"]));
     let mut chosen = match (colours, alone()) {
         (Some(chosen), _) => chosen,
         (None, Some([only])) => return Ok(vec![only]),
@@ -120,7 +128,7 @@ fn channels(names: &[String]) -> Result<Vec<&String>, String> {
             ));
         }
     };
-    chosen.extend(of("A"));
+    chosen.extend(unique("A"));
     Ok(chosen)
 }
 
@@ -132,7 +140,7 @@ mod tests {
     fn channels_are_found_by_their_last_name() {
         let chosen = |names: &[&str]| {
             let names: Vec<String> = names.iter().map(ToString::to_string).collect();
-            channels(&names).map(|found| found.into_iter().cloned().collect::<Vec<_>>().join(" "))
+            channels(&names).map(|picked| picked.into_iter().cloned().collect::<Vec<_>>().join(" "))
         };
         assert_eq!(chosen(&["Y"]).unwrap(), "Y");
         assert_eq!(chosen(&["shadow"]).unwrap(), "shadow");
@@ -141,10 +149,10 @@ mod tests {
             chosen(&["L.Combined.B", "L.Combined.G", "L.Combined.R"]).unwrap(),
             "L.Combined.R L.Combined.G L.Combined.B"
         );
-        let told = chosen(&["a.R", "b.R", "b.G"]).unwrap_err();
+        let message = chosen(&["a.R", "b.R", "b.G"]).unwrap_err();
         assert!(
-            told.contains("a.R, b.R, b.G") && told.contains("save one layer"),
-            "{told}"
+            message.contains("a.R, b.R, b.G") && message.contains("save one layer"),
+            "{message}"
         );
     }
 }

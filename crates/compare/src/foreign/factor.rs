@@ -194,8 +194,8 @@ mod tests {
         assert!(factor.shares[5].is_nan());
         assert_eq!(factor.is_black, [false, false, false, true, false, false]);
         let small = raster(&folder, "c.npy", Values::F32(vec![0.5]), [1, 1]);
-        let told = Factor::read(&small, Some(&whole), Reading::default()).unwrap_err();
-        assert!(told.to_string().contains("has 1x1 pixels, and"), "{told}");
+        let error = Factor::read(&small, Some(&whole), Reading::default()).unwrap_err();
+        assert!(error.to_string().contains("has 1x1 pixels, and"), "{error}");
     }
 
     #[test]
@@ -219,10 +219,10 @@ mod tests {
         assert_eq!(read("flipped"), [500.0, 1000.0, 500.0, 0.0]);
         assert_eq!(read("srgb"), [0.0, 214.0, 1000.0, 214.0]);
         assert_eq!(read("inverted,flipped"), [500.0, 0.0, 500.0, 1000.0]);
-        let told = "sideways".parse::<Reading>().unwrap_err();
+        let message = "sideways".parse::<Reading>().unwrap_err();
         assert!(
-            told.contains("`sideways`: expected flipped, srgb or inverted"),
-            "{told}"
+            message.contains("`sideways`: expected flipped, srgb or inverted"),
+            "{message}"
         );
     }
 
@@ -230,10 +230,10 @@ mod tests {
     fn a_picture_without_numbers_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let file = raster(&folder, "a.npy", Values::F32(vec![f32::NAN; 4]), [2, 2]);
-        let told = Factor::read(&file, None, Reading::default()).unwrap_err();
+        let error = Factor::read(&file, None, Reading::default()).unwrap_err();
         assert!(
-            told.to_string().contains("a.npy: it has no finite number"),
-            "{told}"
+            error.to_string().contains("a.npy: it has no finite number"),
+            "{error}"
         );
     }
 }

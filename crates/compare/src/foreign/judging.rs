@@ -220,8 +220,8 @@ pub fn judge(
         let (mut picture, drawn, agreement) = one(judging, factor, &truth, &judged_truth)?;
         if agreement == Agreement::Hardly {
             let shown = (&*factor.shares, viewport);
-            let found = elsewhere(shown, &scene, view, truth.is_camera_known(), sink)?;
-            if let Some(options) = found {
+            let options = elsewhere(shown, &scene, view, truth.is_camera_known(), sink)?;
+            if let Some(options) = options {
                 let text = format!("it agrees with another view or light: {options}");
                 picture.warnings.push(text);
                 picture.rank = None;
@@ -296,20 +296,20 @@ pub(crate) fn truth<'a>(
     let rows = u64::from(viewport[1]);
     let step = Step::begin(sink, &format!("surfaces, {what}"), rows, "rows");
     let rows_done = |rows| step.set_done(rows);
-    let found = candidates(&oracle, &camera, heard(sink, &rows_done));
-    let mut found = found.map_err(|_| CompareError::interrupted())?;
+    let candidates = candidates(&oracle, &camera, heard(sink, &rows_done));
+    let mut candidates = candidates.map_err(|_| CompareError::interrupted())?;
     step.end();
     let (primitives, surfaces) = match &named {
         Some(Named::Depth(raster)) => {
-            let of = by_depth(raster, &camera, &mut found, &rasterised)?;
-            let depths = format!("{}: read as {}", raster.file, of.form.text());
-            sink.note(&if of.astray > 0 {
-                let astray = thousands(of.astray);
+            let matched = by_depth(raster, &camera, &mut candidates, &rasterised)?;
+            let depths = format!("{}: read as {}", raster.file, matched.form.text());
+            sink.note(&if matched.astray > 0 {
+                let astray = thousands(matched.astray);
                 format!("{depths}; {astray} depths are those of no surface that is seen there")
             } else {
                 depths
             });
-            (of.primitives, "depth")
+            (matched.primitives, "depth")
         }
         _ => (rasterised, RASTERISED),
     };
@@ -317,7 +317,7 @@ pub(crate) fn truth<'a>(
     let unattributable = open_pixels(
         &oracle,
         (&camera, &light),
-        &found,
+        &candidates,
         &view,
         how,
         (&what, sink),
@@ -333,7 +333,7 @@ pub(crate) fn truth<'a>(
 fn open_pixels(
     oracle: &Oracle,
     (camera, light): (&skiagraph_scene::Camera, &LightKind),
-    found: &[Vec<Candidate>],
+    candidates: &[Vec<Candidate>],
     view: &GroundTruthView,
     how: (OracleMode, u32),
     (what, sink): (&str, &dyn Sink),
@@ -347,7 +347,7 @@ fn open_pixels(
     );
     let rows_done = |rows| step.set_done(rows);
     let (seen, progress) = ((camera, light), heard(sink, &rows_done));
-    let open = unattributable(oracle, seen, found, &view.ground_truth, how, progress);
+    let open = unattributable(oracle, seen, candidates, &view.ground_truth, how, progress);
     let open = open.map_err(|_| CompareError::interrupted())?;
     step.end();
     Ok(open)
@@ -372,8 +372,8 @@ fn rasterised(
 const MOST_HIDDEN: f64 = 0.01;
 
 fn check_ids(raster: &Raster, hidden: u64) -> Result<(), CompareError> {
-    let all = raster.values.len() as u64;
-    if hidden as f64 <= MOST_HIDDEN * all as f64 {
+    let pixels = raster.values.len() as u64;
+    if hidden as f64 <= MOST_HIDDEN * pixels as f64 {
         return Ok(());
     }
     Err(CompareError::Input(format!(
@@ -381,7 +381,7 @@ fn check_ids(raster: &Raster, hidden: u64) -> Result<(), CompareError> {
          another camera, upside down, or its triangles are counted in another order than those of \
          the scene's mesh; compare it with the ids that `skiagraph truth` writes",
         raster.file,
-        percent(hidden, all)
+        percent(hidden, pixels)
     )))
 }
 
@@ -392,7 +392,7 @@ fn one(
     truth: &Truth,
     judged_truth: &GroundTruth,
 ) -> Result<(JudgedPicture, Vec<PictureFile>, Agreement), CompareError> {
-    let told = |error: skiagraph_reference::Error| {
+    let named = |error: skiagraph_reference::Error| {
         CompareError::Input(format!("{}: {error}", factor.file))
     };
     let (own, pixels) = (&truth.view.ground_truth.pixels, &judged_truth.pixels);
@@ -413,10 +413,10 @@ fn one(
         |at: &&usize| (outputs.visibility[**at] == 1) != (pixels.classes[**at] == Class::Lit);
     let wrong_without_answer = unanswered.iter().filter(is_wrong).count() as u64;
     let pixels = &answered_truth.pixels;
-    let judgement = Judgement::new(&outputs, &answered_truth).map_err(told)?;
+    let judgement = Judgement::new(&outputs, &answered_truth).map_err(named)?;
     let mut wrong = judgement.counts.wrong;
     let apart = wrong.in_band.saturating_sub(wrong_without_answer);
-    let of_own = Statistics::judged(&outputs.visibility, &outputs.status, own).map_err(told)?;
+    let of_own = Statistics::judged(&outputs.visibility, &outputs.status, own).map_err(named)?;
     wrong.in_band = of_own.wrong.in_band;
     let mut warnings = factor.warnings.clone();
     warnings.extend(black(factor, &is_judged));
@@ -508,17 +508,17 @@ fn black(factor: &Factor, is_judged: &[bool]) -> Option<String> {
 /// Ranks the pictures that agree with the truth at all, if their surfaces are known.
 fn rank(record: &mut JudgedPictures) {
     let (is_open, is_area) = (!record.is_attributable(), record.area.is_some());
-    let figure = |of: &JudgedPicture| {
+    let figure = |picture: &JudgedPicture| {
         if is_area {
-            of.graded.rmse_outside_band
+            picture.graded.rmse_outside_band
         } else {
-            of.wrong_attributable() as f64
+            picture.wrong_attributable() as f64
         }
     };
     let ranked: Vec<f64> = record
         .pictures
         .iter()
-        .filter(|of| of.rank.is_some())
+        .filter(|picture| picture.rank.is_some())
         .map(figure)
         .collect();
     for picture in &mut record.pictures {

@@ -48,8 +48,8 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
          array.astype('<f4')"
             .to_owned()
     })?;
-    let known = KINDS.iter().find(|(of, ..)| *of == name);
-    let Some(&(_, width, read)) = known else {
+    let kind = KINDS.iter().find(|(descr, ..)| *descr == name);
+    let Some(&(_, width, read)) = kind else {
         return Err(format!(
             "its numbers are of the type `{name}`; expected <f4, <f2, <f8, |u1, <u2, <u4, <i4, \
              <i8 or |b1: save array.astype('<f4')"
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn arrays_that_are_no_pictures_are_told_with_the_way_out() {
-        let told = |file: Vec<u8>| decode(&file).err().unwrap();
+        let refusal = |file: Vec<u8>| decode(&file).err().unwrap();
         for (file, expected) in [
             (
                 file("'>f4'", "False", "(1, 2)", &[0; 8]),
@@ -218,8 +218,8 @@ mod tests {
                 "its header has 2147483647 bytes",
             ),
         ] {
-            let said = told(file);
-            assert!(said.contains(expected), "{said}");
+            let message = refusal(file);
+            assert!(message.contains(expected), "{message}");
         }
     }
 }

@@ -79,18 +79,18 @@ impl Raster {
     fn new(file: String, decoded: Decoded) -> Self {
         let Decoded {
             size,
-            channels: all,
+            channels: stored,
             has_alpha,
             values,
             whole,
             precision,
             mut format,
         } = decoded;
-        let colours = all - usize::from(has_alpha);
+        let colours = stored - usize::from(has_alpha);
         let mut warnings = Vec::new();
         let opaque = whole.unwrap_or(1.0);
-        let is_seen_through = |pixel: &&[f64]| has_alpha && pixel[all - 1] != opaque;
-        let seen_through = values.chunks_exact(all).filter(is_seen_through).count();
+        let is_seen_through = |pixel: &&[f64]| has_alpha && pixel[stored - 1] != opaque;
+        let seen_through = values.chunks_exact(stored).filter(is_seen_through).count();
         if seen_through > 0 {
             warnings.push(format!(
                 "alpha is not read, and {} pixels are not opaque: write what they show over \
@@ -98,14 +98,14 @@ impl Raster {
                 thousands(seen_through as u64)
             ));
         }
-        let is_grey = values.chunks_exact(all).all(|pixel| {
+        let is_grey = values.chunks_exact(stored).all(|pixel| {
             pixel[1..colours]
                 .iter()
                 .all(|it| it.to_bits() == pixel[0].to_bits())
         });
         let channels = if is_grey { 1 } else { colours };
         let kept = values
-            .chunks_exact(all)
+            .chunks_exact(stored)
             .flat_map(|pixel| &pixel[..channels]);
         format += if is_grey { ", grey" } else { ", colours" };
         Self {
@@ -142,13 +142,13 @@ fn png(bytes: &[u8]) -> Result<Decoded, String> {
         reader.limits(limits);
         reader
     };
-    let told = |why: image::ImageError| format!("it cannot be decoded: {why}; save it anew");
+    let refused = |why: image::ImageError| format!("it cannot be decoded: {why}; save it anew");
     let [width, height] = guarded("image", || {
-        let (width, height) = reader().into_dimensions().map_err(told)?;
+        let (width, height) = reader().into_dimensions().map_err(refused)?;
         Ok([width, height])
     })?;
     checked([width.into(), height.into()], 1)?;
-    let picture = guarded("image", || reader().decode().map_err(told))?;
+    let picture = guarded("image", || reader().decode().map_err(refused))?;
     let colour = picture.color();
     let channels = usize::from(colour.channel_count());
     let bits = u32::from(colour.bits_per_pixel()) / channels as u32;

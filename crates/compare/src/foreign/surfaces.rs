@@ -33,7 +33,7 @@ const MOST: f64 = 0.9;
 /// # Errors
 /// [`CompareError::Input`]: the picture has colours, or a number that is not an id of the mesh.
 pub fn ids(raster: &Raster, count: usize) -> Result<Vec<u32>, CompareError> {
-    let told = |why: String| CompareError::Input(format!("{}: {why}", raster.file));
+    let refused = |why: String| CompareError::Input(format!("{}: {why}", raster.file));
     one_channel(raster, "an id")?;
     let width = raster.size[0] as usize;
     let id = |(at, &value): (usize, &f64)| match value {
@@ -41,7 +41,7 @@ pub fn ids(raster: &Raster, count: usize) -> Result<Vec<u32>, CompareError> {
             Ok(BACKGROUND)
         }
         value if value.fract() == 0.0 && value >= 0.0 && value < count as f64 => Ok(value as u32),
-        value => Err(told(format!(
+        value => Err(refused(format!(
             "pixel ({}, {}) has the id {value}; expected the index of one of the {} triangles, in \
              the order of the scene's mesh, or -1 for the background, as `skiagraph truth` writes \
              them",
@@ -112,8 +112,8 @@ impl DepthForm {
             Some(_) => raster.precision,
             None => raster.precision * depth.abs(),
         };
-        let of = |depth| self.distance(depth, camera, at);
-        let [one, other] = [of(depth / whole - error), of(depth / whole + error)];
+        let along = |depth| self.distance(depth, camera, at);
+        let [one, other] = [along(depth / whole - error), along(depth / whole + error)];
         let [least, greatest] = [one.min(other), one.max(other)];
         [least * (1.0 - DEPTH_ERROR), greatest * (1.0 + DEPTH_ERROR)]
     }
@@ -172,7 +172,7 @@ pub fn by_depth(
         let pixels = candidates.iter().enumerate();
         let fits = pixels.filter(|(at, list)| {
             let depth = form.distances(raster, values[*at], camera, place(camera, *at));
-            list.iter().any(|of| lies_at(of, depth))
+            list.iter().any(|candidate| lies_at(candidate, depth))
         });
         fits.count()
     };
@@ -185,10 +185,10 @@ pub fn by_depth(
         each.into_iter().fold((0, DepthForm::Linear), better)
     };
     let (count, form) = best(&raster.values);
-    let all = candidates.len();
-    if (count as f64) < MOST * all as f64 {
+    let pixels = candidates.len();
+    if (count as f64) < MOST * pixels as f64 {
         let (upside_down, _) = best(&flipped(&raster.values, raster.size));
-        let hint = if upside_down as f64 >= MOST * all as f64 {
+        let hint = if upside_down as f64 >= MOST * pixels as f64 {
             "upside down they do: rows run from the top to the bottom"
         } else {
             "is it another camera, another scene, or are near and far plane others?"
@@ -197,18 +197,18 @@ pub fn by_depth(
             "{}: only {} of its depths are those of surfaces of the scene, read as {}, which fits \
              best; {hint}",
             raster.file,
-            percent(count as u64, all as u64),
+            percent(count as u64, pixels as u64),
             form.text()
         )));
     }
-    let mut primitives = Vec::with_capacity(all);
+    let mut primitives = Vec::with_capacity(pixels);
     for (at, list) in candidates.iter_mut().enumerate() {
         let depth = form.distances(raster, raster.values[at], camera, place(camera, at));
         let nearest_to = depth[0];
         // The rasterised one, where it lies there as well as others.
-        let off = |of: &Candidate| {
-            let middle = of.distances.iter().sum::<f64>() * 0.5;
-            let is_other = of.primitive != rasterised[at];
+        let off = |candidate: &Candidate| {
+            let middle = candidate.distances.iter().sum::<f64>() * 0.5;
+            let is_other = candidate.primitive != rasterised[at];
             let off = if middle.is_finite() {
                 (middle - nearest_to).abs()
             } else {
@@ -220,12 +220,12 @@ pub fn by_depth(
             let ((one, off_one), (other, off_other)) = (off(one), off(other));
             one.cmp(&other).then(off_one.total_cmp(&off_other))
         };
-        let at_depth = list.iter().filter(|of| lies_at(of, depth));
+        let at_depth = list.iter().filter(|candidate| lies_at(candidate, depth));
         let nearest = at_depth.min_by(|one, other| order(one, other));
-        match nearest.map(|of| of.primitive) {
+        match nearest.map(|candidate| candidate.primitive) {
             Some(primitive) => {
                 primitives.push(primitive);
-                list.retain(|of| lies_at(of, depth));
+                list.retain(|candidate| lies_at(candidate, depth));
             }
             None => primitives.push(rasterised[at]),
         }
@@ -233,7 +233,7 @@ pub fn by_depth(
     Ok(ByDepth {
         form,
         primitives,
-        astray: (all - count) as u64,
+        astray: (pixels - count) as u64,
     })
 }
 
@@ -287,13 +287,13 @@ mod tests {
 
     /// Two surfaces at each pixel, and the background.
     fn candidates() -> Vec<Vec<Candidate>> {
-        let of = |primitive, distance| Candidate {
+        let candidate = |primitive, distance| Candidate {
             primitive,
             distances: [distance, distance],
         };
         let pixel = |at: usize| {
             let near = 2.0 + at as f64;
-            let mut list = vec![of(0, near), of(1, near * 3.0)];
+            let mut list = vec![candidate(0, near), candidate(1, near * 3.0)];
             if at == 0 {
                 list.push(Candidate {
                     primitive: BACKGROUND,
@@ -339,10 +339,10 @@ mod tests {
         for form in DepthForm::ALL {
             let mut lists = candidates();
             let depths = raster((0..12).map(|at| stored(form, at)).collect());
-            let found = by_depth(&depths, &camera, &mut lists, &[0; 12]).unwrap();
-            assert_eq!((found.form, found.astray), (form, 0), "{}", form.text());
-            assert_eq!(found.primitives[0], BACKGROUND);
-            assert_eq!(found.primitives[1..], [1; 11], "{}", form.text());
+            let matched = by_depth(&depths, &camera, &mut lists, &[0; 12]).unwrap();
+            assert_eq!((matched.form, matched.astray), (form, 0), "{}", form.text());
+            assert_eq!(matched.primitives[0], BACKGROUND);
+            assert_eq!(matched.primitives[1..], [1; 11], "{}", form.text());
             assert!(lists.iter().all(|list| list.len() == 1), "{}", form.text());
         }
     }
@@ -350,14 +350,14 @@ mod tests {
     #[test]
     fn depths_of_another_camera_or_upside_down_are_told() {
         let camera = camera();
-        let told = |values: Vec<f64>| {
-            let found = by_depth(&raster(values), &camera, &mut candidates(), &[0; 12]);
-            found.unwrap_err().to_string()
+        let message = |values: Vec<f64>| {
+            let matched = by_depth(&raster(values), &camera, &mut candidates(), &[0; 12]);
+            matched.unwrap_err().to_string()
         };
-        let other = told((0..12).map(|at| 50.0 - f64::from(at)).collect());
+        let other = message((0..12).map(|at| 50.0 - f64::from(at)).collect());
         assert!(other.contains("is it another camera"), "{other}");
         let rows = |at: u32| 2.0 + f64::from((2 - at / 4) * 4 + at % 4);
-        let turned = told((0..12).map(rows).collect());
+        let turned = message((0..12).map(rows).collect());
         assert!(turned.contains("upside down they do"), "{turned}");
     }
 
@@ -365,8 +365,8 @@ mod tests {
     fn an_id_that_is_none_is_told_with_its_pixel() {
         let mut values = vec![1.0; 12];
         values[6] = 2.5;
-        let told = ids(&raster(values.clone()), 8).unwrap_err().to_string();
-        assert!(told.contains("pixel (2, 1) has the id 2.5"), "{told}");
+        let message = ids(&raster(values.clone()), 8).unwrap_err().to_string();
+        assert!(message.contains("pixel (2, 1) has the id 2.5"), "{message}");
         values[6] = f64::from(BACKGROUND);
         assert_eq!(ids(&raster(values), 8).unwrap()[6], BACKGROUND);
     }

@@ -75,14 +75,14 @@ pub fn write_truth(
     check_folder(folder)?;
     let (viewport, scene) = (request.viewport, Arc::new(scene));
     let how = (request.oracle, request.reference_samples);
-    let found = truth((&scene, view, viewport), None, how, gpu, sink)?;
-    let (ground_truth, seen) = (&found.view.ground_truth, found.view.seen());
+    let truth = truth((&scene, view, viewport), None, how, gpu, sink)?;
+    let (ground_truth, seen) = (&truth.view.ground_truth, truth.view.seen());
     let pixels = &ground_truth.pixels;
     let light = scene.light_of(view);
     let rows = viewport[1].into();
     let step = Step::begin(sink, &format!("blockers, {}", view.name), rows, "rows");
     let rows_done = |rows| step.set_done(rows);
-    let blockers = found.view.nearest_blockers(heard(sink, &rows_done))?;
+    let blockers = truth.view.nearest_blockers(heard(sink, &rows_done))?;
     step.end();
     let mut arrays = vec![
         (
@@ -102,7 +102,7 @@ pub fn write_truth(
         ),
         (
             "unattributable",
-            Values::Bool(found.unattributable.clone()),
+            Values::Bool(truth.unattributable.clone()),
             "1 where surfaces within 1/16 of a pixel have other answers",
         ),
         (

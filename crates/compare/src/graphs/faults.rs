@@ -65,9 +65,11 @@ impl GraphFaults {
         let graphs = self.0.iter().map(|(graph, _)| graph).unique().count();
         let faults = self.0.iter().map(|(_, faults)| faults);
         let faults = faults.unique_by(|faults| faults.render(false));
-        let faults: Vec<Vec<_>> = faults.map(|of| of.iter().cloned().collect()).collect();
-        let found = plural(errors(faults.iter().flatten()).count(), "error");
-        let summary = format!("{found} in {}", plural(graphs, "graph"));
+        let faults: Vec<Vec<_>> = faults
+            .map(|refusal| refusal.iter().cloned().collect())
+            .collect();
+        let count = plural(errors(faults.iter().flatten()).count(), "error");
+        let summary = format!("{count} in {}", plural(graphs, "graph"));
         CompareError::Diagnostics { faults, summary }
     }
 }

@@ -103,9 +103,9 @@ pub fn error(
     outputs: Result<Outputs, String>,
     ground_truth: &GroundTruth,
 ) -> Result<f64, CompareError> {
-    if let (Ok(of), None) = (&outputs, &ground_truth.area) {
+    if let (Ok(decoded), None) = (&outputs, &ground_truth.area) {
         // The errors of shares, FLIP among them, would take the most of the time.
-        let counts = Statistics::judged(&of.visibility, &of.status, &ground_truth.pixels);
+        let counts = Statistics::judged(&decoded.visibility, &decoded.status, &ground_truth.pixels);
         if let Ok(Statistics { wrong, .. }) = counts {
             return Ok(wrong.total.saturating_sub(wrong.in_band) as f64);
         }

@@ -68,17 +68,17 @@ pub fn under_other_lights(graph: &Graph) -> String {
         plan.map_or(BTreeSet::new(), |plan| choosing(graph, &plan))
     };
     let under_first = choosing(&provider);
-    let mut told = String::new();
+    let mut notes = String::new();
     for light in stand_ins(graph).into_iter().skip(1) {
         provider.set_light(light);
         let there = choosing(&provider);
         let idle: Vec<&str> = under_first.difference(&there).map(String::as_str).collect();
         if !idle.is_empty() {
             let (kind, idle) = (light.word(), idle.join(", "));
-            told += &format!("; under a {kind} light {idle} has no effect");
+            notes += &format!("; under a {kind} light {idle} has no effect");
         }
     }
-    told
+    notes
 }
 
 /// Params of words that do not all mean the same in a plan.

@@ -23,8 +23,8 @@ pub fn split(graph: &Graph) -> [Vec<&'static str>; 2] {
         [] => *word == LIGHT_KINDS[0],
         _ => says.contains(word),
     };
-    let (takes, others) = LIGHT_KINDS.into_iter().partition(takes);
-    [takes, others]
+    let (takes, refuses) = LIGHT_KINDS.into_iter().partition(takes);
+    [takes, refuses]
 }
 
 /// True if a graph takes lights of the kind `kind`, such as `point`.

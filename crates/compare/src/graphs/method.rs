@@ -339,15 +339,15 @@ fn check_names(presets: &[Arc<Preset>], assignments: &[Assignment]) -> Result<()
         if presets.iter().any(|preset| preset.param(name).is_some()) {
             continue;
         }
-        let known = presets.iter().flat_map(|preset| preset.settable());
-        let mut known: Vec<&str> = known.sorted_unstable().dedup().collect();
-        if known.is_empty() {
-            known.push("none");
+        let params = presets.iter().flat_map(|preset| preset.settable());
+        let mut params: Vec<&str> = params.sorted_unstable().dedup().collect();
+        if params.is_empty() {
+            params.push("none");
         }
         let faulty = presets.iter().find(|preset| preset.faults.is_some());
         let faulty = faulty.map(|preset| format!("; those of `{}` are unknown", preset.name));
         let what = format!("unknown param `{name}`{}", faulty.unwrap_or_default());
-        return Err(CompareError::Input(unknown(&what, name, "params", &known)));
+        return Err(CompareError::Input(unknown(&what, name, "params", &params)));
     }
     Ok(())
 }

@@ -123,19 +123,19 @@ mod tests {
             let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
             let set: Vec<Assignment> = set.iter().map(|set| set.parse().unwrap()).collect();
             let (arguments, left) = arguments(&words, &set, &sources).unwrap();
-            let all = arguments.iter().map(|it| (it.preset.clone(), it.own.len()));
-            (all.collect::<Vec<_>>(), left.len())
+            let pairs = arguments.iter().map(|it| (it.preset.clone(), it.own.len()));
+            (pairs.collect::<Vec<_>>(), left.len())
         };
         let named = |names: &[(&str, usize)]| -> Vec<(String, usize)> {
             let names = names.iter().map(|(name, own)| ((*name).to_owned(), *own));
             names.collect()
         };
-        let found = read(&["step", "nsm@bias=1", "step@over=pcf,bias=1"], &[]);
+        let parsed = read(&["step", "nsm@bias=1", "step@over=pcf,bias=1"], &[]);
         let expected = [("step", 0), ("nsm", 1), ("step@over=pcf", 1)];
-        assert_eq!(found, (named(&expected), 0));
+        assert_eq!(parsed, (named(&expected), 0));
         // A value set for all methods holds where nothing else is said; a list makes several
         // methods.
-        let found = read(
+        let parsed = read(
             &["step", "step@over=pcf", "nsm"],
             &["over=nsm,pcf", "bias=1"],
         );
@@ -145,7 +145,7 @@ mod tests {
             ("step@over=pcf", 0),
             ("nsm", 0),
         ];
-        assert_eq!(found, (named(&expected), 1));
+        assert_eq!(parsed, (named(&expected), 1));
 
         let load = |name: &str| preset::load(name, &sources).unwrap().0;
         let params = |name| load(name).unwrap().params().len();

@@ -202,21 +202,23 @@ pub fn check(
                 continue;
             }
             match check(&host) {
-                Ok(found) => {
-                    checked.get_or_insert(found);
+                Ok(planned) => {
+                    checked.get_or_insert(planned);
                     counts.push(count);
                     counts.dedup();
                 }
-                Err(found) if has(&found, Code::Light) => {
-                    refused.get_or_insert(found);
+                Err(faults) if has(&faults, Code::Light) => {
+                    refused.get_or_insert(faults);
                 }
-                Err(found) if has(&found, Code::Need) => {
-                    unmet.get_or_insert(found);
+                Err(faults) if has(&faults, Code::Need) => {
+                    unmet.get_or_insert(faults);
                 }
-                Err(found) => {
+                Err(faults) => {
                     let refused = refuses(host.1.light().word());
-                    return Err(refused
-                        .map_or_else(|| for_which(found, trial, &host, check), Diagnostics::from));
+                    return Err(refused.map_or_else(
+                        || for_which(faults, trial, &host, check),
+                        Diagnostics::from,
+                    ));
                 }
             }
         }
@@ -237,8 +239,8 @@ pub fn check(
 }
 
 /// True if a document's `lights` or `needs` refuse what it was planned for.
-fn has(found: &Diagnostics, code: Code) -> bool {
-    found.iter().any(|fault| fault.code == code)
+fn has(faults: &Diagnostics, code: Code) -> bool {
+    faults.iter().any(|fault| fault.code == code)
 }
 
 /// True if a plan depends on the list of lights.
@@ -252,12 +254,12 @@ fn asks_for_lights(plan: &Plan) -> bool {
 const FOR_OTHERS: &str = "`check` plans for others with --size, --scene and --light; if the \
                           document is made for these alone, it says so";
 
-/// Returns the faults of a document with these faults, `found` when it was loaded, and of its plan,
-/// as far as it has them for every host.
-pub(crate) fn of_every_host(path: &str, sources: &dyn Sources, found: Diagnostics) -> Diagnostics {
+/// Returns the faults of a document with these faults, `faults` when it was loaded, and of its
+/// plan, as far as it has them for every host.
+pub(crate) fn of_every_host(path: &str, sources: &dyn Sources, faults: Diagnostics) -> Diagnostics {
     let planned = check(path, &registry(), sources, &Trial::default());
     let hangs = |fault: &Diagnostic| fault.help.iter().any(|help| help.starts_with(FOR_OTHERS));
-    let faults = planned.err().unwrap_or(found);
+    let faults = planned.err().unwrap_or(faults);
     Diagnostics::new(
         faults
             .iter()
@@ -270,7 +272,7 @@ pub(crate) fn of_every_host(path: &str, sources: &dyn Sources, found: Diagnostic
 /// Begins the message of each fault that does not hold for every host with the part of `host`, a
 /// stand-in, on which it depends.
 fn for_which(
-    found: Diagnostics,
+    faults: Diagnostics,
     trial: &Trial<'_>,
     (viewport, provider): &Host,
     check: impl Fn(&Host) -> Result<(Graph, Plan), Diagnostics>,
@@ -281,7 +283,7 @@ fn for_which(
     let number = lights.len();
     // Fewer lights were tried before.
     let counts = if number == 1 { 2..=MOST_LIGHTS } else { 1..=1 };
-    let others = counts.map(|count| {
+    let relit = counts.map(|count| {
         let need = match number {
             1 => format!("lights.count >= {count}"),
             _ => format!("lights.count <= {}", number - 1),
@@ -297,14 +299,14 @@ fn for_which(
     let sized = (pixels(*viewport), width, (larger, provider.clone()));
     let small = ("a small scene".to_owned(), triangles, (*viewport, large));
     let sized = trial.viewport.is_none().then_some(sized);
-    let others = iter::once(small).chain(others);
-    let others = others.filter(|_| trial.scene.is_none());
-    let mut list: Vec<Diagnostic> = found.iter().cloned().collect();
-    for (words, need, host) in sized.into_iter().chain(others) {
+    let other_scenes = iter::once(small).chain(relit);
+    let other_scenes = other_scenes.filter(|_| trial.scene.is_none());
+    let mut list: Vec<Diagnostic> = faults.iter().cloned().collect();
+    for (words, need, host) in sized.into_iter().chain(other_scenes) {
         let place = format!("for {words}: ");
         let there = match check(&host) {
-            Err(found) if has(&found, Code::Need) || has(&found, Code::Light) => continue,
-            Err(found) => found.iter().map(key).collect(),
+            Err(refusal) if has(&refusal, Code::Need) || has(&refusal, Code::Light) => continue,
+            Err(refusal) => refusal.iter().map(key).collect(),
             Ok(_) => Vec::new(),
         };
         let is_of_it = |fault: &&mut Diagnostic| {
@@ -359,11 +361,13 @@ pub fn of_each_kind() -> [LightKind; 3] {
 /// Returns one example light of each kind that a graph takes, in the order directional, spot,
 /// point; one of every kind if it takes none of these.
 pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
-    let all = of_each_kind();
-    let taken = all.iter().filter(|it| light_kinds::takes(graph, it.word()));
+    let examples = of_each_kind();
+    let taken = examples
+        .iter()
+        .filter(|it| light_kinds::takes(graph, it.word()));
     let taken: Vec<LightKind> = taken.copied().collect();
     if taken.is_empty() {
-        all.to_vec()
+        examples.to_vec()
     } else {
         taken
     }
@@ -377,7 +381,7 @@ pub fn placeholder(viewport: [u32; 2], graph: &Graph) -> SceneProvider {
     let with = |count| lit(&described, &lights, count);
     let is_enough = |provider: &SceneProvider| {
         let plan = graph.plan(&PlanRequest::new(viewport, provider));
-        !plan.is_err_and(|found| has(&found, Code::Need))
+        !plan.is_err_and(|faults| has(&faults, Code::Need))
     };
     let enough = (1..=MOST_LIGHTS).map(with).find(is_enough);
     enough.unwrap_or_else(|| with(1))

@@ -246,7 +246,7 @@ pub(crate) fn sound(presets: Vec<Arc<Preset>>) -> Result<Vec<Arc<Preset>>, Compa
         preset
             .faults
             .iter()
-            .for_each(|of| faults.add(&preset.name, of));
+            .for_each(|diagnostics| faults.add(&preset.name, diagnostics));
     }
     faults.none_or_error().map(|()| presets)
 }
@@ -269,7 +269,7 @@ pub fn load_each(
         let (graph, faults) = match load(argument, &recorded)? {
             (Ok(graph), _) => (graph, None),
             // Faults that only planning finds are shown in the same go.
-            (Err(found), path) => (empty()?, Some(of_every_host(&path, sources, found))),
+            (Err(faults), path) => (empty()?, Some(of_every_host(&path, sources, faults))),
         };
         presets.push(Arc::new(Preset {
             name: argument.clone(),
@@ -338,10 +338,10 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareEr
             format!("`{argument}` is not a .ron file; a graph is given as a path that ends in .ron")
         }
         Ok(None) => {
-            let known = names(sources);
-            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let presets = names(sources);
+            let presets: Vec<&str> = presets.iter().map(String::as_str).collect();
             let what = format!("unknown preset `{argument}`");
-            unknown(&what, argument, "presets", &known)
+            unknown(&what, argument, "presets", &presets)
                 + "\n  a graph of your own is given as a path that ends in .ron"
         }
     };
@@ -379,9 +379,9 @@ mod tests {
         std::fs::write(root.join("pipelines/mine.ron"), "()").unwrap();
         assert_eq!(stand_ins(&sources), None);
         std::fs::write(root.join("pipelines/nsm.ron"), format!("{built_in} ")).unwrap();
-        let told = stand_ins(&sources).unwrap();
+        let warning = stand_ins(&sources).unwrap();
         let expected = "./pipelines stands in for built-in presets, which differ: nsm";
-        assert_eq!(told, expected);
+        assert_eq!(warning, expected);
     }
 
     #[test]

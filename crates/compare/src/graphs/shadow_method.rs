@@ -120,7 +120,7 @@ impl PlanCheck {
                     Some(refusal)
                 }
             };
-            let mistake = mistake.filter(|found| is_mistake(found.iter()));
+            let mistake = mistake.filter(|faults| is_mistake(faults.iter()));
             let mistakes = mistake.iter().flat_map(Diagnostics::iter);
             self.mistakes.extend(mistakes.cloned());
         }
@@ -137,7 +137,7 @@ impl PlanCheck {
             return faults;
         }
         let mistakes = self.mistakes.iter().cloned();
-        let mistakes = mistakes.unique_by(|found| (found.brief(), found.help.clone()));
+        let mistakes = mistakes.unique_by(|mistake| (mistake.brief(), mistake.help.clone()));
         let mistakes: Vec<Diagnostic> = mistakes.collect();
         if !mistakes.is_empty() {
             sink.warnings(&mistakes);
@@ -219,8 +219,8 @@ impl Outputs {
         layer: usize,
         truth: &GroundTruthPixels,
     ) -> Result<Self, String> {
-        let of = |(name, content): (String, Content)| (name, of_layer(content, layer));
-        Self::decode(&contents.into_iter().map(of).collect(), truth)
+        let one_layer = |(name, content): (String, Content)| (name, of_layer(content, layer));
+        Self::decode(&contents.into_iter().map(one_layer).collect(), truth)
     }
 
     /// Decodes the outputs that were read back from a frame of one light, by name. If the graph has
@@ -294,13 +294,13 @@ pub(crate) fn of_layer(content: Content, layer: usize) -> Content {
 
 /// The status of a method that has none.
 fn certain(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
-    let of = |(&class, &visibility): (&Class, &u32)| match (class, visibility) {
+    let verdict = |(&class, &visibility): (&Class, &u32)| match (class, visibility) {
         (Class::Background, _) => status::BACKGROUND,
         (Class::FacingAway, _) => status::FACING_AWAY,
         (_, 0) => status::CERTAIN_SHADOW,
         _ => status::CERTAIN_LIGHT,
     };
-    truth.classes.iter().zip(visibility).map(of).collect()
+    truth.classes.iter().zip(visibility).map(verdict).collect()
 }
 
 #[cfg(test)]

@@ -45,30 +45,30 @@ pub struct Setting {
 }
 
 /// Returns the settings of a preset: one for each combination of the values that its assignments in
-/// `argument` and those for all methods in `all` list. Values of a list stand between commas,
+/// `argument` and those for all methods in `shared` list. Values of a list stand between commas,
 /// vectors between semicolons (`1,0,0;0,1,0`); the range `0..0.01/5` is five values at equal
-/// distances, both ends included. An assignment of `argument` wins over one of `all`. Assignments
-/// of `all` to params that the preset does not have are ignored.
+/// distances, both ends included. An assignment of `argument` wins over one of `shared`.
+/// Assignments of `shared` to params that the preset does not have are ignored.
 ///
 /// # Errors
 /// A param of `argument` that the preset does not have; a malformed range; more than 1000 settings.
 pub fn settings(
     preset: &Preset,
     argument: &MethodArgument,
-    all: &[Assignment],
+    shared: &[Assignment],
 ) -> Result<Vec<Setting>, CompareError> {
     let mut settings = vec![Setting::default()];
     let is_own = |name: &str| argument.own.iter().any(|own| own.name == name);
-    let others = all
+    let inherited = shared
         .iter()
         .filter(|set| !is_own(&set.name) && preset.param(&set.name).is_some());
     let own = argument.own.iter().map(|set| (set, true));
-    for (assignment, is_own) in own.chain(others.map(|set| (set, false))) {
+    for (assignment, is_own) in own.chain(inherited.map(|set| (set, false))) {
         let name = &assignment.name;
         let Some(param) = preset.param(name) else {
             let what = format!("`{}` has no param `{name}`", preset.name);
-            let known: Vec<&str> = preset.settable().collect();
-            return Err(CompareError::Input(unknown(&what, name, "params", &known)));
+            let params: Vec<&str> = preset.settable().collect();
+            return Err(CompareError::Input(unknown(&what, name, "params", &params)));
         };
         let values = values(assignment, &param.ty)?;
         let is_told = is_own || values.len() > 1;
@@ -150,12 +150,12 @@ mod tests {
         text.parse().unwrap()
     }
 
-    fn labels(word: &str, all: &[&str]) -> Result<Vec<String>, String> {
+    fn labels(word: &str, shared: &[&str]) -> Result<Vec<String>, String> {
         let argument = MethodArgument::new(word);
         let names = [argument.preset.clone()];
         let presets = load_all(&names, &skiagraph_passes::EmbeddedSources).unwrap();
-        let all: Vec<Assignment> = all.iter().map(|text| set(text)).collect();
-        let settings = settings(&presets[0], &argument, &all);
+        let shared: Vec<Assignment> = shared.iter().map(|text| set(text)).collect();
+        let settings = settings(&presets[0], &argument, &shared);
         let settings = settings.map_err(|error| error.to_string())?;
         Ok(settings.into_iter().map(|setting| setting.label).collect())
     }

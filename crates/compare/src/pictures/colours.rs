@@ -76,15 +76,15 @@ pub fn integers(name: &str, values: &[u32]) -> (Vec<u8>, String) {
 }
 
 fn status_colour(status: u32) -> [u8; 3] {
-    let known = STATUS.get(status as usize);
-    known.map_or(INVALID, |(colour, _)| *colour)
+    let entry = STATUS.get(status as usize);
+    entry.map_or(INVALID, |(colour, _)| *colour)
 }
 
 fn statuses(values: &[u32]) -> Vec<String> {
-    let of = |(status, (_, meaning))| counted(meaning, count(values, |value| value == status));
+    let entry = |(status, (_, meaning))| counted(meaning, count(values, |value| value == status));
     let strangers = count(values, |value| value as usize >= STATUS.len());
-    let known = (0..).zip(STATUS).map(of);
-    known.chain(mark("magenta no status", strangers)).collect()
+    let legend = (0..).zip(STATUS).map(entry);
+    legend.chain(mark("magenta no status", strangers)).collect()
 }
 
 fn ids(values: &[u32]) -> Vec<String> {

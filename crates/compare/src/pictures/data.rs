@@ -142,11 +142,20 @@ impl Array {
     /// Bytes of the numbers, the shape as Python writes it, and the type as NumPy names it.
     fn described(&self) -> (Vec<u8>, String, &'static str) {
         let (bytes, kind) = match &self.values {
-            Values::F32(all) => (all.iter().flat_map(|it| it.to_le_bytes()).collect(), "<f4"),
-            Values::U32(all) => (all.iter().flat_map(|it| it.to_le_bytes()).collect(), "<u4"),
-            Values::I32(all) => (all.iter().flat_map(|it| it.to_le_bytes()).collect(), "<i4"),
-            Values::U8(all) => (all.clone(), "|u1"),
-            Values::Bool(all) => (all.iter().map(|it| u8::from(*it)).collect(), "|b1"),
+            Values::F32(floats) => (
+                floats.iter().flat_map(|it| it.to_le_bytes()).collect(),
+                "<f4",
+            ),
+            Values::U32(words) => (
+                words.iter().flat_map(|it| it.to_le_bytes()).collect(),
+                "<u4",
+            ),
+            Values::I32(signed) => (
+                signed.iter().flat_map(|it| it.to_le_bytes()).collect(),
+                "<i4",
+            ),
+            Values::U8(bytes) => (bytes.clone(), "|u1"),
+            Values::Bool(flags) => (flags.iter().map(|it| u8::from(*it)).collect(), "|b1"),
         };
         let layers = (self.layers > 1).then_some(self.layers);
         let channels = (self.channels > 1).then_some(self.channels);
@@ -178,15 +187,17 @@ impl Array {
             1 => &["Y"],
             count => &["R", "G", "B", "A"][..count.min(4)],
         };
-        let of = |channel: usize| -> Result<FlatSamples, String> {
+        let samples = |channel: usize| -> Result<FlatSamples, String> {
             let each = |count: usize| (channel..count).step_by(self.channels);
             let count = self.values.len();
             Ok(match &self.values {
-                Values::F32(all) => FlatSamples::F32(each(count).map(|at| all[at]).collect()),
-                Values::U32(all) => FlatSamples::U32(each(count).map(|at| all[at]).collect()),
-                Values::U8(all) => FlatSamples::U32(each(count).map(|at| all[at].into()).collect()),
-                Values::Bool(all) => {
-                    FlatSamples::U32(each(count).map(|at| all[at].into()).collect())
+                Values::F32(floats) => FlatSamples::F32(each(count).map(|at| floats[at]).collect()),
+                Values::U32(words) => FlatSamples::U32(each(count).map(|at| words[at]).collect()),
+                Values::U8(bytes) => {
+                    FlatSamples::U32(each(count).map(|at| bytes[at].into()).collect())
+                }
+                Values::Bool(flags) => {
+                    FlatSamples::U32(each(count).map(|at| flags[at].into()).collect())
                 }
                 Values::I32(_) => {
                     return Err("has signed integers, which OpenEXR lacks; save it as .npy".into());
@@ -194,7 +205,7 @@ impl Array {
             })
         };
         let channels = names.iter().enumerate();
-        let channels = channels.map(|(index, name)| Ok(AnyChannel::new(*name, of(index)?)));
+        let channels = channels.map(|(index, name)| Ok(AnyChannel::new(*name, samples(index)?)));
         let channels = AnyChannels::sort(channels.collect::<Result<_, String>>()?);
         let [width, height] = self.size.map(|it| it as usize);
         let size = Vec2(width, height);
@@ -211,11 +222,11 @@ impl Values {
     #[allow(clippy::len_without_is_empty, reason = "a picture has pixels")]
     pub fn len(&self) -> usize {
         match self {
-            Self::F32(all) => all.len(),
-            Self::U32(all) => all.len(),
-            Self::I32(all) => all.len(),
-            Self::U8(all) => all.len(),
-            Self::Bool(all) => all.len(),
+            Self::F32(floats) => floats.len(),
+            Self::U32(words) => words.len(),
+            Self::I32(signed) => signed.len(),
+            Self::U8(bytes) => bytes.len(),
+            Self::Bool(flags) => flags.len(),
         }
     }
 }
@@ -281,7 +292,7 @@ mod tests {
         assert_eq!([size.x() as u32, size.y() as u32], array.size);
         let channels = picture.layer_data.channel_data.list.into_iter();
         channels
-            .map(|of| (of.name.to_string(), of.sample_data))
+            .map(|channel| (channel.name.to_string(), channel.sample_data))
             .collect()
     }
 
@@ -303,7 +314,7 @@ mod tests {
             panic!("one channel of floats")
         };
         assert_eq!(name, "Y");
-        let bits = |of: &[f32]| of.iter().map(|share| share.to_bits()).collect::<Vec<_>>();
+        let bits = |shares: &[f32]| shares.iter().map(|it| it.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(read), bits(&shares));
         let status = Array::of_pixels([2, 1], Values::U8(vec![2, 4]));
         assert!(npy(&status).0.contains("'|u1'") && npy(&status).1 == [2, 4]);
@@ -334,7 +345,7 @@ mod tests {
         let colours = texture(F::Rg8Uint, vec![[2, 1]], vec![1, 2, 3, 4]);
         let read = exr(&Array::from_content(&colours).unwrap());
         let expected = [("G", vec![2, 4]), ("R", vec![1, 3])];
-        let expected = expected.map(|(name, all)| (name.to_owned(), FlatSamples::U32(all)));
+        let expected = expected.map(|(name, samples)| (name.to_owned(), FlatSamples::U32(samples)));
         assert_eq!(read, expected);
         let signed = texture(F::R8Sint, vec![[1, 1]], vec![255]);
         let signed = Array::from_content(&signed).unwrap();
@@ -351,8 +362,8 @@ mod tests {
                 "Rgb10a2Unorm",
             ),
         ] {
-            let told = Array::from_content(&refused).unwrap_err();
-            assert!(told.contains(why), "{told}");
+            let message = Array::from_content(&refused).unwrap_err();
+            assert!(message.contains(why), "{message}");
         }
     }
 }

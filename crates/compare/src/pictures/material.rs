@@ -50,7 +50,7 @@ impl Picture {
         let (rgb, legend) = if let Some(ids) = ids {
             integers(name, &ids)
         } else {
-            let numbers = numbers(content).filter(|all| all.len() == texels * channels);
+            let numbers = numbers(content).filter(|samples| samples.len() == texels * channels);
             let numbers = numbers.ok_or_else(|| {
                 format!(
                     "has the format {format:?}, of which no picture can be made; save it as .bin"

@@ -112,12 +112,12 @@ pub fn draw_pictures(
     };
     if let Some(footprints) = footprints {
         let mut heat = |kind: &str, part: fn(Footprint) -> f64| {
-            let values: Vec<_> = footprints.iter().map(|of| of.map(part)).collect();
+            let values: Vec<_> = footprints.iter().map(|pixel| pixel.map(part)).collect();
             draw(own(kind), Image::texels(&values, truth))
         };
         images.texels = Some(heat("texels", Footprint::texels)?);
-        images.perspective = Some(heat("perspective", |of| of.perspective)?);
-        images.projection = Some(heat("projection", |of| of.projection)?);
+        images.perspective = Some(heat("perspective", |footprint| footprint.perspective)?);
+        images.projection = Some(heat("projection", |footprint| footprint.projection)?);
     }
     Ok((images, files))
 }

@@ -155,18 +155,19 @@ impl Decoding {
     /// Describes the part of a texture or buffer that `content` has, such as `layer 0 of 3, `;
     /// empty if it has all of it.
     pub fn part_text(&self, content: &Content) -> String {
-        let Some(PartSummary { mips, layers, of }) = &self.part else {
+        let Some(part) = &self.part else {
             return String::new();
         };
         let layer = match content {
             Content::Texture { .. } => "layer",
             Content::Buffer(_) => "item",
         };
-        let parts = [("mip", mips, of[0]), (layer, layers, of[1])].into_iter();
-        let parts = parts.filter(|(.., of)| *of > 1);
-        let text = parts.map(|(what, range, of)| match range.len() {
-            1 => format!("{what} {} of {of}, ", range.start),
-            _ => format!("{what}s {} to {} of {of}, ", range.start, range.end - 1),
+        let mips = ("mip", &part.mips, part.of[0]);
+        let layers = (layer, &part.layers, part.of[1]);
+        let parts = [mips, layers].into_iter().filter(|(.., total)| *total > 1);
+        let text = parts.map(|(what, range, total)| match range.len() {
+            1 => format!("{what} {} of {total}, ", range.start),
+            _ => format!("{what}s {} to {} of {total}, ", range.start, range.end - 1),
         });
         text.collect()
     }
@@ -215,7 +216,7 @@ pub fn write_all<'a>(
 /// The content cannot be encoded in this way, or the file cannot be written.
 pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<String, CompareError> {
     let part = reading.part_text(content);
-    let said = match save.encoding {
+    let summary = match save.encoding {
         Encoding::Png => {
             let picture = Picture::new(&save.capture.material, content, reading.planes);
             let Picture { image, legend } = picture.map_err(|reason| {
@@ -257,7 +258,7 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
             format!("{}, {part}{what}", bytes(raw.len() as u64))
         }
     };
-    Ok(format!("  saved {}: {said}\n", save.file.display()))
+    Ok(format!("  saved {}: {summary}\n", save.file.display()))
 }
 
 #[cfg(test)]

@@ -32,23 +32,23 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     }
     if viewer.desired.methods.len() == 1 && ui.button("Method beside it").clicked() {
         let first = viewer.desired.methods[0].name.clone();
-        let mut others = viewer.choices.methods.iter();
-        let other = others.find(|name| *name == "rt" && **name != first);
+        let mut methods = viewer.choices.methods.iter();
+        let other = methods.find(|name| *name == "rt" && **name != first);
         let other = other.or(viewer.choices.methods.first()).cloned();
         viewer.choose_method(1, &other.unwrap_or(first));
     }
 }
 
-/// Draws a list to choose a name of `all` from, with `now` chosen; returns the newly chosen name,
-/// or `None` if it stays the same.
-pub fn names(ui: &mut Ui, label: &str, now: &str, all: &[String]) -> Option<String> {
+/// Draws a list to choose a name of `choices` from, with `now` chosen; returns the newly chosen
+/// name, or `None` if it stays the same.
+pub fn names(ui: &mut Ui, label: &str, now: &str, choices: &[String]) -> Option<String> {
     let mut chosen = now.to_owned();
     ComboBox::from_label(label)
         .selected_text(now)
         .width(180.0)
         .height(420.0)
         .show_ui(ui, |ui| {
-            for name in all {
+            for name in choices {
                 ui.selectable_value(&mut chosen, name.clone(), name);
             }
         });

@@ -2,7 +2,8 @@
 """Checks what clippy does not: no import circle between the files of a crate, no line of Rust, of
 a preset's WGSL or of the docs over 100 columns, and plain words: no comment begins with "What",
 "Of", "Whether" or "Who", none speaks of nobody, somebody, whoever or anybody, no message says
-"is no …" or "nothing is called so". Every public module of the crates for hosts shows an example
+"is no …" or "nothing is called so". No variable of a test has one of the names that clippy.toml
+disallows (clippy leaves tests out). Every public module of the crates for hosts shows an example
 that doc tests compile; the page of the crate begins with it.
 
 An import is a path in a `use` or in code that begins with `crate`, `super`, `self` or a child
@@ -46,6 +47,23 @@ def words(text):
         if not kind and MESSAGE.search(line):
             yield number, "a message says `is no`"
         before, previous = kind, said
+
+
+VAGUE = re.compile(r"(?<![.\w:])(?:of|known|found|said|told|came|all|others|here)\b(?!\s*[:(.!{<\[?])")
+BINDING = re.compile(
+    r"\blet\s+([^=;{]*?)\s*[=;]|\bfor\s+([^{;]*?)\s+in\b|(?:\(|[=,]|\bmove)\s*\|([^|\n]*)\|"
+    r"|^\s*(?:\w+::)*\w+\(([\w\s,&()]*)\)\s*(?:=>|if\b)",
+    re.MULTILINE,
+)
+
+
+def vague_names(text):
+    """The lines that bind a variable whose name does not say what it holds."""
+    text = TOKENS.sub(lambda match: "\n" * match.group().count("\n"), text)
+    for match in BINDING.finditer(text):
+        for name in VAGUE.finditer(match.group()):
+            line = text.count("\n", 0, match.start() + name.start()) + 1
+            yield line, f"a variable is called `{name.group()}`"
 
 
 def code_without_tests(text):
@@ -209,7 +227,10 @@ def main():
                 failed += 1
                 print(f"{file.relative_to(ROOT)}:{number}: {len(line)} columns")
         is_test = "tests" in file.relative_to(ROOT).parts
-        for number, why in words(file.read_text()):
+        faults = list(words(file.read_text()))
+        if file.suffix == ".rs":
+            faults += vague_names(file.read_text())
+        for number, why in faults:
             # A test says of its own values what they are.
             if is_test and why.startswith("a message"):
                 continue

@@ -59,7 +59,7 @@ rows() {
 
 # Words behind each comparison: no pictures, only the time of whole frames, and what a killed process
 # has measured is kept.
-compared='--warmup 1 --cached-frames 0 --images none --resume'
+compared='--warmup 1 --regime-frames 0 --images none --resume'
 # Seconds after which a frame is given up: sooner than a row's process, so that the row tells which
 # pass hung.
 frame_seconds=25

@@ -69,7 +69,7 @@ def main():
     status = subprocess.run([
         *program, "compare", "rt", "light_buffer", "--set", f"map_size={args.map_size}", "--set", "fit=scene,receivers",
         "--scene", str(args.out / "crowded_texel.ron"), "--view", "all", "--size", args.size,
-        "--frames", str(args.frames), "--warmup", "1", "--cached-frames", "0", "--images", "none",
+        "--frames", str(args.frames), "--warmup", "1", "--regime-frames", "0", "--images", "none",
         "--out", str(args.out / "results"),
     ], stdout=subprocess.DEVNULL).returncode  # fmt: skip
     if status:

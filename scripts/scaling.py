@@ -58,7 +58,7 @@ def compare(args, scene, triangles, folder):
     return skiagraph(
         args, "compare", *methods, "--scene", f"{scene}:{triangles}", "--view", args.view,
         "--size", args.viewport, "--frames", args.frames, "--warmup", 1,
-        "--cached-frames", 0, "--images", "none", "--timeout", 3600, "--resume", "--out", folder,
+        "--regime-frames", 0, "--images", "none", "--timeout", 3600, "--resume", "--out", folder,
     )  # fmt: skip
 
 

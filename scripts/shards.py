@@ -27,7 +27,7 @@ TASKS = 10
 ONE_CORE = {"LP_NUM_THREADS": "1", "RAYON_NUM_THREADS": "1"}
 GRID = (
     "rt light_buffer nsm crsm hybrid_pcf pcf vsm esm msm pssm --scene park --view all "
-    "--size 64x64,96x96,128x128,128x64 --map-size 128 --frames 2 --warmup 0 --cached-frames 0"
+    "--size 64x64,96x96,128x128,128x64 --map-size 128 --frames 2 --warmup 0 --regime-frames 0"
 ).split()
 # The same on all machines with one adapter and driver.
 ANSWERS = (

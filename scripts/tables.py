@@ -19,7 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 DOCUMENTS = ["sponza", "sponza-d", "sizes", "bench", "bench-d"]
 TIMED = re.compile(r" ms$|^fps$")
-ONE_FRAME = {"--frames": "1", "--warmup": "0", "--cached-frames": "0"}
+ONE_FRAME = {"--frames": "1", "--warmup": "0", "--regime-frames": "0"}
 
 
 def figures(text):

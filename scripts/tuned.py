@@ -148,7 +148,7 @@ def grid(program, method, values, views, where, out, size):
     for view in views:
         for first in range(0, len(names), AT_ONCE):
             which = [] if view is None else ["--view", view]
-            few = ["--size", size, "--frames", "1", "--warmup", "0", "--cached-frames", "0"]
+            few = ["--size", size, "--frames", "1", "--warmup", "0", "--regime-frames", "0"]
             runs += compare(program, [*names[first : first + AT_ONCE], *where, *which], out, *few)[0]
     return shares(runs)
 

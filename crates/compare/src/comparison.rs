@@ -39,7 +39,7 @@ use skiagraph_scene::{LightKind, Scene};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// Settings of how methods are run, timed and judged. Defaults: 10 timed frames after 2 warm-up
-/// frames, 10 frames in which only the camera moves, no jitter, [`OracleMode::Exact`], 512
+/// frames, 10 frames of each regime, no jitter, [`OracleMode::Exact`], 512
 /// reference samples, no files.
 #[derive(Clone, Copy, Debug)]
 pub struct Protocol {
@@ -50,11 +50,10 @@ pub struct Protocol {
     /// Number of untimed warm-up frames before the timed ones; on a camera path its first frame is
     /// repeated so often.
     pub warmup: u32,
-    /// Number of timed frames of a still view in which only the camera changes, so that passes with
-    /// unchanged inputs may be skipped; 0 to time none. The walk along a camera path always skips
-    /// such passes; if it has skipped any and this is not 0, the path is walked a second time with
-    /// every pass run ([`Sequence::every_pass`](crate::records::sequence::Sequence::every_pass)).
-    pub cached_frames: u32,
+    /// Number of timed frames of each [regime](crate::records::regimes::Regime): before each the
+    /// same has moved (nothing, the camera, the light, meshes), and passes with unchanged inputs
+    /// are skipped; 0 to time none.
+    pub regime_frames: u32,
     /// Number of sample positions within a pixel (0 counts as 1) that the camera takes in turns
     /// along a camera path, frame by frame; the [reference](crate#terms) samples the same ones. All
     /// frames of a still view sample the first. `None` to sample the pixel's centre.
@@ -81,7 +80,7 @@ impl Default for Protocol {
         Self {
             frames: 10,
             warmup: 2,
-            cached_frames: 10,
+            regime_frames: 10,
             jitter: None,
             oracle: OracleMode::Exact,
             reference_samples: REFERENCE_SAMPLES,

@@ -1,6 +1,9 @@
 //! Errors of a device, and the scopes that catch them.
 
-#![expect(clippy::disallowed_names, reason = "a derive binds public fields by name")]
+#![expect(
+    clippy::disallowed_names,
+    reason = "a derive binds public fields by name"
+)]
 
 use crate::provider::ProviderError;
 use skiagraph_graph::{Diagnostics, Panicked, Plan, Provided, caught};

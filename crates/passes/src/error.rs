@@ -1,6 +1,9 @@
 //! Why a scene cannot be brought to the GPU.
 
-#![expect(clippy::disallowed_names, reason = "a derive binds public fields by name")]
+#![expect(
+    clippy::disallowed_names,
+    reason = "a derive binds public fields by name"
+)]
 
 use crate::parts::PartId;
 

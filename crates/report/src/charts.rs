@@ -484,19 +484,18 @@ mod tests {
             graded: Default::default(),
             rays: None,
             cost: FrameCost {
+                cpu_ms: 0.0,
                 gpu_ms: None,
                 wall_ms: 1.0,
             },
             shimmer: None,
             skipped: Vec::new(),
             remade: Vec::new(),
-            every_pass: None,
         };
         let run = &mut kept.results.runs[0];
         run.measured.as_mut().unwrap().sequence = Some(Sequence {
             frames: [0, 30, 7].map(frame).to_vec(),
             shimmer: Default::default(),
-            every_pass: None,
         });
         let mut other = run.clone();
         other.preset = "pcf".into();

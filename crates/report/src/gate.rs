@@ -1,12 +1,13 @@
 //! Conditions under which `compare` or `judge` fails, for continuous integration:
 //! `nsm: wrong > 0.1%`.
 
-use crate::summary::{Row, Worst, by_wall, share};
+use crate::summary::{Row, When, Worst, by_wall, share};
 use crate::summary_table::summaries;
 use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::records::judged_pictures::{
     JudgedPicture, JudgedPictures, MOST_WITHOUT_ANSWER,
 };
+use skiagraph_compare::records::regimes::Regime;
 use skiagraph_compare::records::results::{Part, Results};
 use skiagraph_compare::wording::{bytes, ms, percent, size, unknown};
 use skiagraph_reference::PixelCounts;
@@ -43,9 +44,13 @@ pub enum Figure {
     Rmse,
     /// FLIP error (perceptual difference) of the shaded picture, 0 to 1.
     Flip,
-    /// Milliseconds of a frame in which every pass runs, the median of a view's frames: GPU time,
-    /// or wall time if any method has no GPU time in the same viewport under the same light.
-    Frame,
+    /// Milliseconds of a frame: the median of a view's frames of that choice, without a regime the
+    /// slowest frame of a path. GPU time and upkeep of the CPU, or wall time if any method has no
+    /// GPU time in the same viewport under the same light.
+    Frame(When),
+    /// Milliseconds that this percentage of a view's or path's frames do not exceed, as
+    /// [`Frame`](Self::Frame) measures them without a regime.
+    Percentile(u8),
     /// Bytes of the textures and buffers of the method and of the scene buffers that it reads; the
     /// largest value of all views.
     Memory,
@@ -53,26 +58,38 @@ pub enum Figure {
 
 impl Figure {
     /// All figures.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 16] = [
         Self::Wrong,
         Self::Missing,
         Self::False,
         Self::Rmse,
         Self::Flip,
-        Self::Frame,
+        Self::Frame(None),
+        Self::Frame(Some(Regime::Nothing)),
+        Self::Frame(Some(Regime::Camera)),
+        Self::Frame(Some(Regime::Light)),
+        Self::Frame(Some(Regime::SomeMeshes)),
+        Self::Frame(Some(Regime::AllMeshes)),
+        Self::Percentile(50),
+        Self::Percentile(95),
+        Self::Percentile(99),
+        Self::Percentile(100),
         Self::Memory,
     ];
 
     /// Returns the word for the figure in a condition, for example `wrong`.
-    pub fn word(self) -> &'static str {
+    pub fn word(self) -> String {
         match self {
-            Self::Wrong => "wrong",
-            Self::Missing => "missing",
-            Self::False => "false",
-            Self::Rmse => "rmse",
-            Self::Flip => "flip",
-            Self::Frame => "frame",
-            Self::Memory => "memory",
+            Self::Wrong => "wrong".into(),
+            Self::Missing => "missing".into(),
+            Self::False => "false".into(),
+            Self::Rmse => "rmse".into(),
+            Self::Flip => "flip".into(),
+            Self::Frame(None) => "frame".into(),
+            Self::Frame(Some(regime)) => regime.word().replace(' ', "_"),
+            Self::Percentile(100) => "worst".into(),
+            Self::Percentile(percent) => format!("p{percent}"),
+            Self::Memory => "memory".into(),
         }
     }
 
@@ -88,7 +105,8 @@ impl Figure {
             Self::False => row.most_false().map(in_percent),
             Self::Rmse => row.greatest_rmse(),
             Self::Flip => row.greatest_flip(),
-            Self::Frame => row.slowest(by_wall),
+            Self::Frame(when) => row.slowest(when, by_wall),
+            Self::Percentile(percent) => row.percentile(percent, by_wall),
             Self::Memory => (row.views() > 0).then(|| Worst {
                 value: row.bytes() as f64,
                 place: None,
@@ -106,7 +124,7 @@ impl Figure {
             Self::False => percent(picture.wrong.shadow, pixels.lit),
             Self::Rmse => Some(picture.graded.rmse_outside_band),
             Self::Flip => Some(picture.graded.flip),
-            Self::Frame | Self::Memory => None,
+            Self::Frame(_) | Self::Percentile(_) | Self::Memory => None,
         }
     }
 
@@ -114,7 +132,7 @@ impl Figure {
         match self {
             Self::Wrong | Self::Missing | Self::False => format!("{value:.4} %"),
             Self::Rmse | Self::Flip => format!("{value:.5}"),
-            Self::Frame => format!("{} ms", ms(value)),
+            Self::Frame(_) | Self::Percentile(_) => format!("{} ms", ms(value)),
             Self::Memory => bytes(value as u64),
         }
     }
@@ -148,9 +166,14 @@ impl Gate {
                 let (label, word) = (&row.label, self.figure.word());
                 let text = |value| self.figure.text(value);
                 match self.figure.worst(row, by_wall) {
-                    None => lines.push(format!(
-                        "`{label}` at {viewport} has no {word}: it could not run"
-                    )),
+                    None => {
+                        let why = if row.views() == 0 {
+                            "it could not run"
+                        } else {
+                            "it was not timed so"
+                        };
+                        lines.push(format!("`{label}` at {viewport} has no {word}: {why}"));
+                    }
                     Some(worst) if worst.value > self.most => lines.push(format!(
                         "`{label}` at {viewport}: {word} {}{} is more than {}",
                         text(worst.value),
@@ -172,7 +195,10 @@ impl Gate {
     /// A text for the user that names the unknown picture, or the figure that pictures lack.
     pub fn check_pictures(&self, files: &[String]) -> Result<(), String> {
         let (name, word) = (&self.method, self.figure.word());
-        if matches!(self.figure, Figure::Frame | Figure::Memory) {
+        if matches!(
+            self.figure,
+            Figure::Frame(_) | Figure::Percentile(_) | Figure::Memory
+        ) {
             return Err(format!(
                 "--fail-if: a picture has no {word}; expected wrong, missing, false, rmse or flip"
             ));
@@ -248,13 +274,13 @@ mod tests {
         );
         assert_eq!(failures("nsm", Figure::Wrong, 0.5), [""; 0]);
         let counts = Figure::ALL.map(|figure| failures("nsm", figure, 0.0).len());
-        assert_eq!(counts, [1; 7]);
+        assert_eq!(counts, [1; 16]);
         assert_eq!(
             failures("nsm", Figure::Missing, 0.1),
             ["`nsm 1024` at 512x256: missing 0.2550 % is more than 0.1000 %"]
         );
         assert_eq!(
-            failures("rt_hw", Figure::Frame, 1e9),
+            failures("rt_hw", Figure::Frame(None), 1e9),
             ["`rt_hw` at 512x256 has no frame: it could not run"]
         );
     }
@@ -278,7 +304,6 @@ mod tests {
         path.measured.as_mut().unwrap().sequence = Some(Sequence {
             frames: vec![frame(0).unwrap(), frame(9).unwrap()],
             shimmer: Shimmer::default(),
-            every_pass: None,
         });
         let gate = |most| Gate {
             method: "nsm".into(),

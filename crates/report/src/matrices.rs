@@ -53,7 +53,7 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
         let cell = |summary: &Summary, row: &Row| {
             let wrong = row.wrong();
             let share = percent(wrong.outside_band, wrong.facing_light);
-            let time = or_dash(row.frame_ms(by_wall(&summary.rows)), ms);
+            let time = or_dash(row.frame_ms(None, by_wall(&summary.rows)), ms);
             format!("{share}, {time} ms, {}", bytes(row.bytes()))
         };
         tables.push((viewport, by_summary(&lights, cell)));

@@ -3,7 +3,7 @@
 use crate::graded::{area_reference, graded};
 use itertools::Itertools;
 use skiagraph_compare::records::results::{AreaReference, Machine, Results, Run};
-use skiagraph_compare::records::sequence::{FrameCost, Sequence};
+use skiagraph_compare::records::sequence::Sequence;
 use skiagraph_compare::wording::{frames, ms, percent, plural, thousands};
 use skiagraph_reference::{BlockerCounts, PixelCounts, Quantiles};
 
@@ -230,32 +230,24 @@ pub fn remembering(run: &Run) -> Option<String> {
     })
 }
 
-/// Describes the slowest frame of a camera path, once with passes skipped whose inputs had not
-/// changed and once with every pass run, and the CPU times of building scene resources again. Each
-/// entry is a line. The list is empty for a still view.
+/// Describes the slowest frame of a camera path, and the CPU times of building scene resources
+/// again. Each entry is a line. The list is empty for a still view.
 pub fn path_costs(run: &Run) -> Vec<String> {
     let sequence = run
         .measured
         .as_ref()
         .and_then(|measured| measured.sequence.as_ref());
-    let lines = sequence.map(|sequence| {
-        [
-            ("as it is", sequence.slowest()),
-            ("with every pass", sequence.slowest_with_every_pass()),
-        ]
-    });
-    let line = |(how, slowest): (&str, Option<(usize, FrameCost)>)| {
-        let (index, cost) = slowest?;
-        let clock = cost.gpu_ms.map_or("wall", |_| "GPU");
-        Some(format!(
-            "{} {how}: slowest frame {index}, {} ms ({clock})",
+    let slowest = sequence.and_then(Sequence::slowest).map(|(index, cost)| {
+        let clock = cost.gpu_ms.map_or("wall", |_| "GPU and CPU");
+        format!(
+            "{}: slowest frame {}, {} ms ({clock})",
             run.method_label(),
+            index + 1,
             ms(cost.ms())
-        ))
-    };
-    let mut lines: Vec<String> = lines.into_iter().flatten().filter_map(line).collect();
-    lines.extend(sequence.and_then(|sequence| remade(run, sequence)));
-    lines
+        )
+    });
+    let remade = sequence.and_then(|sequence| remade(run, sequence));
+    slowest.into_iter().chain(remade).collect()
 }
 
 /// Lists the resources of the scene that followed from what moves.

@@ -215,7 +215,7 @@ fn cell(summary: &Summary, row: &Row) -> String {
         percent(wrong.outside_band, wrong.facing_light)
     };
     let star = if is_exact(summary, row) { " *" } else { "" };
-    let time = or_dash(row.frame_ms(by_wall(&summary.rows)), ms);
+    let time = or_dash(row.frame_ms(None, by_wall(&summary.rows)), ms);
     format!("{error}{star}\n{time} ms")
 }
 
@@ -238,6 +238,7 @@ mod tests {
             for run in &mut results.runs {
                 // Enough frames to tell times apart.
                 if let Some(measured) = &mut run.measured {
+                    measured.regimes.clear();
                     let frames = &mut measured.frame;
                     frames.wall_frames = frames.wall_frames.repeat(3);
                     frames.gpu_frames = frames.gpu_frames.as_ref().map(|ms| ms.repeat(3));

@@ -98,19 +98,15 @@ fn passes(runs: &[Run]) -> String {
         let Some(measured) = &run.measured else {
             continue;
         };
-        let whole = ("whole frame", measured.frame.gpu_ms, None);
-        let cached = measured.cached.as_ref();
-        let cached = cached.map(|cached| ("cached frame", cached.frame.gpu_ms, None));
-        let every = measured
-            .sequence
-            .as_ref()
-            .and_then(|sequence| sequence.every_pass.as_ref());
-        let every = every.map(|times| ("with every pass", times.gpu_ms, None));
+        let whole = ("whole frame", measured.frame.gpu_ms, measured.frame.cpu_ms);
+        let regimes = measured.regimes.iter();
+        let regimes = regimes.map(|times| {
+            let frame = &times.frame;
+            (times.regime.word(), frame.gpu_ms, frame.cpu_ms)
+        });
         let passes = measured.passes.iter();
         let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms, Some(pass.cpu_ms)));
-        for (index, (name, gpu, cpu)) in
-            passes.chain([whole]).chain(cached).chain(every).enumerate()
-        {
+        for (index, (name, gpu, cpu)) in passes.chain([whole]).chain(regimes).enumerate() {
             let gpu = |pick: fn(Spread) -> f64| gpu.map_or("–".into(), |spread| ms(pick(spread)));
             rows.push(vec![
                 // The eye finds groups by their first line.
@@ -133,13 +129,17 @@ fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
     let mut notes = of_runs(results, runs);
     let reason = results.adapter.gpu_unavailable.as_ref();
     notes.extend(reason.map(|reason| format!("No GPU times: {reason}")));
-    notes.extend(runs.iter().filter_map(|run| {
-        let cached = run.measured.as_ref()?.cached.as_ref()?;
-        Some(format!(
-            "cached frame of {}: only the camera moved; it skips {}",
-            run.method_label(),
-            cached.skipped.join(", ")
-        ))
+    notes.extend(runs.iter().flat_map(|run| {
+        let regimes = run.measured.iter().flat_map(|measured| &measured.regimes);
+        let skipping = regimes.filter(|times| !times.skipped.is_empty());
+        skipping.map(|times| {
+            format!(
+                "{} skips {}: {}",
+                run.method_label(),
+                times.regime.condition(),
+                times.skipped.join(", ")
+            )
+        })
     }));
     notes.extend(runs.iter().filter_map(|run| {
         Some(format!(

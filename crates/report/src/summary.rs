@@ -2,6 +2,7 @@
 //! band of a picture is the set of pixels at which rounding decides the right answer.
 
 use skiagraph_compare::lists::entry;
+use skiagraph_compare::records::regimes::Regime;
 use skiagraph_compare::records::results::{Measured, Part, Run, step};
 use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::records::statistics::FrameTimes;
@@ -30,6 +31,10 @@ pub struct Row<'a> {
 /// A run and its measurements.
 type Measurement<'a> = (&'a Run, &'a Measured);
 
+/// Choice of frames: those before each of which that has moved. `None` chooses the frames of a still
+/// view in which every pass runs, and all frames of a path.
+pub type When = Option<Regime>;
+
 /// Greatest value of a figure among the views, and the frames of camera paths, that a [`Row`]
 /// combines.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +51,12 @@ impl Worst {
     pub fn on(&self) -> String {
         let place = self.place.as_ref();
         place.map_or(String::new(), |place| format!(" on {place}"))
+    }
+
+    /// The greater one, the first of equal ones.
+    fn greater(self, other: Self) -> Self {
+        let is_more = other.value > self.value;
+        if is_more { other } else { self }
     }
 }
 
@@ -78,7 +89,8 @@ impl<'a> Row<'a> {
         let runs: Vec<_> = attempts.iter().filter_map(measured).collect();
         let unavailable = attempts.iter().find_map(|run| run.unavailable.as_deref());
         let has_time = |(_, measured): &(&Run, &Measured)| {
-            measured.full_times().gpu_ms.is_some() && kept(measured).gpu_ms.is_some()
+            let mut regimes = measured.regimes.iter().map(|times| &times.frame);
+            measured.frame.gpu_ms.is_some() && regimes.all(|times| times.gpu_ms.is_some())
         };
         Self {
             method: attempts
@@ -159,14 +171,43 @@ impl<'a> Row<'a> {
         self.worst(flip, |_, _, frame| Some(frame.graded.flip))
     }
 
-    /// Returns the slowest view, by the median of its frames in which every pass runs, or the
-    /// slowest frame of a path, in milliseconds. `None` if a view has no such time. `by_wall`
-    /// selects wall time instead of GPU time.
-    pub fn slowest(&self, by_wall: bool) -> Option<Worst> {
+    /// Returns the view whose frames take longest, by their median, or of frames without a regime
+    /// the slowest frame of a path, in milliseconds. `None` if a view has no such time. `by_wall`
+    /// selects wall time instead of GPU time and the upkeep of the CPU.
+    pub fn slowest(&self, when: When, by_wall: bool) -> Option<Worst> {
+        let of_view = |measured: &Measured| median(measured, when, by_wall);
+        if when.is_some() {
+            return self.worst_view(of_view);
+        }
         self.worst(
-            |_, measured| median(measured.full_times(), by_wall),
-            |measured, index, _| measured.full_times().frames(by_wall)?.get(index).copied(),
+            |_, measured| of_view(measured),
+            |measured, index, _| measured.frame.costs(by_wall)?.get(index).copied(),
         )
+    }
+
+    /// Returns the view or path on which the time that `percent` percent of the frames do not exceed
+    /// is the longest, in milliseconds. `None` if a view has no such times. `by_wall` selects wall
+    /// time instead of GPU time and the upkeep of the CPU.
+    pub fn percentile(&self, percent: u8, by_wall: bool) -> Option<Worst> {
+        self.worst_view(|measured| {
+            let mut costs = measured.frame.costs(by_wall)?;
+            costs.sort_by(f64::total_cmp);
+            let rank = (costs.len() * usize::from(percent)).div_ceil(100).max(1);
+            costs.get(rank - 1).copied()
+        })
+    }
+
+    /// The view or path with the greatest value; `None` if one has none.
+    fn worst_view(&self, value: impl Fn(&Measured) -> Option<f64>) -> Option<Worst> {
+        let views = self.runs.iter().map(|(run, measured)| {
+            let place = (self.views() > 1).then(|| format!("`{}`", run.view));
+            Some(Worst {
+                value: value(measured)?,
+                place,
+            })
+        });
+        let views: Vec<Worst> = views.collect::<Option<_>>()?;
+        views.into_iter().reduce(Worst::greater)
     }
 
     /// Returns the pixels that the method lights although they are in the reference's shadow, of
@@ -206,10 +247,7 @@ impl<'a> Row<'a> {
             value: share(part(run, measured)),
             place: (self.views() > 1).then(|| format!("`{}`", run.view)),
         });
-        shares.reduce(|worst, other| {
-            let is_more = other.value > worst.value;
-            if is_more { other } else { worst }
-        })
+        shares.reduce(Worst::greater)
     }
 
     /// The greatest value of a figure over views and frames of paths, the first of equal ones.
@@ -304,33 +342,28 @@ impl<'a> Row<'a> {
         self.runs.iter().any(|(run, _)| run.area.is_some())
     }
 
-    /// Returns the milliseconds of a frame in which every pass runs, as it does when light or
-    /// meshes have moved: the mean of the views' medians. `None` if a view has no such time.
-    /// `by_wall` selects wall time instead of GPU time.
-    pub fn frame_ms(&self, by_wall: bool) -> Option<f64> {
-        self.mean(|_, measured| median(measured.full_times(), by_wall))
+    /// Returns the milliseconds of a frame: GPU time and the upkeep of the CPU added, the mean of
+    /// the views' medians. `None` if a view has no such time. `by_wall` selects wall time instead.
+    pub fn frame_ms(&self, when: When, by_wall: bool) -> Option<f64> {
+        self.mean(|_, measured| median(measured, when, by_wall))
     }
 
-    /// Returns the milliseconds of a frame in which only the camera has moved, so that passes with
-    /// unchanged inputs are skipped: the mean of the views' medians. `None` if no pass is skipped,
-    /// or a view has no such time. `by_wall` selects wall time instead of GPU time.
-    pub fn kept_ms(&self, by_wall: bool) -> Option<f64> {
-        let keeps = |(_, measured): &(&Run, &Measured)| kept(measured) != measured.full_times();
-        let any = self.runs.iter().any(keeps);
-        self.mean(|_, measured| median(kept(measured), by_wall))
-            .filter(|_| any)
+    /// Returns the first and third quartile of the times of [`frame_ms`](Self::frame_ms), in
+    /// milliseconds: the means of the views. `None` if a view has no such times.
+    pub fn quartiles(&self, when: When, by_wall: bool) -> Option<[f64; 2]> {
+        let spread = |measured: &Measured| measured.times(when)?.spread(by_wall);
+        let q1 = self.mean(|_, measured| Some(spread(measured)?.q1))?;
+        Some([q1, self.mean(|_, measured| Some(spread(measured)?.q3))?])
     }
 
-    /// Returns the first and third quartile of the times of [`frame_ms`](Self::frame_ms), or if
-    /// `is_kept` is true of [`kept_ms`](Self::kept_ms), in milliseconds: the means of the views.
-    /// `None` if a view has no such times.
-    pub fn quartiles(&self, by_wall: bool, is_kept: bool) -> Option<[f64; 2]> {
-        let times = if is_kept { kept } else { Measured::full_times };
-        let q1 = self.mean(|_, measured| Some(times(measured).spread(by_wall)?.q1))?;
-        Some([
-            q1,
-            self.mean(|_, measured| Some(times(measured).spread(by_wall)?.q3))?,
-        ])
+    /// Returns the regimes in which every run of the row was timed; none without runs.
+    pub fn regimes(&self) -> Vec<Regime> {
+        let is_timed = |regime: &Regime| {
+            let mut runs = self.runs();
+            runs.all(|(_, measured)| measured.times(Some(*regime)).is_some())
+        };
+        let regimes = Regime::ALL.into_iter().filter(|_| self.views() > 0);
+        regimes.filter(is_timed).collect()
     }
 
     /// Returns the GPU milliseconds of a frame without its G-buffer, which all methods draw alike:
@@ -339,62 +372,62 @@ impl<'a> Row<'a> {
         self.mean(|_, measured| measured.ms_without_gbuffer())
     }
 
-    /// Returns the number of timed frames of the view that has the fewest; 0 without runs.
-    pub fn frames(&self) -> usize {
-        let frames = self
-            .runs
+    /// True if a run is of a camera path.
+    pub fn is_path(&self) -> bool {
+        self.runs
             .iter()
-            .map(|(_, measured)| measured.full_times().wall_frames.len());
+            .any(|(_, measured)| measured.sequence.is_some())
+    }
+
+    /// Returns the number of timed frames of the view that has the fewest; 0 without runs.
+    pub fn frames(&self, when: When) -> usize {
+        let frames = self.runs.iter().map(|(_, measured)| {
+            measured
+                .times(when)
+                .map_or(0, |times| times.wall_frames.len())
+        });
         frames.min().unwrap_or_default()
     }
 
-    /// True if the frame times of two rows differ by more than chance. Both rows must have the same
-    /// views in the same order. If `is_kept` is true, frames in which only the camera moved are
-    /// compared (of a row that skips no pass, all frames), otherwise frames in which every pass
-    /// ran; `by_wall` selects wall time instead of GPU time. Frames in which every pass ran are
-    /// compared one by one ([`Ratio::paired`]) if the methods took turns in one session, or
-    /// followed the same camera path in one; all other times differ if their quartiles do not
-    /// overlap. False if times are missing, or if there are fewer than eight pairs of frames to
-    /// compare.
-    pub fn is_told_apart(&self, other: &Self, by_wall: bool, is_kept: bool) -> bool {
-        let pair = || self.runs.iter().zip(&other.runs);
-        let is_pair =
-            |((one, one_measured), (other, other_measured)): (&Measurement, &Measurement)| {
-                one.session == other.session && are_paired(one_measured, other_measured)
+    /// Returns the ratio of the times of this row's frames to those of another row that was timed
+    /// in the same turns, summed over the views, with its interval ([`Ratio::paired`]). `by_wall`
+    /// selects wall time instead of GPU time and the upkeep of the CPU. `None` if the rows have
+    /// other views, or frames that were not timed in the same turns of one session; if times are
+    /// missing, or of fewer than eight turns.
+    pub fn ratio(&self, other: &Self, when: When, by_wall: bool) -> Option<Ratio> {
+        let mut sums: [Vec<f64>; 2] = Default::default();
+        for ((run, one), (other_run, other)) in self.runs.iter().zip(&other.runs) {
+            let is_pair = (&run.session, &run.view) == (&other_run.session, &other_run.view);
+            let turns = [one, other].map(|measured| measured.turns.as_ref());
+            let [Some(turns), Some(other_turns)] = turns.map(|turns| turns.filter(|_| is_pair))
+            else {
+                return None;
             };
-        if !is_kept && pair().all(is_pair) {
-            let mut sums: [Vec<f64>; 2] = Default::default();
-            for ((_, one), (_, other)) in pair() {
-                let times = [one, other].map(|measured| measured.full_times().frames(by_wall));
-                let [Some(one_ms), Some(other_ms)] = times else {
-                    return false;
-                };
-                let scale = anchors(one, other, by_wall);
-                for turn in 0..one_ms.len().min(other_ms.len()) {
-                    let scale = scale.as_ref().map_or(Some(&1.0), |scale| scale.get(turn));
-                    let Some(scale) = scale else {
-                        return false;
-                    };
-                    let add = [one_ms[turn], other_ms[turn] * scale];
-                    for (sums, ms) in sums.iter_mut().zip(add) {
-                        match sums.get_mut(turn) {
-                            Some(sum) => *sum += ms,
-                            None => sums.push(ms),
-                        }
-                    }
-                }
+            let [ms, other_ms] = [one, other].map(|measured| measured.times(when)?.costs(by_wall));
+            let (ms, mut other_ms) = (ms?, other_ms?);
+            if turns.group != other_turns.group {
+                // The anchor drew in both groups.
+                let anchors = [turns, other_turns].map(|turns| anchor(turns, when)?.costs(by_wall));
+                let [anchor, other_anchor] = anchors;
+                let scales = anchor?.into_iter().zip(other_anchor?);
+                let scaled = other_ms.iter().zip(scales);
+                other_ms = scaled
+                    .map(|(ms, (anchor, other))| ms * anchor / other.max(1e-6))
+                    .collect();
             }
-            let ratio = Ratio::paired(&sums[0], &sums[1]);
-            return ratio.is_some_and(|ratio| ratio.is_told_apart());
+            for (sum, frames) in sums.iter_mut().zip([ms, other_ms]) {
+                sum.resize(sum.len().max(frames.len()), 0.0);
+                sum.iter_mut().zip(frames).for_each(|(sum, ms)| *sum += ms);
+            }
         }
-        let quartiles = [self, other].map(|row| {
-            let kept = row.quartiles(by_wall, is_kept);
-            kept.or_else(|| row.quartiles(by_wall, false))
-        });
-        match quartiles {
-            [Some([q1, q3]), Some([other_q1, other_q3])] => q3 < other_q1 || other_q3 < q1,
-            _ => false,
-        }
+        Ratio::paired(&sums[0], &sums[1]).filter(|_| self.views() == other.views())
+    }
+
+    /// True if the frame times of two rows differ by more than chance: their [`ratio`](Self::ratio)
+    /// is [told apart](Ratio::is_told_apart). False if there is no ratio.
+    pub fn is_told_apart(&self, other: &Self, when: When, by_wall: bool) -> bool {
+        let ratio = self.ratio(other, when, by_wall);
+        ratio.is_some_and(|ratio| ratio.is_told_apart())
     }
 
     /// Returns the number of rays per frame, the mean of the views; `None` if the method does not
@@ -449,22 +482,13 @@ impl<'a> Row<'a> {
     }
 }
 
-/// True if the frames of two runs of a view can be compared one by one: they took turns, or are
-/// those of one camera path.
-fn are_paired(one: &Measured, other: &Measured) -> bool {
-    one.turns.is_some() == other.turns.is_some()
-}
-
-/// How the common anchor's times in the group of `one` stand to those in the group of `other`, turn
-/// by turn; `None` of one group.
-fn anchors(one: &Measured, other: &Measured, by_wall: bool) -> Option<Vec<f64>> {
-    let (one, other) = (one.turns.as_ref()?, other.turns.as_ref()?);
-    if one.group == other.group {
-        return None;
-    }
-    let frames = |turns: &Turns| Some(turns.anchor.frames(by_wall)?.to_vec());
-    let pairs = frames(one)?.into_iter().zip(frames(other)?);
-    Some(pairs.map(|(one, other)| one / other.max(1e-6)).collect())
+/// Times of a group's anchor.
+fn anchor(turns: &Turns, when: When) -> Option<&FrameTimes> {
+    let Some(regime) = when else {
+        return Some(&turns.anchor);
+    };
+    let mut regimes = turns.regimes.iter();
+    Some(&regimes.find(|times| times.regime == regime)?.frame)
 }
 
 /// Shadow of a run that is missing, of all that the reference has.
@@ -502,16 +526,8 @@ fn frames(measured: &Measured) -> f64 {
     frames.max(1) as f64
 }
 
-/// Times with what is kept.
-fn kept(measured: &Measured) -> &FrameTimes {
-    measured
-        .cached
-        .as_ref()
-        .map_or(&measured.frame, |cached| &cached.frame)
-}
-
-fn median(times: &FrameTimes, by_wall: bool) -> Option<f64> {
-    Some(times.spread(by_wall)?.median)
+fn median(measured: &Measured, when: When, by_wall: bool) -> Option<f64> {
+    Some(measured.times(when)?.spread(by_wall)?.median)
 }
 
 /// Combines the runs of `runs` that are in the viewport `viewport` (pixels) into rows by method,
@@ -528,7 +544,7 @@ pub fn rows<'a>(runs: impl IntoIterator<Item = &'a Run>, viewport: [u32; 2]) -> 
         .map(|(label, runs)| Row::new(label, &runs));
     let mut rows: Vec<Row> = rows.collect();
     let by_wall = by_wall(&rows);
-    let time = |row: &Row| row.frame_ms(by_wall).unwrap_or(f64::INFINITY);
+    let time = |row: &Row| row.frame_ms(None, by_wall).unwrap_or(f64::INFINITY);
     rows.sort_by(|one, other| time(one).total_cmp(&time(other)));
     let is_changed = |row: &Row| row.tuned().is_some_and(|tuned| !tuned.set.is_empty());
     let (tuned, mut rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(is_changed);

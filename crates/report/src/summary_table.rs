@@ -16,6 +16,7 @@ use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::columns::are_paths;
+use skiagraph_compare::records::regimes::Regime;
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, ms, percent, plural, size, thousands};
@@ -172,7 +173,11 @@ impl<'a> Summary<'a> {
             _ => ", means of the views",
         };
         let by_wall = by_wall(&self.rows);
-        let clock = if by_wall { "wall clock" } else { "GPU" };
+        let clock = if by_wall {
+            "wall clock"
+        } else {
+            "GPU and upkeep of the CPU"
+        };
         let mut lines = vec![
             self.results.adapter.to_string(),
             format!(
@@ -199,27 +204,14 @@ impl<'a> Summary<'a> {
     }
 
     /// Returns the table: a row for each method, setting and map size, in the order of
-    /// [`rows`](Self::rows). A star marks the fastest method without wrong pixels outside the band
-    /// (the pixels whose answer rounding decides).
+    /// [`rows`](Self::rows). A star marks, in each column of times, the fastest method without
+    /// wrong pixels outside the band (the pixels whose answer rounding decides).
     pub fn table(&self) -> Table {
         let are_paths = self.are_paths();
         let by_wall = by_wall(&self.rows);
-        // The first that decide: a terminal has no room for all side by side.
-        let mut heads = vec!["method", WRONG, "%", "RMSE"];
-        if are_paths {
-            heads.extend(["worst frame", "shimmer"]);
-        }
-        heads.extend([
-            "frame ms",
-            "quartiles",
-            "map kept ms",
-            "memory",
-            "less G-buffer",
-            "rays",
-            "in band",
-            "FLIP",
-        ]);
-        let best = self.verdict().fastest_exact;
+        let regimes = self.regimes();
+        let heads = heads(are_paths, &regimes);
+        let fastest = self.verdict().fastest_exact;
         let (views, is_soft) = (self.views().len(), self.is_soft());
         let row = |(index, row): (usize, &Row)| {
             let mut label = row.label.clone();
@@ -235,9 +227,6 @@ impl<'a> Summary<'a> {
             if self.is_old(row) {
                 label += &format!(" (of {})", row.session());
             }
-            if best == Some(index) {
-                label += " *";
-            }
             let mut cells = vec![label];
             if row.views() == 0 {
                 cells.push(NOT_THERE.into());
@@ -248,7 +237,6 @@ impl<'a> Summary<'a> {
             cells.extend([
                 thousands(wrong.outside_band),
                 percent(wrong.outside_band, wrong.facing_light),
-                or_dash(row.rmse(), |rmse| format!("{rmse:.4}")),
             ]);
             if are_paths {
                 cells.push(or_dash(row.worst_frame(), |frame| {
@@ -261,13 +249,19 @@ impl<'a> Summary<'a> {
                 let shimmer = row.shimmer();
                 cells.push(or_dash(shimmer, |part| percent(part.count, part.of)));
             }
-            cells.push(or_dash(row.frame_ms(by_wall), ms));
-            let quartiles = row.quartiles(by_wall, false);
-            cells.push(or_dash(quartiles, |[q1, q3]| {
-                format!("{}–{}", ms(q1), ms(q3))
+            let choices = [None].into_iter().chain(regimes.iter().copied().map(Some));
+            cells.extend(choices.map(|when| {
+                let is_fastest = fastest.get(&when) == Some(&index);
+                let star = if is_fastest { " *" } else { "" };
+                or_dash(row.frame_ms(when, by_wall), |time| ms(time) + star)
             }));
+            let (missing, dark) = (row.missing_shadow(), row.false_shadow());
+            let quartiles = row.quartiles(None, by_wall);
             cells.extend([
-                or_dash(row.kept_ms(by_wall), ms),
+                percent(missing.count, missing.of),
+                percent(dark.count, dark.of),
+                or_dash(row.rmse(), |rmse| format!("{rmse:.4}")),
+                or_dash(quartiles, |[q1, q3]| format!("{}–{}", ms(q1), ms(q3))),
                 bytes(row.bytes()),
                 or_dash(row.own_ms(), ms),
                 or_dash(row.rays(), |rays| thousands(rays.round() as u64)),
@@ -283,7 +277,7 @@ impl<'a> Summary<'a> {
     /// Returns remarks on the table, a line each.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
-        if self.verdict().fastest_exact.is_some() {
+        if !self.verdict().fastest_exact.is_empty() {
             notes.push("* the fastest with no wrong pixel outside the band".into());
         }
         notes.extend(self.open_parts());
@@ -294,7 +288,7 @@ impl<'a> Summary<'a> {
         }));
         notes.extend(self.certain_wrong());
         notes.extend(self.told(&self.runs, hint));
-        notes.extend(self.dearer_when_kept());
+        notes.extend(self.still_meshes());
         notes.extend(self.told(&self.runs, graded::no_shares));
         notes.extend(self.told(&self.runs, remembering));
         notes.extend(self.told(&self.runs, path_costs));
@@ -303,6 +297,23 @@ impl<'a> Summary<'a> {
             None => notes.extend(self.told(&self.runs, times_missing)),
         }
         notes
+    }
+
+    /// Returns the regimes in which a row was timed.
+    pub fn regimes(&self) -> Vec<Regime> {
+        let has = |regime: &Regime| self.rows.iter().any(|row| row.regimes().contains(regime));
+        Regime::ALL.into_iter().filter(has).collect()
+    }
+
+    /// Says that there are no times of moving meshes.
+    fn still_meshes(&self) -> Option<String> {
+        let regimes = self.regimes();
+        let is_still = !regimes.is_empty() && !regimes.contains(&Regime::AllMeshes);
+        is_still.then(|| {
+            "No mesh moves here, so that there are no times of moving meshes: compare a path that \
+             moves parts (--path)"
+                .into()
+        })
     }
 
     /// A run of each view.
@@ -379,26 +390,6 @@ impl<'a> Summary<'a> {
             .collect()
     }
 
-    /// Says which methods take longer with what they keep than with every pass run.
-    fn dearer_when_kept(&self) -> Vec<String> {
-        let by_wall = by_wall(&self.rows);
-        let line = |row: &Row| {
-            let [low, _] = row.quartiles(by_wall, true)?;
-            let [_, high] = row.quartiles(by_wall, false)?;
-            let (kept, frame) = (row.kept_ms(by_wall)?, row.frame_ms(by_wall)?);
-            (low > high).then(|| {
-                format!(
-                    "warning: {} takes longer while only the camera moves ({} ms) than with every \
-                     pass run ({} ms): these times are not to be relied on",
-                    row.label,
-                    ms(kept),
-                    ms(frame)
-                )
-            })
-        };
-        self.rows.iter().filter_map(line).collect()
-    }
-
     /// Says what blocks the pixels of which a method was certain and wrong, over all views.
     fn certain_wrong(&self) -> Vec<String> {
         let mut sums: BTreeMap<String, (u64, BlockerCounts)> = BTreeMap::new();
@@ -413,6 +404,28 @@ impl<'a> Summary<'a> {
         let line = |(label, sum): (String, _)| format!("{label}: {}", blocked_by(&[sum]));
         sums.into_iter().map(line).collect()
     }
+}
+
+/// Heads of the table's columns. The first that decide: a terminal has no room for all side by side.
+fn heads(are_paths: bool, regimes: &[Regime]) -> Vec<&'static str> {
+    let mut heads = vec!["method", WRONG, "%"];
+    if are_paths {
+        heads.extend(["worst frame", "shimmer"]);
+    }
+    heads.push("frame ms");
+    heads.extend(regimes.iter().map(|regime| regime.word()));
+    heads.extend([
+        "missing",
+        "false",
+        "RMSE",
+        "quartiles",
+        "memory",
+        "less G-buffer",
+        "rays",
+        "in band",
+        "FLIP",
+    ]);
+    heads
 }
 
 #[cfg(test)]

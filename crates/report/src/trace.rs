@@ -160,6 +160,7 @@ mod tests {
             began: Duration::ZERO,
             timing: FrameTiming::new(passes.iter().map(pass).collect()),
             wall: us(20),
+            upkeep: None,
             skipped: Vec::new(),
         }
     }

@@ -1,15 +1,21 @@
 //! The verdict of a comparison: which method to take, in one or two sentences.
 
-use crate::summary::{Row, Worst, Wrong, by_wall, share};
+use crate::summary::{Row, When, Worst, Wrong, by_wall, share};
 use crate::tuning;
+use itertools::Itertools;
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
-use skiagraph_compare::records::turns::LEAST_TURNS;
+use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::turns::{LEAST_TURNS, Ratio};
 use skiagraph_compare::wording::{bytes, ms, percent, plural};
+use std::collections::BTreeMap;
 
 /// Share of the pixels facing the light in the band (the pixels whose answer rounding decides)
 /// beyond which a verdict holds for the other pixels only.
 pub(crate) const MAX_BAND: f64 = 0.01;
+
+/// Milliseconds of a frame in which nothing moves that are too few to choose a method by.
+const AT_REST_MS: f64 = 0.1;
 
 /// Share of the reference's shadow that is missing, or of its light that is dark, from which on a
 /// verdict says so first.
@@ -18,14 +24,15 @@ const LARGE: f64 = 0.25;
 /// Verdict on the rows of a summary: the methods that it recommends, in figures and in words.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// Index of the row that is fastest in frames in which every pass runs, among the
-    /// [exact](Row::is_exact) ones within the budgets. `None` if there is no such row, if [shares
-    /// of light](skiagraph_compare#terms) under a light with an extent are compared, or if there is
-    /// a budget of wrong pixels and a row within the budgets that is not exact is faster.
-    pub fastest_exact: Option<usize>,
+    /// Index of the row that is fastest among the [exact](Row::is_exact) ones within the budgets,
+    /// for each choice of frames. There is none if [shares of light](skiagraph_compare#terms) under
+    /// a light with an extent are compared, or if there is a budget of wrong pixels and a row
+    /// within the budgets that is not exact is faster.
+    pub fastest_exact: BTreeMap<When, usize>,
     /// Indices of the recommended rows, or if none is right enough of the least wrong ones: the
-    /// fastest, then those whose times cannot be told apart from it. Times are of frames in which
-    /// every pass runs. It is empty if no row keeps to the budgets or no row can be judged.
+    /// fastest, then those whose times cannot be told apart from it. Times are of the path's own
+    /// frames, or of those before which most has moved. It is empty if no row keeps to the budgets
+    /// or no row can be judged.
     pub first: Vec<usize>,
     /// True if the rows in `first` are recommended: they have no wrong pixel outside the band (the
     /// pixels whose answer rounding decides), or keep to the budget of wrong pixels, and their
@@ -39,56 +46,206 @@ pub struct Verdict {
     pub sentences: Vec<String>,
 }
 
-/// Judges rows that were measured on the same views: recommends a method. A row takes no part if it
-/// has fewer views than others, was measured an hour or more before the newest one (the machine may
-/// have been loaded differently), was cut short, or could not run. A row that is beyond a budget on
-/// any view, or in any frame of a camera path, is not recommended. Of a method and its tuned
-/// setting only the one with less error is recommended.
+/// Judges rows that were measured on the same views: recommends a method for each choice of frames,
+/// in one sentence where the same one is the best. A row takes no part if it has fewer views than
+/// others, was measured an hour or more before the newest one (the machine may have been loaded
+/// differently), was cut short, or could not run. A row that is beyond a budget on any view, or in
+/// any frame of a camera path, is not recommended. Of a method and its tuned setting only the one
+/// with less error is recommended.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
-    let most = rows.iter().map(Row::views).max().unwrap_or_default();
-    let by_wall = by_wall(rows);
-    let newest = rows.iter().map(Row::session).max().unwrap_or_default();
-    let full: Vec<Contender> = rows
-        .iter()
-        .enumerate()
-        .filter(|(_, row)| row.views() == most && most > 0 && row.is_whole())
-        .filter(|(_, row)| !is_another_hour(row.session(), newest))
-        .filter_map(|(index, row)| Contender::new(index, row, by_wall))
+    let verdicts: Vec<Single> = choices(rows)
+        .into_iter()
+        .filter_map(|when| Single::new(rows, when, budgets))
         .collect();
-    let within = full.iter().filter(|method| method.is_within(budgets));
-    let within = better_settings(within.cloned().collect());
-    let full = better_settings(full);
-    let mut verdict = if full.is_empty() {
-        Verdict::default()
-    } else if within.is_empty() {
-        none_within(&full, budgets)
-    } else if budgets.wrong_percent.is_some() {
-        right_enough(&within)
-    } else if full.iter().any(|method| method.is_soft) {
-        graded(&within, rows)
-    } else {
-        hard(&within)
+    let Some(main) = verdicts.last() else {
+        return Verdict::default();
     };
-    let frames = within.iter().map(|method| method.row.frames()).min();
-    let too_few = frames.filter(|frames| within.len() > 1 && *frames < LEAST_TURNS);
-    if let Some(frames) = too_few {
-        verdict.sentences = without_times(&within, frames);
-        // The fastest is not known.
-        verdict.is_taken = false;
+    let mut sentences = main.counted(&verdicts, budgets);
+    let groups = grouped(&verdicts);
+    for group in &groups {
+        let Some(single) = group.last() else {
+            continue;
+        };
+        let condition = match (groups.len(), verdicts.len()) {
+            (1, 1) => String::new(),
+            (1, _) if single.has_few_frames => String::new(),
+            (1, _) => "Whatever moves".to_owned(),
+            _ => condition(group),
+        };
+        let mut own = single.sentences.iter();
+        let first = own.next().map(|sentence| match &*condition {
+            "" => sentence.clone(),
+            condition => format!("{condition}: {}", lower(sentence)),
+        });
+        sentences.extend(first.into_iter().chain(own.cloned()));
     }
-    if !budgets.is_empty() && !within.is_empty() {
-        let (count, methods) = (within.len(), plural(full.len(), "method"));
-        verdict
-            .sentences
-            .insert(0, format!("Within {budgets}: {count} of {methods}."));
+    if let Some(condition) = main.full.iter().find_map(|method| method.condition) {
+        sentences = conditioned(condition, sentences, &main.full);
     }
-    if let Some(condition) = full.iter().find_map(|method| method.condition) {
-        verdict.sentences = conditioned(condition, verdict.sentences, &full);
+    let beyond = main.full.iter().filter_map(|method| method.beyond(budgets));
+    sentences.extend(beyond);
+    sentences.extend(tuning::sentences(rows));
+    let fastest_exact = verdicts.iter();
+    Verdict {
+        fastest_exact: fastest_exact
+            .filter_map(|single| Some((single.when, single.fastest_exact?)))
+            .collect(),
+        first: main.first.clone(),
+        is_taken: main.is_taken,
+        runner_up: main.runner_up,
+        sentences,
     }
-    let beyond = full.iter().filter_map(|method| method.beyond(budgets));
-    verdict.sentences.extend(beyond);
-    verdict.sentences.extend(tuning::sentences(rows));
-    verdict
+}
+
+/// Returns the choices of frames in which rows can be compared: the regimes that all of them have,
+/// from the least that moves to the most, then a path's own frames; without regimes all frames.
+pub fn choices(rows: &[Row]) -> Vec<When> {
+    let measured = || rows.iter().filter(|row| row.views() > 0);
+    let has = |regime: &Regime| measured().all(|row| row.regimes().contains(regime));
+    let regimes = Regime::ALL.into_iter().filter(has).map(Some);
+    let mut choices: Vec<When> = regimes.filter(|_| measured().count() > 0).collect();
+    let is_path = measured().any(Row::is_path);
+    if choices.is_empty() || is_path {
+        choices.push(None);
+    }
+    choices
+}
+
+/// The verdict for one choice of frames.
+#[derive(Default)]
+struct Single<'a> {
+    when: When,
+    /// All that take part.
+    full: Vec<Contender<'a>>,
+    /// How many of them keep to the budgets.
+    within: usize,
+    fastest_exact: Option<usize>,
+    first: Vec<usize>,
+    is_taken: bool,
+    /// True if the frames are too few to tell times apart.
+    has_few_frames: bool,
+    runner_up: Option<usize>,
+    sentences: Vec<String>,
+}
+
+impl<'a> Single<'a> {
+    /// `None` if no row can be judged.
+    fn new(rows: &'a [Row<'a>], when: When, budgets: &Budgets) -> Option<Self> {
+        let most = rows.iter().map(Row::views).max().unwrap_or_default();
+        let by_wall = by_wall(rows);
+        let newest = rows.iter().map(Row::session).max().unwrap_or_default();
+        let full: Vec<Contender> = rows
+            .iter()
+            .enumerate()
+            .filter(|(_, row)| row.views() == most && most > 0 && row.is_whole())
+            .filter(|(_, row)| !is_another_hour(row.session(), newest))
+            .filter_map(|(index, row)| Contender::new(index, row, when, by_wall))
+            .collect();
+        let within = full.iter().filter(|method| method.is_within(budgets));
+        let within = better_settings(within.cloned().collect());
+        let full = better_settings(full);
+        let mut single = if full.is_empty() {
+            return None;
+        } else if within.is_empty() {
+            none_within(&full, budgets)
+        } else if budgets.wrong_percent.is_some() {
+            right_enough(&within)
+        } else if full.iter().any(|method| method.is_soft) {
+            graded(&within, rows)
+        } else {
+            hard(&within)
+        };
+        let frames = within.iter().map(|method| method.row.frames(when)).min();
+        let too_few = frames.filter(|frames| within.len() > 1 && *frames < LEAST_TURNS);
+        if let Some(frames) = too_few {
+            single.sentences = without_times(&within, frames);
+            // The fastest is not known.
+            (single.is_taken, single.has_few_frames) = (false, true);
+        }
+        let within = within.len();
+        Some(Self {
+            when,
+            full,
+            within,
+            ..single
+        })
+    }
+
+    /// How many methods keep to the budgets, for each choice of frames where they differ.
+    fn counted(&self, verdicts: &[Self], budgets: &Budgets) -> Vec<String> {
+        let mut counts: BTreeMap<usize, Vec<&Self>> = BTreeMap::new();
+        for single in verdicts {
+            counts.entry(single.within).or_default().push(single);
+        }
+        if budgets.is_empty() || counts.keys().all(|count| *count == 0) {
+            return Vec::new();
+        }
+        let methods = plural(self.full.len(), "method");
+        let counted = if counts.len() == 1 {
+            format!("{} of {methods}", self.within)
+        } else {
+            let counted = counts.iter().rev();
+            let count = |(count, verdicts): (&usize, &Vec<&Self>)| {
+                format!("{count} {}", lower(&condition(verdicts)))
+            };
+            format!("of {methods} {}", counted.map(count).join(", "))
+        };
+        vec![format!("Within {budgets}: {counted}.")]
+    }
+}
+
+/// The verdicts in groups with one answer, the last of all first. A verdict joins the group whose
+/// first method is also among its own first ones.
+fn grouped<'s, 'a>(verdicts: &'s [Single<'a>]) -> Vec<Vec<&'s Single<'a>>> {
+    let mut groups: Vec<Vec<&Single>> = Vec::new();
+    for single in verdicts.iter().rev() {
+        let agrees = |group: &&mut Vec<&Single>| {
+            let main = group[0];
+            match (main.first.first(), main.is_taken == single.is_taken) {
+                (Some(first), true) => single.first.contains(first),
+                (None, _) => single.first.is_empty(),
+                (Some(_), false) => false,
+            }
+        };
+        match groups.iter_mut().find(agrees) {
+            Some(group) => group.push(single),
+            None => groups.push(vec![single]),
+        }
+    }
+    groups.iter_mut().for_each(|group| group.reverse());
+    groups
+}
+
+/// The frames of verdicts in words, as a sentence begins: `While the camera or the light moves`.
+fn condition(group: &[&Single]) -> String {
+    let has = |when: When| group.iter().any(|single| single.when == when);
+    let meshes = match [Regime::SomeMeshes, Regime::AllMeshes].map(|regime| has(Some(regime))) {
+        [true, true] => Some("meshes"),
+        [true, false] => Some("some meshes"),
+        [false, true] => Some("all meshes"),
+        [false, false] => None,
+    };
+    let single = [
+        (Regime::Nothing, "nothing"),
+        (Regime::Camera, "the camera"),
+        (Regime::Light, "the light"),
+    ];
+    let single = single.into_iter().filter(|(regime, _)| has(Some(*regime)));
+    let subjects: Vec<&str> = single.map(|(_, subject)| subject).chain(meshes).collect();
+    let verb = if meshes.is_some() { "move" } else { "moves" };
+    let moving = format!("hile {} {verb}", subjects.join(" or "));
+    match (has(None), subjects.is_empty()) {
+        (true, true) => "Along the path".into(),
+        (true, false) => format!("Along the path and w{moving}"),
+        _ => format!("W{moving}"),
+    }
+}
+
+/// A sentence's beginning as it stands within one.
+fn lower(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|letter| letter.to_ascii_lowercase());
+    first.into_iter().chain(letters).collect()
 }
 
 /// True if rounding decides the right answer of more than 1 % of the pixels facing the light. A
@@ -168,8 +325,9 @@ struct Contender<'a> {
     is_soft: bool,
     /// Where much of what it shows cannot be judged.
     condition: Option<Condition>,
+    when: When,
+    /// Milliseconds of a frame.
     frame: f64,
-    kept: f64,
     /// The slowest view, or frame of a path, in milliseconds.
     slowest: Worst,
     /// The view, or frame of a path, with the greatest share of wrong pixels, 0 to 1.
@@ -177,8 +335,8 @@ struct Contender<'a> {
 }
 
 impl<'a> Contender<'a> {
-    fn new(index: usize, row: &'a Row, by_wall: bool) -> Option<Self> {
-        let frame = row.frame_ms(by_wall)?;
+    fn new(index: usize, row: &'a Row, when: When, by_wall: bool) -> Option<Self> {
+        let frame = row.frame_ms(when, by_wall)?;
         let wrong = row.wrong();
         if wrong.facing_light == 0 {
             return None; // Nothing was judged.
@@ -193,9 +351,9 @@ impl<'a> Contender<'a> {
             rmse: row.rmse()?,
             is_soft: row.is_soft(),
             condition: Condition::new(wrong),
+            when,
             frame,
-            kept: row.kept_ms(by_wall).unwrap_or(frame),
-            slowest: row.slowest(by_wall)?,
+            slowest: row.slowest(when, by_wall)?,
             most_wrong: row.most_wrong()?,
         })
     }
@@ -297,29 +455,32 @@ impl<'a> Contender<'a> {
         }
     }
 
-    /// Milliseconds of a frame.
-    fn time(&self, when: When) -> f64 {
-        match when {
-            When::AnythingMoves => self.frame,
-            When::CameraMoves => self.kept,
-        }
+    fn per_frame(&self) -> String {
+        format!("{} ms a frame", ms(self.frame))
     }
 
-    fn is_told_apart(&self, other: &Self, when: When) -> bool {
-        let is_kept = when == When::CameraMoves;
-        self.row.is_told_apart(other.row, self.by_wall, is_kept)
+    fn is_told_apart(&self, other: &Self) -> bool {
+        let is_rest = self.when == Some(Regime::Nothing);
+        let are_small = is_rest && self.frame.max(other.frame) < AT_REST_MS;
+        !are_small && self.row.is_told_apart(other.row, self.when, self.by_wall)
+    }
+
+    /// How many times as fast as another method it is, with the interval.
+    fn times_as_fast(&self, other: &Self) -> String {
+        match other.row.ratio(self.row, self.when, self.by_wall) {
+            Some(Ratio { low, median, high }) => {
+                let [low, median, high] = [low, median, high].map(ratio);
+                let interval = format!(" ({low} to {high})");
+                let interval = if low == high { "" } else { &interval };
+                format!("{median} times as fast{interval}")
+            }
+            None => format!("{} times as fast", ratio(other.frame / self.frame)),
+        }
     }
 
     fn name(&self) -> String {
         format!("`{}`", self.label)
     }
-}
-
-/// Frames that a sentence is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum When {
-    AnythingMoves,
-    CameraMoves,
 }
 
 fn least<'c, 'a>(
@@ -330,56 +491,29 @@ fn least<'c, 'a>(
     methods.min_by(|one, other| figure(one).total_cmp(&figure(other)))
 }
 
-fn hard(methods: &[Contender]) -> Verdict {
+fn hard<'a>(methods: &[Contender]) -> Single<'a> {
     let exact: Vec<Contender> = methods
         .iter()
         .filter(|method| method.is_exact)
         .cloned()
         .collect();
-    let fastest = |when: When| least(&exact, |method| method.time(when));
-    let (Some(best), Some(kept)) = (fastest(When::AnythingMoves), fastest(When::CameraMoves))
-    else {
+    let Some(best) = least(&exact, |method| method.frame) else {
         return none_exact(methods);
     };
-    let any_keeps = methods.iter().any(|method| method.kept < method.frame);
-    let is_one = kept.index == best.index || !best.is_told_apart(kept, When::CameraMoves);
-    let sentences = match (is_one, any_keeps) {
-        (true, false) => vec![sentence(best, "", When::AnythingMoves, &exact, methods)],
-        (true, true) => {
-            let whatever = ", whatever moves";
-            vec![sentence(
-                best,
-                whatever,
-                When::AnythingMoves,
-                &exact,
-                methods,
-            )]
-        }
-        (false, _) => {
-            let moving = " while light or meshes move";
-            let still = " while only the camera moves";
-            vec![
-                sentence(best, moving, When::AnythingMoves, &exact, methods),
-                sentence(kept, still, When::CameraMoves, &exact, methods),
-            ]
-        }
-    };
-    let when = When::AnythingMoves;
     let faster = methods.iter().filter(|method| !method.is_exact);
     let faster = least(faster, |method| method.frame)
-        .filter(|method| method.frame < best.frame || !method.is_told_apart(best, when));
+        .filter(|method| method.frame < best.frame || !method.is_told_apart(best));
     let next = || {
-        least(
-            exact.iter().filter(|method| method.index != best.index),
-            |method| method.frame,
-        )
+        let rivals = exact.iter().filter(|method| method.index != best.index);
+        least(rivals, |method| method.frame)
     };
-    Verdict {
+    Single {
         fastest_exact: Some(best.index),
         first: with_level(best, &exact, |_| true),
         is_taken: true,
         runner_up: faster.or_else(next).map(|method| method.index),
-        sentences,
+        sentences: vec![sentence(best, &exact, methods)],
+        ..Single::default()
     }
 }
 
@@ -392,67 +526,55 @@ fn with_level(
     let rivals = methods
         .iter()
         .filter(|method| method.index != best.index && counts(method));
-    let level = rivals.filter(|method| !method.is_told_apart(best, When::AnythingMoves));
+    let level = rivals.filter(|method| !method.is_told_apart(best));
     let level = level.map(|method| method.index);
     [best.index].into_iter().chain(level).collect()
 }
 
 /// One method to take, with those that cannot be told apart from it, beside the next exact one and
 /// the fastest of all.
-fn sentence(
-    best: &Contender,
-    condition: &str,
-    when: When,
-    exact: &[Contender],
-    methods: &[Contender],
-) -> String {
+fn sentence(best: &Contender, exact: &[Contender], methods: &[Contender]) -> String {
     let rivals = || exact.iter().filter(|method| method.index != best.index);
-    let is_level = |method: &&Contender| !method.is_told_apart(best, when);
+    let is_level = |method: &&Contender| !method.is_told_apart(best);
     let level: Vec<String> = rivals().filter(is_level).map(Contender::name).collect();
     let mut text = match &level[..] {
-        [] => format!("Take {}{condition}: {}", best.name(), per_frame(best, when)),
+        [] => format!("Take {} ({})", best.name(), best.per_frame()),
         level => format!(
-            "Take {} or {}{condition}: their times cannot be told apart, {}",
+            "Take {} or {}: their times cannot be told apart ({})",
             best.name(),
             level.join(" or "),
-            per_frame(best, when)
+            best.per_frame()
         ),
     };
-    let is_kept_told = when == When::AnythingMoves && condition.starts_with(',');
-    if is_kept_told && best.kept < best.frame {
-        text += &format!(" ({} while only the camera moves)", ms(best.kept));
-    }
-    let all_exact = exact.len() == methods.len();
     let right = best.right();
     let subject = if level.is_empty() {
         "It is"
     } else {
         "They are"
     };
-    text += &match least(rivals().filter(|method| !is_level(method)), |method| {
-        method.time(when)
-    }) {
+    let next = rivals().filter(|method| !is_level(method));
+    text += &match least(next, |method| method.frame) {
         Some(next) => {
-            let times = ratio(next.time(when) / best.time(when));
-            let next = next.name();
-            format!(". {subject} {right} and {times} times as fast as {next}, the next such method")
+            let times = best.times_as_fast(next);
+            format!(
+                ". {subject} {right} and {times} as {}, the next such method",
+                next.name()
+            )
         }
-        None if all_exact && methods.len() > 1 => format!(". All are {right}"),
+        None if exact.len() == methods.len() && methods.len() > 1 => format!(". All are {right}"),
         None => format!(". {subject} {right}"),
     };
-    let quickest = least(methods.iter().filter(|method| !method.is_exact), |method| {
-        method.time(when)
-    });
-    if let Some(quickest) = quickest {
+    let quickest = methods.iter().filter(|method| !method.is_exact);
+    if let Some(quickest) = least(quickest, |method| method.frame) {
         let name = quickest.name();
-        text += &if !quickest.is_told_apart(best, when) {
+        text += &if !quickest.is_told_apart(best) {
             format!(
                 ". {name} is as fast, as far as can be told, and {}",
                 quickest.error()
             )
-        } else if quickest.time(when) < best.time(when) {
-            let times = ratio(best.time(when) / quickest.time(when));
-            format!(". {name} is {times} times as fast and {}", quickest.error())
+        } else if quickest.frame < best.frame {
+            let times = quickest.times_as_fast(best);
+            format!(". {name} is {times} and {}", quickest.error())
         } else {
             ". No other is faster".into()
         };
@@ -460,11 +582,7 @@ fn sentence(
     text + "."
 }
 
-fn per_frame(method: &Contender, when: When) -> String {
-    format!("{} ms a frame", ms(method.time(when)))
-}
-
-fn none_exact(methods: &[Contender]) -> Verdict {
+fn none_exact<'a>(methods: &[Contender]) -> Single<'a> {
     let none = match methods.iter().find_map(|method| method.condition) {
         Some(_) => "Each method is wrong on some",
         None => "None is exact here",
@@ -480,22 +598,25 @@ fn none_exact(methods: &[Contender]) -> Verdict {
 /// The method with the least error, those that are as right and cannot be told apart from it in
 /// time, and the fastest one beside it, as one sentence without its end. `words` say of one and of
 /// several that they are it.
-fn by_error(methods: &[Contender], error: impl Fn(&Contender) -> f64, words: [&str; 2]) -> Verdict {
-    let when = When::AnythingMoves;
+fn by_error<'a>(
+    methods: &[Contender],
+    error: impl Fn(&Contender) -> f64,
+    words: [&str; 2],
+) -> Single<'a> {
     let Some(least_error) = least(methods, &error).map(&error) else {
-        return Verdict::default();
+        return Single::default();
     };
     let Some(best) = least(
         methods.iter().filter(|method| error(method) == least_error),
         |method| method.frame,
     ) else {
-        return Verdict::default();
+        return Single::default();
     };
     let rivals = || methods.iter().filter(|method| method.index != best.index);
-    let is_level = |method: &&Contender| !method.is_told_apart(best, when);
+    let is_level = |method: &&Contender| !method.is_told_apart(best);
     let equals = rivals().filter(|method| error(method) == least_error && is_level(method));
     let equals: Vec<String> = equals.map(Contender::name).collect();
-    let figures = format!("{}, {}", best.error(), per_frame(best, when));
+    let figures = format!("{}, {}", best.error(), best.per_frame());
     let mut text = match &equals[..] {
         [] => format!("{} {} ({figures})", best.name(), words[0]),
         equals => format!(
@@ -509,19 +630,19 @@ fn by_error(methods: &[Contender], error: impl Fn(&Contender) -> f64, words: [&s
     let fastest = least(rest(), |method| method.frame);
     let is_faster = |method: &&Contender| method.frame < best.frame || is_level(method);
     text += &match fastest {
-        Some(fastest) if is_faster(&fastest) => format!(". {}", faster(fastest, best, when)),
+        Some(fastest) if is_faster(&fastest) => format!(". {}", faster(fastest, best)),
         Some(_) => ". No other is faster".into(),
         None => String::new(),
     };
     let next = || least(rivals(), &error);
-    Verdict {
+    Single {
         first: with_level(best, methods, |method| error(method) == least_error),
         runner_up: fastest
             .filter(is_faster)
             .or_else(next)
             .map(|method| method.index),
         sentences: vec![text],
-        ..Verdict::default()
+        ..Single::default()
     }
 }
 
@@ -572,18 +693,18 @@ fn without_times(methods: &[Contender], frames: usize) -> Vec<String> {
 }
 
 /// How much faster another method is, and its error.
-fn faster(fastest: &Contender, than: &Contender, when: When) -> String {
+fn faster(fastest: &Contender, than: &Contender) -> String {
     let (name, error) = (fastest.name(), fastest.error());
-    if fastest.is_told_apart(than, when) {
-        let times = ratio(than.time(when) / fastest.time(when));
-        format!("{name} is {times} times as fast ({error})")
+    if fastest.is_told_apart(than) {
+        let times = fastest.times_as_fast(than);
+        format!("{name} is {times}: {error}")
     } else {
         format!("{name} ({error}) cannot be told apart from it in time")
     }
 }
 
 /// Judges errors of shares: the least one, and the fastest.
-fn graded(methods: &[Contender], rows: &[Row]) -> Verdict {
+fn graded<'a>(methods: &[Contender], rows: &[Row]) -> Single<'a> {
     let words = ["has the least error", "have the least error"];
     let mut verdict = by_error(methods, |method| method.rmse, words);
     let least_error =
@@ -605,19 +726,18 @@ fn graded(methods: &[Contender], rows: &[Row]) -> Verdict {
 }
 
 /// The fastest of methods that are all right enough, with those that cannot be told apart from it.
-fn right_enough(methods: &[Contender]) -> Verdict {
-    let when = When::AnythingMoves;
+fn right_enough<'a>(methods: &[Contender]) -> Single<'a> {
     let Some(best) = least(methods, |method| method.frame) else {
-        return Verdict::default();
+        return Single::default();
     };
     let rivals = || methods.iter().filter(|method| method.index != best.index);
-    let level = rivals().filter(|method| !method.is_told_apart(best, when));
+    let level = rivals().filter(|method| !method.is_told_apart(best));
     let figures = |method: &Contender| {
         format!(
             "{} ({}, {})",
             method.name(),
             method.error(),
-            per_frame(method, when)
+            method.per_frame()
         )
     };
     let level: Vec<String> = level.map(figures).collect();
@@ -625,17 +745,18 @@ fn right_enough(methods: &[Contender]) -> Verdict {
         [] => String::new(),
         level => format!(". Not told apart from it in time: {}", level.join(", ")),
     };
-    Verdict {
+    Single {
         fastest_exact: best.is_exact.then_some(best.index),
         first: with_level(best, methods, |_| true),
         is_taken: true,
         runner_up: least(rivals(), |method| method.frame).map(|method| method.index),
         sentences: vec![format!("Take {}{level}.", figures(best))],
+        ..Single::default()
     }
 }
 
 /// That no method keeps to the budgets, and which come closest to each.
-fn none_within(methods: &[Contender], budgets: &Budgets) -> Verdict {
+fn none_within<'a>(methods: &[Contender], budgets: &Budgets) -> Single<'a> {
     let mut text = format!("No method keeps to {budgets}");
     let mut add = |name: &str, figure: &dyn Fn(&Contender) -> f64, describe: Told| {
         if let Some(method) = least(methods, figure) {
@@ -671,9 +792,9 @@ fn none_within(methods: &[Contender], budgets: &Budgets) -> Verdict {
             |method| bytes(method.row.bytes()),
         );
     }
-    Verdict {
+    Single {
         sentences: vec![text + "."],
-        ..Verdict::default()
+        ..Single::default()
     }
 }
 
@@ -698,7 +819,7 @@ mod tests {
     use std::time::Duration;
 
     /// A run of 100,000 pixels that face the light: method, wrong pixels outside the band, ms of a
-    /// frame, and of one with the map kept.
+    /// frame while the light moves, and while the camera moves; without these if they are equal.
     fn run(method: &str, wrong: u64, frame: f64, kept: f64) -> Run {
         let mut run = sample().runs.remove(0);
         (run.preset, run.map_size) = (method.into(), None);
@@ -707,10 +828,15 @@ mod tests {
         let set = |times: &mut FrameTimes, ms: f64| {
             let gpu = [Some(Duration::from_secs_f64(ms / 1e3)); 10];
             let wall = [Duration::from_secs_f64(ms / 1e3); 10];
-            *times = FrameTimes::new(&gpu, &wall).unwrap();
+            *times = FrameTimes::new(&gpu, None, &wall).unwrap();
         };
         set(&mut measured.frame, frame);
-        set(&mut measured.cached.as_mut().unwrap().frame, kept);
+        if kept == frame {
+            measured.regimes.clear();
+        }
+        for (times, ms) in measured.regimes.iter_mut().zip([kept, frame]) {
+            set(&mut times.frame, ms);
+        }
         run
     }
 
@@ -740,16 +866,17 @@ mod tests {
     fn within(runs: &[Run], budgets: &Budgets) -> (Option<String>, Vec<String>) {
         let rows = rows(runs, [512, 256]);
         let verdict = verdict(&rows, budgets);
-        let marked = verdict.fastest_exact.map(|index| rows[index].label.clone());
+        let marked = verdict.fastest_exact.values().next_back();
+        let marked = marked.map(|index| rows[*index].label.clone());
         (marked, verdict.sentences)
     }
 
     #[test]
     fn the_fastest_exact_one_stands_beside_the_fastest_and_the_next_exact() {
         let runs = [
-            run("rt", 0, 100.0, 100.0),
+            run("rt", 0, 100.0, 99.0),
             run("nsm", 4_700, 10.0, 8.0),
-            run("light_buffer", 0, 21.0, 21.0),
+            run("light_buffer", 0, 21.0, 20.0),
             unavailable("rt_hw"),
         ];
         let (marked, sentences) = outcome(&runs);
@@ -757,7 +884,7 @@ mod tests {
         assert_eq!(
             sentences,
             [
-                "Take `light_buffer`, whatever moves: 21.0 ms a frame. It is exact here and 4.8 \
+                "Whatever moves: take `light_buffer` (21.0 ms a frame). It is exact here and 4.8 \
                  times as fast as `rt`, the next such method. `nsm` is 2.1 times as fast and wrong \
                  on 4.700 % of the surfaces that face the light."
             ]
@@ -767,7 +894,7 @@ mod tests {
     #[test]
     fn who_keeps_a_map_may_win_while_only_the_camera_moves() {
         let runs = [
-            run("rt", 0, 70.0, 70.0),
+            run("rt", 0, 70.0, 69.0),
             run("crsma_full", 0, 380.0, 34.0),
             run("nsm", 9, 20.0, 10.0),
         ];
@@ -776,11 +903,11 @@ mod tests {
         assert_eq!(
             sentences,
             [
-                "Take `rt` while light or meshes move: 70.0 ms a frame. It is exact here and 5.4 \
+                "While the light moves: take `rt` (70.0 ms a frame). It is exact here and 5.4 \
                  times as fast as `crsma_full`, the next such method. `nsm` is 3.5 times as fast \
                  and wrong on 0.009 % of the surfaces that face the light.",
-                "Take `crsma_full` while only the camera moves: 34.0 ms a frame. It is exact here \
-                 and 2.1 times as fast as `rt`, the next such method. `nsm` is 3.4 times as fast \
+                "While the camera moves: take `crsma_full` (34.0 ms a frame). It is exact here \
+                 and 2.0 times as fast as `rt`, the next such method. `nsm` is 3.4 times as fast \
                  and wrong on 0.009 % of the surfaces that face the light.",
             ]
         );
@@ -795,25 +922,22 @@ mod tests {
             sentences,
             [
                 "None is exact here. `crsm` is the least wrong (wrong on 0.020 % of the surfaces \
-                 that face the light, 40.0 ms a frame). `nsm` is 4.0 times as fast (wrong on 0.500 \
-                 % of the surfaces that face the light)."
+                 that face the light, 40.0 ms a frame). `nsm` is 4.0 times as fast: wrong on 0.500 % \
+                 of the surfaces that face the light."
             ]
         );
         let (_, sentences) = outcome(&[run("a", 0, 10.0, 10.0), run("b", 0, 10.2, 10.2)]);
         assert_eq!(
             sentences,
             [
-                "Take `a` or `b`: their times cannot be told apart, 10.0 ms a frame. All are exact \
-                 here."
+                "Take `a` or `b`: their times cannot be told apart (10.0 ms a \
+                 frame). All are exact here."
             ]
         );
         let (_, sentences) = outcome(&[run("rt", 0, 10.0, 4.0)]);
         assert_eq!(
             sentences,
-            [
-                "Take `rt`, whatever moves: 10.0 ms a frame (4.00 while only the camera moves). It \
-                 is exact here."
-            ]
+            ["Whatever moves: take `rt` (10.0 ms a frame). It is exact here."]
         );
         assert_eq!(outcome(&[unavailable("rt_hw")]), (None, Vec::new()));
         assert_eq!(outcome(&[]), (None, Vec::new()));
@@ -944,7 +1068,7 @@ mod tests {
         );
         assert_eq!(
             judged(&exact[..1], 1).1[0],
-            "Take `rt`: 100 ms a frame. It is exact here."
+            "Take `rt` (100 ms a frame). It is exact here."
         );
     }
 
@@ -954,7 +1078,10 @@ mod tests {
         old.session = "2026-11-20T03:00:00Z".into();
         let (marked, sentences) = outcome(&[run("rt", 0, 50.0, 50.0), old]);
         assert_eq!(marked.as_deref(), Some("rt"));
-        assert_eq!(sentences, ["Take `rt`: 50.0 ms a frame. It is exact here."]);
+        assert_eq!(
+            sentences,
+            ["Take `rt` (50.0 ms a frame). It is exact here."]
+        );
     }
 
     #[test]
@@ -1089,7 +1216,7 @@ mod tests {
         assert_eq!(
             sentences,
             [
-                "Of the 42 % that can be judged: Take `hybrid_pcf`: 30.0 ms a frame. It is right \
+                "Of the 42 % that can be judged: Take `hybrid_pcf` (30.0 ms a frame). It is right \
                  on all of these. `nsm` is 3.3 times as fast and wrong on 0.121 % of these.",
                 "On the other 58 % the right answer hangs on rounding: no method is right or wrong \
                  there. From the reference's choice differ `hybrid_pcf` 2.073 % (the least) and \
@@ -1137,7 +1264,10 @@ mod tests {
         ];
         let (marked, sentences) = outcome(&runs);
         assert_eq!(marked.as_deref(), Some("rt"));
-        assert_eq!(sentences, ["Take `rt`: 55.0 ms a frame. It is exact here."]);
+        assert_eq!(
+            sentences,
+            ["Take `rt` (55.0 ms a frame). It is exact here."]
+        );
         // Wrong in one view is wrong.
         let runs = [run("rt", 0, 1.0, 1.0), elsewhere(run("rt", 7, 1.0, 1.0))];
         assert!(outcome(&runs).1[0].starts_with("None is exact here"));
@@ -1205,7 +1335,7 @@ mod tests {
     fn grades_have_a_least_error_and_a_fastest() {
         let runs = [graded("rt_area", 0.01, 90.0), graded("pcf", 0.2, 9.0)];
         let expected = "`rt_area` has the least error (RMSE 0.0100, 90.0 ms a frame). `pcf` is 10 \
-            times as fast (RMSE 0.2000).";
+            times as fast: RMSE 0.2000.";
         assert_eq!(outcome(&runs), (None, vec![expected.into()]));
     }
 }

@@ -40,8 +40,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// A camera path of the scene, or `all`. Every frame is judged and timed, and shimmer counted.
-    /// Unchanged passes are skipped; unless --cached-frames is 0, a second walk times every pass.
-    /// --frames has no effect.
+    /// Unchanged passes are skipped. --frames has no effect.
     #[arg(long, value_name = "NAME", conflicts_with = "view")]
     pub path: Option<String>,
     /// Move the camera by a part of a pixel in each frame, through N places in turn (Halton's
@@ -75,11 +74,11 @@ pub struct CompareArgs {
     #[arg(long, default_value_t = 2, value_name = "N",
           value_parser = frames(0), allow_negative_numbers = true)]
     pub warmup: u32,
-    /// Timed frames in which only the camera moves, so that passes may be skipped; 0 for none.
-    /// Without it: as many as --frames.
+    /// Timed frames before each of which the same has moved: nothing, the camera, the light, meshes
+    /// (on a path that moves parts). 0 for none. Without it: as many as --frames.
     #[arg(long, value_name = "N",
           value_parser = frames(0), allow_negative_numbers = true)]
-    pub cached_frames: Option<u32>,
+    pub regime_frames: Option<u32>,
     /// Shadow rays of the reference: `exact` (no offset, the own triangle excluded) or
     /// `offset:LENGTH` (origin moved towards the light by so many scene units).
     #[arg(long, default_value = "exact", value_name = "MODE")]

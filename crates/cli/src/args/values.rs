@@ -54,7 +54,7 @@ pub fn gate(text: &str) -> Result<Gate, String> {
     };
     let most = match quantity {
         Figure::Wrong | Figure::Missing | Figure::False => percent(value),
-        Figure::Frame => milliseconds(value),
+        Figure::Frame(_) | Figure::Percentile(_) => milliseconds(value),
         Figure::Memory => bytes(value).map(|bytes| bytes as f64),
         Figure::Rmse | Figure::Flip => positive(value),
     };

@@ -163,7 +163,7 @@ impl Loaded {
                 protocol: Protocol {
                     frames: args.frames,
                     warmup: args.warmup,
-                    cached_frames: args.cached_frames.unwrap_or(args.frames),
+                    regime_frames: args.regime_frames.unwrap_or(args.frames),
                     jitter: args.jitter,
                     oracle: args.oracle,
                     reference_samples: args.reference_samples,

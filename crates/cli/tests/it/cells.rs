@@ -11,7 +11,7 @@ use std::{
 };
 
 const COMPARE: &str = "compare rt nsm pcf vsm --set filterable=false --scene park --view all \
-                       --size 32x32,48x32 --map-size 32 --frames 2 --warmup 0 --cached-frames 0";
+                       --size 32x32,48x32 --map-size 32 --frames 2 --warmup 0 --regime-frames 0";
 
 /// The same on every machine with one adapter and driver.
 const ANSWERS: [&str; 14] = [
@@ -166,7 +166,7 @@ fn plans_that_cannot_be_measured_are_told_with_the_way_out() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let small = "compare rt nsm --scene park --size 16x16 --map-size 16 --frames 1 --warmup 0 \
-                 --cached-frames 0 --images none";
+                 --regime-frames 0 --images none";
     ends(folder, &format!("{small} --plan cells.jsonl"), 0);
     let good = fs::read_to_string(folder.join("cells.jsonl")).unwrap();
     let measure = |text: &str, code, parts: &[&str]| {
@@ -285,7 +285,7 @@ fn cells_of_two_machines_that_disagree_are_not_joined() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let small = "compare rt nsm --scene park --size 16x16 --map-size 16 --frames 1 --warmup 0 \
-                 --cached-frames 0 --images none";
+                 --regime-frames 0 --images none";
     ends(folder, &format!("{small} --plan cells.jsonl"), 0);
     for line in ["--shard 1/2 --out one", "--out two"] {
         ends(folder, &format!("compare --cells cells.jsonl {line}"), 0);

@@ -255,8 +255,8 @@ fn ctrl_c_in_a_frame_that_never_ends_keeps_finished_runs_and_resume_goes_on() {
 fn ctrl_c_between_frames_keeps_what_is_judged_and_resume_times_it() {
     let folder = folder();
     for frames in [
-        "--frames 100000 --cached-frames 0",
-        "--frames 1 --cached-frames 100000",
+        "--frames 100000 --regime-frames 0",
+        "--frames 1 --regime-frames 100000",
     ] {
         let line = format!("compare nsm --size 16x16 --map-size 16 --warmup 0 {frames} --out o");
         // So long that the one frame is over and the cached ones have begun; where they have not,

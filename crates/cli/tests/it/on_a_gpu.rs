@@ -72,7 +72,7 @@ fn preset_names(entries: &Value) -> Vec<&str> {
 #[test]
 fn compare_all_takes_the_presets_that_presets_lists() {
     let (folder, listed) = presets_on_disk();
-    let line = "compare --all --size 8x8 --map-size 8 --frames 1 --warmup 0 --cached-frames 0 \
+    let line = "compare --all --size 8x8 --map-size 8 --frames 1 --warmup 0 --regime-frames 0 \
         --images none --out . --format json";
     let printed = skiagraph(folder.path(), line).stdout;
     let file = fs::read(folder.path().join("results.json")).unwrap();
@@ -252,7 +252,7 @@ f 12 11 10 9\nf 13 14 15 16\nf 9 10 14 13\nf 10 11 15 14\nf 11 12 16 15\nf 12 9 
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn a_document_holds_what_was_measured_and_needs_no_pictures() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "compare nsm rt --view all --size 16x16 --map-size 8 --frames 1 --cached-frames 0 \
+    let line = "compare nsm rt --view all --size 16x16 --map-size 8 --frames 1 --regime-frames 0 \
         --images none --out . --format markdown";
     let output = skiagraph(folder.path(), line);
     let text = String::from_utf8_lossy(&output.stdout);
@@ -333,7 +333,7 @@ fn dissertation_of_park() -> String {
 fn the_dissertations_charts_stand_beside_ours() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("d.csv"), dissertation_of_park()).unwrap();
-    let common = "--map-size 512,1024 --frames 1 --warmup 0 --cached-frames 0 --images none";
+    let common = "--map-size 512,1024 --frames 1 --warmup 0 --regime-frames 0 --images none";
     for what in [
         "rt nsm hybrid_pcf crsm crsm_depth --view bench_with --size 16x16,24x24 --out with",
         "nsm hybrid_pcf --view bench_side --size 24x24 --out side",

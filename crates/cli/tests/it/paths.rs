@@ -27,7 +27,7 @@ fn outside_band(frames: &[Value]) -> f64 {
 #[ignore = "a suite: `./test.sh --all` runs it"]
 fn figures_lines_and_pictures_say_of_which_path_and_frame_they_are() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "compare pcf nsm --path all --size 32x32 --map-size 32 --warmup 0 --cached-frames 0 \
+    let line = "compare pcf nsm --path all --size 32x32 --map-size 32 --warmup 0 --regime-frames 0 \
                 --out out";
     let (runs, table) = results(folder.path(), line);
     assert_eq!(runs.len(), 8);

@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::{fs, path::Path};
 
 const COMPARE: &str = "compare nsm light_buffer --scene park --size 48x48 --map-size 32 --frames 2 \
-                       --warmup 0 --cached-frames 0 --images none";
+                       --warmup 0 --regime-frames 0 --images none";
 
 fn read(file: &Path) -> Value {
     serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()

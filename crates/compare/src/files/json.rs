@@ -88,15 +88,18 @@ impl Mistake {
     }
 }
 
-/// Checks that `version`, the field `schema` of the JSON file with this `text`, is 1.
+/// Checks that `version`, the field `schema` of the JSON file with this `text`, is `expected`.
 ///
 /// # Errors
-/// A mistake at the field `schema` if the version is missing or not 1.
-pub fn check_schema(text: &str, version: Option<Value>) -> Result<(), Mistake> {
-    if version == Some(1.into()) {
+/// A mistake at the field `schema` if the version is missing or another one.
+pub fn check_schema(text: &str, version: Option<Value>, expected: u32) -> Result<(), Mistake> {
+    if version == Some(expected.into()) {
         return Ok(());
     }
     let version = version.unwrap_or_default();
-    let what = format!("this program reads version 1 of the schema, not {version}");
+    let what = format!(
+        "this program reads version {expected} of the schema, not {version}: measure again, or \
+         read it with the program that wrote it"
+    );
     Err(Mistake::at_field(text, "\"schema\"", what))
 }

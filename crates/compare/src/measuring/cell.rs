@@ -53,14 +53,14 @@ pub fn id(
         oracle,
         frames,
         warmup,
-        cached_frames,
+        regime_frames,
         ..
     } = comparison.protocol;
     lines.extend([
         format!("oracle {oracle}"),
         format!("frames {frames}"),
         format!("warmup {warmup}"),
-        format!("cached frames {cached_frames}"),
+        format!("cached frames {regime_frames}"),
     ]);
     lines.extend(sampling_lines(comparison, view));
     hash(&lines)

@@ -42,6 +42,7 @@ mod results_folder;
 pub mod resume;
 mod run;
 pub mod scene_folders;
+mod scene_motion;
 mod search;
 mod sequence;
 pub mod series;

@@ -18,7 +18,7 @@
 use crate::error::CompareError;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::timing::{self, FrameMode};
+use crate::measuring::timing;
 use crate::measuring::{date, device, frame};
 use crate::pictures::run_pictures::conditions as conditions_in_words;
 use crate::records::profile::{Conditions, Memory, Profile};
@@ -76,9 +76,9 @@ pub fn profile(
     let name = format!("{}, {name}", method.name);
     let total = u64::from(warmup) + u64::from(frames);
     let step = Step::begin(session.sink, &name, total, "frames");
-    let (count, mode) = ([warmup, frames], FrameMode::AllPasses);
+    let count = [warmup, frames];
     let set_done = |frames| step.set_done(frames);
-    let timed = timing::sample(session, &mut executor, mode, count, set_done).map_err(failed)?;
+    let timed = timing::sample(session, &mut executor, count, set_done).map_err(failed)?;
     step.end();
 
     match Profile::new(conditions, &passes, &Samples::new(&timed), memory) {

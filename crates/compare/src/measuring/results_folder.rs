@@ -130,7 +130,7 @@ fn differences(earlier: &Results, now: &Results) -> Vec<String> {
             ("oracle", results.oracle.clone()),
             ("frames", results.frames.to_string()),
             ("warmup", results.warmup.to_string()),
-            ("cached frames", results.cached_frames.to_string()),
+            ("frames of each regime", results.regime_frames.to_string()),
             ("joined results", results.others.len().to_string()),
         ]
     };

@@ -181,8 +181,8 @@ mod tests {
                 "joined results: there 0, here 1",
             ),
             (
-                |now| now.cached_frames = 0,
-                "cached frames: there 10, here 0",
+                |now| now.regime_frames = 0,
+                "frames of each regime: there 10, here 0",
             ),
         ];
         for (change, part) in changes {

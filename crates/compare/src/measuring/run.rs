@@ -7,24 +7,24 @@ use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::diagnostics::{Diagnostics, diagnose};
+use crate::measuring::frame::Contents;
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
+use crate::measuring::sequence::{Account, cost};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{self, FrameMode, Times};
+use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Times, Turn};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, frame, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
-use crate::records::hint::Hint;
-use crate::records::results::{Answer, AreaReference, Images, Measured, Run};
+use crate::records::regimes::RegimeTimes;
+use crate::records::results::{AreaReference, Images, Measured, Run};
 use crate::records::statistics::FrameTimes;
-use crate::records::steady::Steady;
 use crate::records::turns::Turns;
-use crate::sink::Session;
+use crate::sink::{Session, Step};
 use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
-use skiagraph_reference::{
-    BlockerCounts, EdgeDistances, GroundTruth, LayerJump, Statistics, TexelsPerPixel,
-};
+use skiagraph_passes::SceneProvider;
+use skiagraph_reference::{GroundTruth, Statistics};
 use std::cell::RefCell;
 
 /// Data that all methods share when they are measured on one view or path in one viewport.
@@ -52,21 +52,13 @@ pub struct MeasureContext<'a> {
     pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
-/// A method that was judged on a view, and not timed yet.
+/// A method that was judged on a view or path. Its times are not those of its turns yet.
 pub struct Judged {
     /// The method, with its params.
     pub method: Method,
     planned: Run,
-    prepared: Prepared,
-    judgement: Judgement,
-    edges: EdgeDistances,
-    rays: Option<u64>,
-    answers_in_shares: bool,
-    blockers: Option<BlockerCounts>,
-    hint: Option<Hint>,
-    texels: Option<TexelsPerPixel>,
-    layer_jump: Option<LayerJump>,
-    images: Option<Images>,
+    executor: Executor,
+    measured: Measured,
     /// Pictures of the method, to be written with its run.
     pub pictures: Vec<PictureFile>,
 }
@@ -75,27 +67,19 @@ impl Judged {
     /// Returns the bytes of the textures and buffers that the graph makes, without those of the
     /// scene.
     pub fn bytes(&self) -> u64 {
-        self.prepared.memory[0]
+        self.measured.memory_bytes
     }
 }
 
-/// A method that is ready to run. Buffers whose size depends on the frame's content have grown; a
-/// method that reuses results of earlier frames has run until its picture repeats.
-pub struct Prepared {
-    /// Executor of the method's plan.
-    pub executor: Executor,
-    /// Steady state of a method that reuses results of earlier frames; `None` for others.
-    pub steady: Option<Steady>,
-    memory: [u64; 2],
-    scene_bytes: u64,
-}
-
 impl MeasureContext<'_> {
-    /// Runs and judges a method on one still view by `plan`, its plan there; [`times`](Self::times)
+    /// Runs and judges a method by `plan`, its plan for the view or path; [`times`](Self::times)
     /// times it together with others. `planned` is its [`Run`] without measurements. `provider` has
-    /// the context's view and light already. A method that reuses results of earlier frames runs
-    /// first until its picture repeats, at most 256 frames. Of the pictures of one period (16
-    /// pictures if none repeats) the worst is judged, and [`Steady`] has the means of all.
+    /// the context's view and light already. The times of the result are provisional: of a still
+    /// view one frame, of a path the frames that were judged.
+    ///
+    /// A method that reuses results of earlier frames runs first until its picture repeats, at most
+    /// 256 frames. On a still view, of the pictures of one period (16 pictures if none repeats) the
+    /// worst is judged, and [`Steady`](crate::records::steady::Steady) has the means of all.
     ///
     /// # Errors
     /// A method that the device refuses; outputs whose size, format or values a shadow method must
@@ -104,97 +88,115 @@ impl MeasureContext<'_> {
         &self,
         (method, planned): (&Method, &Run),
         plan: Plan,
-        provider: &mut dyn Provider,
+        provider: &mut SceneProvider,
+        step: &Step,
     ) -> Result<Judged, Stop> {
-        let mut prepared = self.prepare(plan, provider)?;
-        let executor = &mut prepared.executor;
-        let ground_truth = &self.truth_view.ground_truth;
-        let names = method.preset.judged();
-        let layer = self.layer(executor.plan());
-        let judge = |contents| {
-            let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
-            judged(&method.preset, outputs, ground_truth)
-        };
-        let (outputs, judgement) = match &mut prepared.steady {
-            Some(steady) => steady::judge(self.session, executor, &names, steady, judge)?,
-            None => judge(frame::read(self.session, executor, &names)?)?,
-        };
-        let has_blockers = judgement.is_hard && judgement.counts.wrong.certain > 0;
-        let blockers = has_blockers.then(|| self.truth_view.blockers(&outputs));
-        let blockers = blockers.transpose()?;
-        let wrong = &judgement.counts.wrong;
-        let wrong = wrong.total.saturating_sub(wrong.in_band);
-        let hint = match blockers.filter(|_| self.hints) {
-            Some(blockers) => {
-                let seen = (self.truth_view, layer);
-                hint::find(self.session, method, seen, (wrong, blockers), provider)?
+        let session = self.session;
+        let mut executor = frame::executor(session, plan, provider)?;
+        frame::grow(session, &mut executor, provider)?;
+        let plan = executor.plan();
+        let (memory_bytes, saved_bytes) = (plan.memory_bytes(), plan.saved_bytes());
+        let (scene_bytes, layer) = (scene_bytes(session, plan, provider)?, self.layer(plan));
+        let settle = plan.remembers();
+        let settled = settle.then(|| steady::settle(session, &mut executor));
+        let mut steady = settled.transpose()?;
+        let mut account = Account::default();
+        let timed = match self.view {
+            ViewOrPath::Still(_) => {
+                let names = method.preset.judged();
+                let judge = |contents| self.judgement(method, 0, layer, contents);
+                let (outputs, judgement) = match &mut steady {
+                    Some(steady) => steady::judge(session, &mut executor, &names, steady, judge)?,
+                    None => judge(frame::read(session, &mut executor, &names)?)?,
+                };
+                account.add(self.path, 0, outputs, judgement)?;
+                step.set_done(1);
+                timing::sample(session, &mut executor, [0, 1], |_| ())?
             }
-            None => None,
+            ViewOrPath::Path(_) => {
+                let walked = (method, steady.is_some());
+                self.follow(walked, &mut executor, provider, (&mut account, step))?
+            }
         };
-        let diagnostics = diagnose(
-            self.session,
-            method,
-            self.truth_view,
-            (&outputs, layer),
-            provider,
-        )?;
-        let images = self.draw(
-            method,
-            None,
-            ground_truth,
-            (&outputs, &judgement, &diagnostics),
-        )?;
+        let times = Times::new(&timed)?;
+        let (index, outputs, judgement) = account.worst.take().ok_or_else(|| {
+            CompareError::Input(format!("the path {} has no frames", self.view.name()))
+        })?;
+        let truth_view = &self.path.truth_views[index];
+        let viewport = truth_view.ground_truth.pixels.viewport;
+        self.path.frames.show(index, viewport, provider)?;
+        let is_path = matches!(self.view, ViewOrPath::Path(_));
+        let counts = &account.counts;
+        let wrong = counts.wrong.total.saturating_sub(counts.wrong.in_band);
+        let explained = account.blockers.filter(|_| self.hints && !is_path);
+        let hint = explained.map(|blockers| {
+            let seen = (self.truth_view, layer);
+            hint::find(session, method, seen, (wrong, blockers), provider)
+        });
+        let diagnostics = diagnose(session, method, truth_view, (&outputs, layer), provider)?;
+        let place = is_path.then_some(index);
+        let shown = (&outputs, &judgement, &diagnostics);
+        let images = self.draw(method, place, &truth_view.ground_truth, shown)?;
+        let pictures = self.pictures.as_ref();
+        let mut measured = Measured {
+            certain: counts.certain,
+            uncertain: counts.uncertain,
+            split: counts.split,
+            rays: account.rays,
+            wrong: counts.wrong,
+            certain_wrong_blockers: account.blockers,
+            hint: hint.transpose()?.flatten(),
+            facing_mismatch: counts.facing_mismatch,
+            answer: account.answer,
+            graded: account.graded(),
+            edges: account.edges,
+            memory_bytes,
+            saved_bytes,
+            scene_bytes,
+            steady,
+            texels: diagnostics.texels,
+            layer_jump: diagnostics.layer_jump,
+            sequence: is_path.then(|| account.sequence()),
+            images,
+            ..Measured::default()
+        };
+        self.set_times(&mut measured, times);
         Ok(Judged {
             method: method.clone(),
             planned: planned.clone(),
-            prepared,
-            edges: self.truth_view.edges(&outputs)?,
-            rays: outputs.rays,
-            answers_in_shares: outputs.shares.is_some(),
-            blockers,
-            hint,
-            texels: diagnostics.texels,
-            layer_jump: diagnostics.layer_jump,
-            pictures: self
-                .pictures
-                .as_ref()
-                .map(RefCell::take)
-                .unwrap_or_default(),
-            images,
-            judgement,
+            executor,
+            measured,
+            pictures: pictures.map(RefCell::take).unwrap_or_default(),
         })
     }
 
-    /// Times a single frame of a judged method and returns its run, which stays in the results if
-    /// the work ends before [`times`](Self::times).
+    /// Judges what a method shows in the frame with the index `index`.
     ///
     /// # Errors
-    /// An early end, a lost device.
-    pub fn first_frame(&self, judged: &mut Judged) -> Result<Run, CompareError> {
-        let executors = &mut [&mut judged.prepared.executor];
-        let timed = timing::in_turns(
-            self.session,
-            executors,
-            FrameMode::AllPasses,
-            [0, 1],
-            |_| (),
-        );
-        let timed = timed?.pop().unwrap_or_else(|| Ok(Vec::new()));
-        let times = timed
-            .map_err(Stop::from)
-            .and_then(|timed| Ok(Times::new(timed)?));
-        let measured = times.map(|times| self.timed(judged, times));
-        Ok(match attempt(self.session, &judged.method, measured)? {
-            Ok(measured) => self.run(&judged.method, &judged.planned, measured),
-            Err(reason) => self.unavailable(&judged.method, &judged.planned, reason),
-        })
+    /// Outputs of another size, format or range than a shadow method's.
+    pub fn judgement(
+        &self,
+        method: &Method,
+        index: usize,
+        layer: usize,
+        contents: Contents,
+    ) -> Result<(Outputs, Judgement), CompareError> {
+        let ground_truth = &self.path.truth_views[index].ground_truth;
+        let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
+        judged(&method.preset, outputs, ground_truth)
+    }
+
+    /// Returns the run of a judged method with its provisional times: it stays in the results if
+    /// the work ends before [`times`](Self::times).
+    pub fn judged_run(&self, judged: &Judged) -> Run {
+        self.run(&judged.method, &judged.planned, judged.measured.clone())
     }
 
     /// Times judged methods in turns, frame by frame, and returns the run of each, in order.
     /// `group` is the index of this group, from 0, among those into which the methods of the view
     /// and viewport are split to fit the memory. The first method is the anchor: it is in every
     /// group, so that groups can be compared ([`Turns`]). `done` is called with the number of
-    /// finished turns.
+    /// finished turns, of those that [`schedule`](Self::schedule) lists.
     ///
     /// # Errors
     /// An early end, a lost device.
@@ -202,33 +204,32 @@ impl MeasureContext<'_> {
         &self,
         methods: &mut [Judged],
         group: u32,
+        provider: &SceneProvider,
         done: impl Fn(u64),
     ) -> Result<Vec<Run>, CompareError> {
-        let executors = methods
-            .iter_mut()
-            .map(|judged| &mut judged.prepared.executor);
-        let mut executors: Vec<&mut Executor> = executors.collect();
-        let (warmup, frames) = (self.protocol.warmup, self.protocol.frames);
-        let (count, mode) = ([warmup, frames], FrameMode::AllPasses);
-        let timed = timing::in_turns(self.session, &mut executors, mode, count, done)?;
-        let cached = timing::cached(self.session, &mut executors, self.protocol.cached_frames)?;
+        let viewport = self.truth_view.ground_truth.pixels.viewport;
+        let executors = methods.iter_mut().map(|judged| &mut judged.executor);
+        let frames = self.path.frames;
+        let mut takes = Takes::new(self.session, frames, viewport, provider, executors);
+        for (turn, count) in self.schedule().into_iter().zip(1..) {
+            takes.take(turn)?;
+            done(count);
+        }
+        let timed = takes.end();
         let mut anchor = None;
         let mut runs = Vec::new();
-        for ((judged, timed), cached) in methods.iter().zip(timed).zip(cached) {
-            let times = timed
-                .map_err(Stop::from)
-                .and_then(|timed| Ok(Times::new(timed)?));
-            let measured = times.and_then(|times| {
-                let mut measured = self.timed(judged, times);
-                let anchor = anchor.get_or_insert_with(|| measured.frame.clone());
+        for (judged, timed) in methods.iter().zip(timed) {
+            let timed = timed.map_err(Stop::from);
+            let measured = timed.and_then(|timed| {
+                let mut measured = judged.measured.clone();
+                self.set_timed(&mut measured, &timed)?;
+                let (anchor, regimes): &(FrameTimes, Vec<RegimeTimes>) = anchor
+                    .get_or_insert_with(|| (measured.frame.clone(), measured.regimes.clone()));
                 measured.turns = Some(Turns {
                     group,
                     anchor: anchor.clone(),
+                    regimes: regimes.clone(),
                 });
-                measured.cached = cached.transpose()?;
-                if let Some(cached) = &mut measured.cached {
-                    self.distrust(&mut cached.frame);
-                }
                 Ok(measured)
             });
             runs.push(match attempt(self.session, &judged.method, measured)? {
@@ -239,82 +240,38 @@ impl MeasureContext<'_> {
         Ok(runs)
     }
 
-    /// The measurements of a judged method.
-    fn timed(&self, judged: &Judged, times: Times) -> Measured {
-        Measured {
-            rays: judged.rays,
-            certain_wrong_blockers: judged.blockers,
-            hint: judged.hint.clone(),
-            graded: judged.judgement.graded,
-            edges: judged.edges,
-            texels: judged.texels,
-            layer_jump: judged.layer_jump,
-            images: judged.images.clone(),
-            ..self.measured(
-                &judged.prepared,
-                times,
-                &judged.judgement.counts,
-                judged.answers_in_shares,
-            )
-        }
+    /// Returns the turns that methods are timed in here.
+    pub fn schedule(&self) -> Vec<Turn> {
+        timing::schedule(self.view, self.path.frames, &self.protocol)
     }
 
-    /// Makes the executor of a method's plan, and runs frames until its buffers have grown and, if
-    /// it reuses results of earlier frames, its picture repeats.
-    ///
-    /// # Errors
-    /// A method that the device refuses, an early end, a lost device.
-    pub fn prepare(&self, plan: Plan, provider: &mut dyn Provider) -> Result<Prepared, Stop> {
-        let mut executor = frame::executor(self.session, plan, provider)?;
-        frame::grow(self.session, &mut executor, provider)?;
-        let plan = executor.plan();
-        let memory = [plan.memory_bytes(), plan.saved_bytes()];
-        let scene_bytes = scene_bytes(self.session, plan, provider)?;
-        let remembers = plan.remembers();
-        let settle = || steady::settle(self.session, &mut executor);
-        let steady = remembers.then(settle).transpose()?;
-        Ok(Prepared {
-            executor,
-            steady,
-            memory,
-            scene_bytes,
-        })
+    /// Writes the times of a method's turns into its measurements.
+    fn set_timed(&self, measured: &mut Measured, timed: &TimedKinds) -> Result<(), CompareError> {
+        let kind = match &mut measured.sequence {
+            Some(sequence) => {
+                let frames = timed.get(&Kind::Path).into_iter().flatten();
+                for (frame, timed) in sequence.frames.iter_mut().zip(frames) {
+                    frame.cost = cost(timed, self.timestamps);
+                }
+                Kind::Path
+            }
+            None => Kind::EveryPass,
+        };
+        let frames = timed.get(&kind).map_or(&[][..], Vec::as_slice);
+        self.set_times(measured, Times::new(frames)?);
+        measured.regimes = timing::regime_times(timed)?;
+        let regimes = measured.regimes.iter_mut();
+        regimes.for_each(|times| self.distrust(&mut times.frame));
+        Ok(())
     }
 
-    /// Creates the measurements that still views and paths have in common; all others are absent or
-    /// 0. `counts` compares the method's pixels with the reference, `answers_in_shares` is true if
-    /// its visibility is a share of light.
-    pub fn measured(
-        &self,
-        prepared: &Prepared,
-        mut times: Times,
-        counts: &Statistics,
-        answers_in_shares: bool,
-    ) -> Measured {
+    /// Writes the times of frames and their passes into a method's measurements.
+    fn set_times(&self, measured: &mut Measured, mut times: Times) {
         self.distrust(&mut times.frame);
         if !self.timestamps {
             times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
         }
-        let [memory_bytes, saved_bytes] = prepared.memory;
-        Measured {
-            certain: counts.certain,
-            uncertain: counts.uncertain,
-            split: counts.split,
-            wrong: counts.wrong,
-            facing_mismatch: counts.facing_mismatch,
-            answer: if answers_in_shares {
-                Answer::Graded
-            } else {
-                Answer::Hard
-            },
-            passes: times.passes,
-            frame: times.frame,
-            memory_bytes,
-            saved_bytes,
-            scene_bytes: prepared.scene_bytes,
-            steady: prepared.steady.clone(),
-            ..Measured::default()
-        }
+        (measured.frame, measured.passes) = (times.frame, times.passes);
     }
 
     /// Sets the GPU times in `frame` to `None` if timestamps cannot be trusted.

@@ -37,14 +37,13 @@ use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView, trace};
 use crate::measuring::results_folder::ResultsFolder;
 use crate::measuring::resume::{Kept, earlier};
 use crate::measuring::run::{Judged, MeasureContext};
-use crate::measuring::sequence::follow;
-use crate::measuring::stop::{Stop, attempt};
+use crate::measuring::stop::attempt;
 use crate::measuring::truth_folder::SeenFrame;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{cell, date, device};
 use crate::pictures::run_pictures::{PictureFile, conditions};
 use crate::records::published::attach;
-use crate::records::results::{PROGRAM, Results, Run};
+use crate::records::results::{PROGRAM, Results, Run, SCHEMA};
 use crate::sink::{Runs, Session, Step};
 use crate::wording::{length, plural, size, thousands};
 use itertools::Itertools;
@@ -169,7 +168,7 @@ impl<'a> Series<'a> {
         let planned = planned(comparison, &methods, &template);
         let protocol = &comparison.protocol;
         let results = Results {
-            schema: 1,
+            schema: SCHEMA,
             program: PROGRAM.into(),
             adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
             machine,
@@ -177,7 +176,7 @@ impl<'a> Series<'a> {
             oracle: protocol.oracle.to_string(),
             frames: protocol.frames,
             warmup: protocol.warmup,
-            cached_frames: protocol.cached_frames,
+            regime_frames: protocol.regime_frames,
             began,
             budgets: comparison.budgets,
             commands: comparison.command.iter().cloned().collect(),
@@ -332,16 +331,13 @@ impl<'a> Series<'a> {
         let missing: Vec<(usize, &Method)> = missing
             .filter(|(place, _)| self.is_missing(*place))
             .collect();
-        match view {
-            ViewOrPath::Still(_) => self.measure_still(&context, &missing),
-            ViewOrPath::Path(_) => self.follow_path(&context, &missing),
-        }
+        self.measure_methods(&context, &missing)
     }
 
-    /// Judges methods on a view one by one, each with a frame timed by itself, so that an early end
-    /// keeps it; then times them in turns, as many at once as fit the memory, with the first of all
-    /// in each group.
-    fn measure_still(
+    /// Judges methods one by one and keeps each with provisional times, so that an early end keeps
+    /// it; then times them in turns, as many at once as fit the memory, with the first of all in
+    /// each group.
+    fn measure_methods(
         &mut self,
         context: &MeasureContext,
         missing: &[(usize, &Method)],
@@ -350,13 +346,7 @@ impl<'a> Series<'a> {
         let (mut places, mut group): (Vec<usize>, Vec<Judged>) = Default::default();
         let mut groups = 0;
         for &(place, method) in missing {
-            let planned = self.planned[place].clone();
-            let judge = |plan, provider: &mut SceneProvider, step: &Step| {
-                let judged = context.judge((method, &planned), plan, provider);
-                step.set_done(1);
-                judged
-            };
-            let mut judged = match self.attempt(context, (place, method), 1, judge)? {
+            let mut judged = match self.attempt(context, (place, method))? {
                 Ok(judged) => judged,
                 Err(run) => {
                     self.keep(place, *run, &[])?;
@@ -371,13 +361,10 @@ impl<'a> Series<'a> {
                 group.truncate(1);
                 groups += 1;
             }
-            let run = context.first_frame(&mut judged)?;
-            let is_measured = run.measured.is_some();
+            let run = context.judged_run(&judged);
             self.keep(place, run, &std::mem::take(&mut judged.pictures))?;
-            if is_measured {
-                places.push(place);
-                group.push(judged);
-            }
+            places.push(place);
+            group.push(judged);
         }
         self.time(context, &places, &mut group, groups)
     }
@@ -393,13 +380,13 @@ impl<'a> Series<'a> {
         if group.is_empty() {
             return Ok(());
         }
-        let turns = context.protocol.warmup + context.protocol.frames;
+        let turns = context.schedule().len() as u64;
         let viewport = size(context.truth_view.ground_truth.pixels.viewport);
         let methods = plural(group.len(), "method");
         let name = format!("{methods} in turns, {} {viewport}", context.view.name());
-        let step = Step::begin(self.session.sink, &name, turns.into(), "turns");
+        let step = Step::begin(self.session.sink, &name, turns, "turns");
         let set_done = |turns| step.set_done(turns);
-        let runs = context.times(group, index, set_done)?;
+        let runs = context.times(group, index, &self.provider, set_done)?;
         step.end();
         // The anchor's run is that of its first group.
         let anchors = usize::from(index > 0);
@@ -412,42 +399,19 @@ impl<'a> Series<'a> {
         self.save(&[])
     }
 
-    /// Measures methods along a camera path, one after the other.
-    fn follow_path(
-        &mut self,
-        context: &MeasureContext,
-        missing: &[(usize, &Method)],
-    ) -> Result<(), CompareError> {
-        let frames = context.path.frames.poses.len() as u64;
-        let frames = u64::from(context.protocol.warmup) + frames;
-        for &(place, method) in missing {
-            let walk = |plan, provider: &mut SceneProvider, step: &Step| {
-                follow(context, method, plan, provider, step)
-            };
-            let run = match self.attempt(context, (place, method), frames, walk)? {
-                Ok(measured) => context.run(method, &self.planned[place], measured),
-                Err(run) => *run,
-            };
-            let pictures = context.pictures.as_ref().map(RefCell::take);
-            self.keep(place, run, &pictures.unwrap_or_default())?;
-        }
-        Ok(())
-    }
-
-    /// Plans and runs a method by `run`, whose step has so many frames. One that this adapter
-    /// cannot run, or whose outputs are not a shadow method's, yields a [`Run`] that says why: the
-    /// others are worth measuring all the same.
+    /// Plans and judges a method. One that this adapter cannot run, or whose outputs are not a
+    /// shadow method's, yields a [`Run`] that says why: the others are worth measuring all the
+    /// same.
     ///
     /// # Errors
     /// Ctrl-C, a lost device, a picture that cannot be written.
-    fn attempt<T>(
+    fn attempt(
         &mut self,
         context: &MeasureContext,
         (place, method): (usize, &Method),
-        frames: u64,
-        run: impl FnOnce(Plan, &mut SceneProvider, &Step) -> Result<T, Stop>,
-    ) -> Result<Result<T, Box<Run>>, CompareError> {
-        let planned = &self.planned[place];
+    ) -> Result<Result<Judged, Box<Run>>, CompareError> {
+        let (planned, path) = (&self.planned[place], context.path.frames);
+        path.show(0, planned.viewport, &mut self.provider)?;
         let unavailable = |reason| Box::new(context.unavailable(method, planned, reason));
         let plan = match self.plan(method, planned.viewport) {
             Ok(plan) => plan,
@@ -468,8 +432,12 @@ impl<'a> Series<'a> {
         self.broken.extend(wrong);
         let name = conditions(method, context.view.name(), planned.viewport);
         let name = format!("{}, {name}", method.name);
+        let frames = match context.view {
+            ViewOrPath::Still(_) => 1,
+            ViewOrPath::Path(_) => u64::from(context.protocol.warmup) + path.poses.len() as u64,
+        };
         let step = Step::begin(self.session.sink, &name, frames, "frames");
-        let outcome = run(plan, &mut self.provider, &step);
+        let outcome = context.judge((method, planned), plan, &mut self.provider, &step);
         match attempt(self.session, method, outcome) {
             Err(CompareError::InvalidOutputs(reason)) => {
                 let run = unavailable(reason.clone());

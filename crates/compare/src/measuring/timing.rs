@@ -1,38 +1,307 @@
-//! Times many frames of graphs.
+//! Times many frames of graphs. Methods that are compared take turns: a turn is one frame of each
+//! of them, with the same camera, light and meshes.
 
+use crate::comparison::Protocol;
 use crate::error::CompareError;
 use crate::measuring::frame;
-use crate::records::results::{Cached, Pass};
-use crate::records::samples::{PassSamples, Samples, TimedFrame};
+use crate::measuring::frame_sequence::FrameSequence;
+use crate::measuring::scene_motion::{self, regimes};
+use crate::measuring::view_or_path::ViewOrPath;
+use crate::records::regimes::{Regime, RegimeTimes};
+use crate::records::results::Pass;
+use crate::records::samples::{PassSamples, Samples, TimedFrame, Upkeep};
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::sink::Session;
-use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
+use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport, FrameTiming};
+use skiagraph_passes::{Built, SceneProvider};
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Choice of the passes that run in timed frames.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FrameMode {
-    /// Every pass runs in every frame.
-    AllPasses,
-    /// Only the camera counts as changed before every frame, so that a pass is skipped if none of
-    /// its inputs has changed.
-    CameraMoves,
+/// Frames that are timed together: what is shown, and what has moved since the frame before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Every pass runs.
+    EveryPass,
+    /// Frames of a camera path in their order.
+    Path,
+    /// Frames before which the same has moved.
+    Moved(Regime),
 }
 
-/// Runs `warmup` frames, then `frames` timed ones. `done` is called with the number of finished
-/// frames. If the session's sink asks for an early end, the frames timed until then are returned.
+/// One turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Turn {
+    /// What is shown, and what has moved.
+    pub kind: Kind,
+    /// Index of the frame that is shown.
+    pub frame: usize,
+    /// True if the times count; false for a frame that warms up, or that brings back what has moved.
+    pub is_kept: bool,
+}
+
+/// Returns the turns of a view or path: of a view, frames in which every pass runs, and after each
+/// of them a frame of each regime; of a path, all its frames, then frames of each regime at places
+/// spread over it.
+pub fn schedule(view: &ViewOrPath, frames: &FrameSequence, protocol: &Protocol) -> Vec<Turn> {
+    let Protocol {
+        warmup,
+        frames: timed,
+        regime_frames,
+        ..
+    } = *protocol;
+    let every_pass = |frame, is_kept| Turn {
+        kind: Kind::EveryPass,
+        frame,
+        is_kept,
+    };
+    let regimes = |frame| {
+        let moved = move |regime: &Regime| Turn {
+            kind: Kind::Moved(*regime),
+            frame,
+            is_kept: true,
+        };
+        regimes(frames).iter().map(moved)
+    };
+    let mut turns: Vec<Turn> = (0..warmup).map(|_| every_pass(0, false)).collect();
+    let count = frames.poses.len();
+    match view {
+        ViewOrPath::Still(_) => {
+            for round in 0..timed.max(regime_frames) {
+                turns.push(every_pass(0, round < timed));
+                turns.extend(regimes(0).filter(|_| round < regime_frames));
+            }
+        }
+        ViewOrPath::Path(_) => {
+            let path = |frame| Turn {
+                kind: Kind::Path,
+                frame,
+                is_kept: true,
+            };
+            turns.extend((0..count).map(path));
+            for round in 0..regime_frames as usize {
+                let frame = round * count / regime_frames as usize;
+                turns.push(every_pass(frame, false));
+                turns.extend(regimes(frame));
+            }
+        }
+    }
+    turns
+}
+
+/// Timed frames of one method by their kind, each list in the order of the turns.
+pub type TimedKinds = BTreeMap<Kind, Vec<TimedFrame>>;
+
+/// Methods that take turns on a scene of their own, which moves.
+pub struct Takes<'t, 'e> {
+    session: Session<'t>,
+    frames: &'t FrameSequence,
+    viewport: [u32; 2],
+    provider: SceneProvider,
+    takes: Vec<Take<'e>>,
+    first: Instant,
+    turns: usize,
+}
+
+/// One method that takes turns: its executor, and its frames so far or the error that ended it.
+struct Take<'e> {
+    executor: &'e mut Executor,
+    timed: Result<TimedKinds, ExecuteError>,
+}
+
+impl<'t, 'e> Takes<'t, 'e> {
+    /// Prepares turns of executors. `provider` is the one that they were made with; it does not
+    /// move itself.
+    pub fn new(
+        session: Session<'t>,
+        frames: &'t FrameSequence,
+        viewport: [u32; 2],
+        provider: &SceneProvider,
+        executors: impl IntoIterator<Item = &'e mut Executor>,
+    ) -> Self {
+        let take = |executor| Take {
+            executor,
+            timed: Ok(BTreeMap::new()),
+        };
+        Self {
+            session,
+            frames,
+            viewport,
+            provider: provider.branch(),
+            takes: executors.into_iter().map(take).collect(),
+            first: Instant::now(),
+            turns: 0,
+        }
+    }
+
+    /// Has each executor draw a frame. Each turn begins with another of them, so that none always
+    /// follows the same one. An executor that fails takes no further part.
+    ///
+    /// The executors share what is made of the scene, such as a hierarchy: the first that needs it
+    /// makes it. Its time counts for each that reads it, as if each had made its own.
+    ///
+    /// # Errors
+    /// An early end; positions that are not finite.
+    pub fn take(&mut self, turn: Turn) -> Result<(), CompareError> {
+        match turn.kind {
+            Kind::EveryPass | Kind::Path => {
+                self.frames
+                    .show(turn.frame, self.viewport, &mut self.provider)?;
+            }
+            Kind::Moved(regime) => {
+                let shown = (self.frames, turn.frame);
+                scene_motion::step(regime, shown, self.viewport, &mut self.provider)?;
+            }
+        }
+        let count = self.takes.len();
+        let mut made = Vec::new();
+        for place in 0..count {
+            self.session.check_stopped()?;
+            let index = (place + self.turns) % count;
+            if self.takes[index].timed.is_err() {
+                continue;
+            }
+            let frame = self.frame(index, turn, &mut made);
+            let take = &mut self.takes[index];
+            match (frame, &mut take.timed) {
+                (Err(ExecuteError::Unfinished { .. }), _) if self.session.is_stopped() => {
+                    return Err(CompareError::interrupted());
+                }
+                (Err(error), timed) => *timed = Err(error),
+                (Ok(frame), Ok(timed)) if turn.is_kept => {
+                    timed.entry(turn.kind).or_default().push(frame);
+                }
+                (Ok(_), _) => {}
+            }
+        }
+        self.turns += 1;
+        if turn.is_kept && turn.kind != Kind::EveryPass {
+            for take in &mut self.takes {
+                take.charge(turn.kind, &made);
+            }
+        }
+        Ok(())
+    }
+
+    /// Times a frame of one executor, and adds what was made for it of the scene to `made`.
+    fn frame(
+        &mut self,
+        index: usize,
+        turn: Turn,
+        made: &mut Vec<Built>,
+    ) -> Result<TimedFrame, ExecuteError> {
+        let (executor, provider) = (&mut *self.takes[index].executor, &mut self.provider);
+        let began = self.first.elapsed();
+        let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
+        let refresh = Instant::now();
+        executor.refresh(provider)?;
+        let mut refresh = refresh.elapsed();
+        let own: Vec<Built> = made_since(&built, provider.built()).copied().collect();
+        let request = Frame::new().with_seconds(self.frames.seconds(turn.frame));
+        // A frame with timing is never left out.
+        let is_rest = turn.kind == Kind::Moved(Regime::Nothing);
+        let rest = is_rest.then(|| rest(self.session, executor, &request));
+        let frame = match rest.transpose()?.flatten() {
+            Some((frame, cpu)) => {
+                refresh += cpu;
+                frame
+            }
+            None => {
+                let is_whole = turn.kind == Kind::EveryPass;
+                let request = request.with_timing(true).with_all(is_whole);
+                let (report, wall) = frame::run(self.session, executor, &request)?;
+                timed_frame(report, began, wall)?
+            }
+        };
+        // As a host does it: between frames, by the counts that have arrived.
+        executor.grow(provider)?;
+        let shared: Duration = own.iter().map(|built| built.time).sum();
+        let shared_bytes: u64 = own.iter().map(|built| built.uploaded).sum();
+        let uploaded = provider.work().uploaded - uploaded;
+        made.extend(own);
+        let upkeep = (turn.kind != Kind::EveryPass).then(|| Upkeep {
+            time: refresh.saturating_sub(shared),
+            uploaded: uploaded.saturating_sub(shared_bytes),
+        });
+        Ok(TimedFrame { upkeep, ..frame })
+    }
+
+    /// Returns for each executor, in their order, its timed frames, or the error that ended it.
+    pub fn end(self) -> Vec<Result<TimedKinds, ExecuteError>> {
+        self.takes.into_iter().map(|take| take.timed).collect()
+    }
+}
+
+impl Take<'_> {
+    /// Adds to the upkeep of the last frame of a kind what was made of the scene for its passes.
+    fn charge(&mut self, kind: Kind, made: &[Built]) {
+        let read = self.executor.plan().provided();
+        let timed = self.timed.as_mut().ok();
+        let frame = timed.and_then(|timed| timed.get_mut(&kind)?.last_mut());
+        let Some(upkeep) = frame.and_then(|frame| frame.upkeep.as_mut()) else {
+            return;
+        };
+        for built in made.iter().filter(|built| reads(&read, built.name)) {
+            upkeep.time += built.time;
+            upkeep.uploaded += built.uploaded;
+        }
+    }
+}
+
+/// Runs a frame without timing. If no pass ran, returns a frame without times, and the time that the
+/// CPU took.
+fn rest(
+    session: Session,
+    executor: &mut Executor,
+    request: &Frame,
+) -> Result<Option<(TimedFrame, Duration)>, ExecuteError> {
+    let (report, wall) = frame::run(session, executor, request)?;
+    let passes = executor.plan().passes().len();
+    let frame = || TimedFrame {
+        began: Duration::ZERO,
+        timing: FrameTiming::new(Vec::new()),
+        wall: Duration::ZERO,
+        upkeep: None,
+        skipped: report.skipped.clone(),
+    };
+    Ok((report.skipped.len() == passes).then(|| (frame(), wall)))
+}
+
+/// True if one of the resources `read` is made with the one that is called `made`: a single light
+/// is made with all, and the two buffers of a hierarchy together.
+fn reads(read: &[&str], made: &str) -> bool {
+    let stem = |name: &str| {
+        let name = name.split('[').next().unwrap_or(name).to_owned();
+        name.trim_end_matches("_nodes")
+            .trim_end_matches("_primitives")
+            .to_owned()
+    };
+    read.iter().any(|name| stem(name) == stem(made))
+}
+
+/// Returns the resources that were made between two moments.
+pub fn made_since<'b>(before: &[Built], now: &'b [Built]) -> impl Iterator<Item = &'b Built> {
+    let times = |built: &Built| {
+        let earlier = before.iter().find(|earlier| earlier.name == built.name);
+        earlier.map_or(0, |earlier| earlier.times)
+    };
+    now.iter().filter(move |built| built.times > times(built))
+}
+
+/// Runs `warmup` frames, then `frames` timed ones, with every pass. `done` is called with the number
+/// of finished frames. If the session's sink asks for an early end, the frames timed until then are
+/// returned.
 ///
 /// # Errors
 /// Those of the executor.
 pub fn sample(
     session: Session,
     executor: &mut Executor,
-    mode: FrameMode,
     [warmup, frames]: [u32; 2],
     done: impl Fn(u64),
 ) -> Result<Vec<TimedFrame>, ExecuteError> {
     let mut timed = Vec::new();
     let mut first = Instant::now();
+    let request = Frame::new().with_timing(true).with_all(true);
     for index in 0..u64::from(warmup) + u64::from(frames) {
         if session.is_stopped() {
             break;
@@ -42,74 +311,18 @@ pub fn sample(
         }
         // Warm-up frames are timed too: they then do the same work, only their figures are not
         // kept.
-        let frame = match one_frame(session, executor, mode, first) {
+        let began = first.elapsed();
+        let (report, wall) = match frame::run(session, executor, &request) {
             Err(ExecuteError::Unfinished { .. }) if session.is_stopped() => break,
-            done => done?,
+            frame => frame?,
         };
+        let frame = timed_frame(report, began, wall)?;
         if index >= u64::from(warmup) {
             timed.push(frame);
         }
         done(index + 1);
     }
     Ok(timed)
-}
-
-/// Times a frame; `first` is the begin of the first one.
-fn one_frame(
-    session: Session,
-    executor: &mut Executor,
-    mode: FrameMode,
-    first: Instant,
-) -> Result<TimedFrame, ExecuteError> {
-    let began = first.elapsed();
-    if mode == FrameMode::CameraMoves && executor.plan().provided().contains(&"camera") {
-        executor.touch("camera")?;
-    }
-    let request = Frame::new()
-        .with_timing(true)
-        .with_all(mode == FrameMode::AllPasses);
-    let (report, wall) = frame::run(session, executor, &request)?;
-    timed_frame(report, began, wall)
-}
-
-/// Runs frames of several executors in turns: `warmup` turns, then `frames` timed ones. Each turn
-/// begins with another of them, so that none always follows the same one. `done` is called with the
-/// number of finished turns. Returns an entry per executor, in the same order: its timed frames, or
-/// the error that ended it. An executor that fails takes no further part, and its times are
-/// dropped.
-///
-/// # Errors
-/// An early end; all times are dropped then.
-pub fn in_turns(
-    session: Session,
-    executors: &mut [&mut Executor],
-    mode: FrameMode,
-    [warmup, frames]: [u32; 2],
-    done: impl Fn(u64),
-) -> Result<Vec<Result<Vec<TimedFrame>, ExecuteError>>, CompareError> {
-    let mut outcomes: Vec<Result<Vec<TimedFrame>, ExecuteError>> =
-        executors.iter().map(|_| Ok(Vec::new())).collect();
-    let first = Instant::now();
-    let turns = u64::from(warmup) + u64::from(frames);
-    for turn in 0..turns {
-        for place in 0..executors.len() {
-            session.check_stopped()?;
-            let index = (place + turn as usize) % executors.len();
-            let Ok(timed) = &mut outcomes[index] else {
-                continue;
-            };
-            match one_frame(session, executors[index], mode, first) {
-                Err(ExecuteError::Unfinished { .. }) if session.is_stopped() => {
-                    return Err(CompareError::interrupted());
-                }
-                Err(error) => outcomes[index] = Err(error),
-                Ok(_) if turn < u64::from(warmup) => {}
-                Ok(frame) => timed.push(frame),
-            }
-        }
-        done(turn + 1);
-    }
-    Ok(outcomes)
 }
 
 /// Returns the times of a frame that was run with timing. `began` is the time from the start of the
@@ -130,6 +343,7 @@ pub fn timed_frame(
         began,
         timing,
         wall,
+        upkeep: None,
         skipped: report.skipped,
     })
 }
@@ -140,8 +354,6 @@ pub struct Times {
     pub passes: Vec<Pass>,
     /// Order statistics of the times of whole frames, and the time of each frame.
     pub frame: FrameTimes,
-    /// Names of the passes that did not run in the first of the frames.
-    pub skipped: Vec<String>,
 }
 
 impl Times {
@@ -149,63 +361,45 @@ impl Times {
     ///
     /// # Errors
     /// [`CompareError::Interrupted`] if there are no frames.
-    pub fn new(timed: Vec<TimedFrame>) -> Result<Self, CompareError> {
-        let samples = Samples::new(&timed);
+    pub fn new(timed: &[TimedFrame]) -> Result<Self, CompareError> {
+        let samples = Samples::new(timed);
+        let frame = FrameTimes::new(&samples.gpu, samples.upkeep.as_deref(), &samples.wall);
         let pass = |PassSamples { name, gpu, cpu }| Pass {
             name,
             gpu_ms: Spread::from_all(&gpu),
             cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
         };
-        let first = timed.into_iter().next();
         Ok(Self {
-            frame: FrameTimes::new(&samples.gpu, &samples.wall)
-                .ok_or_else(CompareError::interrupted)?,
+            frame: frame.ok_or_else(CompareError::interrupted)?,
             passes: samples.passes.into_iter().map(pass).collect(),
-            skipped: first.map_or_else(Vec::new, |first| first.skipped),
         })
     }
 }
 
-/// Times frames in which only the camera moves: one frame of each executor to find out if it skips
-/// a pass, then `frames` timed ones, the executors taking turns. Returns an entry per executor, in
-/// the same order: its times, or the error that ended it. The entry is `None` for an executor that
-/// skips no pass in such a frame, as its times would equal those of frames in which every pass
-/// runs; all are `None` if `frames` is 0.
+/// Summarises the frames of each regime.
 ///
 /// # Errors
-/// An early end.
-pub fn cached(
-    session: Session,
-    executors: &mut [&mut Executor],
-    frames: u32,
-) -> Result<Vec<Option<Result<Cached, ExecuteError>>>, CompareError> {
-    let mut outcomes: Vec<Option<Result<Cached, ExecuteError>>> =
-        executors.iter().map(|_| None).collect();
-    if frames == 0 {
-        return Ok(outcomes);
-    }
-    let moves = FrameMode::CameraMoves;
-    let tried = in_turns(session, executors, moves, [0, 1], |_| {})?;
-    let skips = |timed: &Result<Vec<TimedFrame>, ExecuteError>| match timed {
-        Ok(frames) => frames.iter().any(|frame| !frame.skipped.is_empty()),
-        Err(_) => true,
+/// [`CompareError::Interrupted`] for a regime without frames.
+pub fn regime_times(timed: &TimedKinds) -> Result<Vec<RegimeTimes>, CompareError> {
+    let of_regimes = timed.iter().filter_map(|(kind, frames)| match kind {
+        Kind::Moved(regime) => Some((*regime, frames)),
+        Kind::EveryPass | Kind::Path => None,
+    });
+    let summary = |(regime, frames): (Regime, &Vec<TimedFrame>)| {
+        let upkeeps = frames.iter().filter_map(|frame| frame.upkeep.as_ref());
+        let mut uploaded: Vec<u64> = upkeeps.map(|upkeep| upkeep.uploaded).collect();
+        uploaded.sort_unstable();
+        Ok(RegimeTimes {
+            regime,
+            frame: Times::new(frames)?.frame,
+            uploaded_bytes: uploaded
+                .get(uploaded.len() / 2)
+                .copied()
+                .unwrap_or_default(),
+            skipped: frames
+                .first()
+                .map_or_else(Vec::new, |frame| frame.skipped.clone()),
+        })
     };
-    let skips: Vec<bool> = tried.iter().map(skips).collect();
-    let executors = executors.iter_mut().zip(&skips);
-    let mut those: Vec<&mut Executor> = executors
-        .filter(|(_, skips)| **skips)
-        .map(|(executor, _)| &mut **executor)
-        .collect();
-    let places = (0..skips.len()).filter(|index| skips[*index]);
-    let timed = in_turns(session, &mut those, moves, [0, frames], |_| {})?;
-    for (place, timed) in places.zip(timed) {
-        let times = timed
-            .map(Times::new)
-            .map(|times| times.map(|Times { frame, skipped, .. }| Cached { frame, skipped }));
-        outcomes[place] = match times {
-            Ok(times) => Some(Ok(times?)),
-            Err(error) => Some(Err(error)),
-        };
-    }
-    Ok(outcomes)
+    of_regimes.map(summary).collect()
 }

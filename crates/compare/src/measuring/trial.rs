@@ -12,7 +12,7 @@ use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::run::scene_bytes;
 use crate::measuring::search::Trial;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{self, FrameMode, Times};
+use crate::measuring::timing::{self, Times};
 use crate::records::budgets::Budgets;
 use crate::sink::Session;
 use itertools::Itertools;
@@ -241,9 +241,8 @@ impl<'a> Trials<'a> {
         };
         executor.refresh(self.provider)?;
         frame::grow(self.session, executor, self.provider)?;
-        let mode = FrameMode::AllPasses;
-        let timed = timing::sample(self.session, executor, mode, TIMED, |_| ())?;
-        let frame = Times::new(timed)?.frame;
+        let timed = timing::sample(self.session, executor, TIMED, |_| ())?;
+        let frame = Times::new(&timed)?.frame;
         let spread = frame.spread(!self.limits.has_timestamps);
         let spread = spread.or_else(|| frame.spread(true));
         Ok(spread.map(|spread| spread.median))

@@ -216,7 +216,7 @@ fn axes(method: &Method) -> Vec<Values> {
 /// The work that a search for one method may do: plans and frames.
 fn most_work(comparison: &Comparison) -> u64 {
     let protocol = &comparison.protocol;
-    let timed = protocol.warmup + protocol.frames + protocol.cached_frames;
+    let timed = protocol.warmup + protocol.frames + protocol.regime_frames;
     // A frame is judged, one tells of the map, and one is kept by an early end.
     let run = 2 * NEW_EXECUTOR + 3 + u64::from(timed);
     let runs = (comparison.views.len() * comparison.viewports.len()) as u64;

@@ -329,7 +329,7 @@ fn head(text: &str) -> Result<Head, Mistake> {
         let what = format!("its first line lacks \"kind\":\"{KIND}\"");
         return Err(Mistake::at_field(text, "\"kind\"", what));
     }
-    check_schema(text, schema)?;
+    check_schema(text, schema, 1)?;
     from_line(text)
 }
 

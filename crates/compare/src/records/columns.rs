@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::records::regimes::Regime::{self, *};
 use crate::records::results::{AreaReference, GBUFFER, Measured, Part, Results, Run};
 use crate::records::sequence::Sequence;
 use crate::records::statistics::Spread;
@@ -87,7 +88,6 @@ const CSV: &[Figure] = &[
     ("memory_bytes", Measure(|measured| Count(measured.memory_bytes))),
     ("saved_bytes", Measure(|measured| Count(measured.saved_bytes))),
     ("unavailable", Always(|_, run| run.unavailable.as_deref().map_or(Unknown, text))),
-    ("cached_gpu_ms", Measure(|measured| median(cached(measured, false)))),
     ("lit_certain_right", Measure(|measured| Count(measured.split.lit.certain_right))),
     ("lit_certain_wrong", Measure(|measured| Count(measured.split.lit.certain_wrong))),
     ("lit_certain_wrong_outside_band",
@@ -131,16 +131,6 @@ const CSV: &[Figure] = &[
     ("steady_period", Measure(|measured| steady(measured, |by| by.period))),
     ("slowest_frame", Measure(|measured| path(measured, |by| Some(Count(by.slowest()?.0 as u64))))),
     ("slowest_frame_ms", Measure(|measured| path(measured, |by| Some(Time(by.slowest()?.1.ms()))))),
-    ("every_pass_gpu_ms",
-        Measure(|measured| path(measured, |by| Some(median(by.every_pass.as_ref()?.gpu_ms))))),
-    ("every_pass_wall_ms", Measure(|measured| {
-        path(measured, |by| Some(median(Some(by.every_pass.as_ref()?.wall_ms))))
-    })),
-    ("every_pass_slowest_frame", Measure(|measured| {
-        path(measured, |by| Some(Count(by.slowest_with_every_pass()?.0 as u64)))
-    })),
-    ("every_pass_slowest_frame_ms",
-        Measure(|measured| path(measured, |by| Some(Time(by.slowest_with_every_pass()?.1.ms()))))),
     ("worst_frame_rmse",
         Measure(|measured| path(measured, |by| Some(Real(by.worst()?.1.graded.rmse))))),
     ("wrong_surface", Always(|_, run| Count(run.wrong_surface))),
@@ -173,20 +163,36 @@ const CSV: &[Figure] = &[
     ("params", Always(|_, run| Text(run.assignments()))),
     ("frames", Always(|results, _| Count(results.frames.into()))),
     ("warmup", Always(|results, _| Count(results.warmup.into()))),
-    ("cached_frames", Always(|results, _| Count(results.cached_frames.into()))),
+    ("regime_frames", Always(|results, _| Count(results.regime_frames.into()))),
     ("gpu_min_ms", Measure(|measured| spread(measured.frame.gpu_ms, |times| times.min))),
     ("gpu_q1_ms", Measure(|measured| spread(measured.frame.gpu_ms, |times| times.q1))),
     ("gpu_q3_ms", Measure(|measured| spread(measured.frame.gpu_ms, |times| times.q3))),
     ("gpu_p95_ms", Measure(|measured| spread(measured.frame.gpu_ms, |times| times.p95))),
+    ("cpu_ms", Measure(|measured| median(measured.frame.cpu_ms))),
     ("wall_min_ms", Measure(|measured| spread(Some(measured.frame.wall_ms), |times| times.min))),
     ("wall_q1_ms", Measure(|measured| spread(Some(measured.frame.wall_ms), |times| times.q1))),
     ("wall_q3_ms", Measure(|measured| spread(Some(measured.frame.wall_ms), |times| times.q3))),
     ("wall_p95_ms", Measure(|measured| spread(Some(measured.frame.wall_ms), |times| times.p95))),
-    ("cached_gpu_q1_ms", Measure(|measured| spread(cached(measured, false), |times| times.q1))),
-    ("cached_gpu_q3_ms", Measure(|measured| spread(cached(measured, false), |times| times.q3))),
-    ("cached_wall_ms", Measure(|measured| median(cached(measured, true)))),
-    ("cached_wall_q1_ms", Measure(|measured| spread(cached(measured, true), |times| times.q1))),
-    ("cached_wall_q3_ms", Measure(|measured| spread(cached(measured, true), |times| times.q3))),
+    ("nothing_gpu_ms", Measure(|measured| gpu(measured, Nothing))),
+    ("nothing_cpu_ms", Measure(|measured| cpu(measured, Nothing))),
+    ("nothing_wall_ms", Measure(|measured| wall(measured, Nothing))),
+    ("nothing_uploaded_bytes", Measure(|measured| uploaded(measured, Nothing))),
+    ("camera_gpu_ms", Measure(|measured| gpu(measured, Camera))),
+    ("camera_cpu_ms", Measure(|measured| cpu(measured, Camera))),
+    ("camera_wall_ms", Measure(|measured| wall(measured, Camera))),
+    ("camera_uploaded_bytes", Measure(|measured| uploaded(measured, Camera))),
+    ("light_gpu_ms", Measure(|measured| gpu(measured, Light))),
+    ("light_cpu_ms", Measure(|measured| cpu(measured, Light))),
+    ("light_wall_ms", Measure(|measured| wall(measured, Light))),
+    ("light_uploaded_bytes", Measure(|measured| uploaded(measured, Light))),
+    ("some_meshes_gpu_ms", Measure(|measured| gpu(measured, SomeMeshes))),
+    ("some_meshes_cpu_ms", Measure(|measured| cpu(measured, SomeMeshes))),
+    ("some_meshes_wall_ms", Measure(|measured| wall(measured, SomeMeshes))),
+    ("some_meshes_uploaded_bytes", Measure(|measured| uploaded(measured, SomeMeshes))),
+    ("all_meshes_gpu_ms", Measure(|measured| gpu(measured, AllMeshes))),
+    ("all_meshes_cpu_ms", Measure(|measured| cpu(measured, AllMeshes))),
+    ("all_meshes_wall_ms", Measure(|measured| wall(measured, AllMeshes))),
+    ("all_meshes_uploaded_bytes", Measure(|measured| uploaded(measured, AllMeshes))),
     ("backend", Always(|results, _| text(&results.adapter.backend))),
     ("driver", Always(|results, _| text(&results.adapter.driver))),
     ("device_type", Always(|results, _| text(&results.adapter.device_type))),
@@ -345,9 +351,22 @@ fn spread(times: Option<Spread>, figure: fn(&Spread) -> f64) -> Value {
     times.map_or(Unknown, |times| Time(figure(&times)))
 }
 
-/// Times of frames in which only the camera moved, by the CPU's clock or the GPU's.
-fn cached(measured: &Measured, by_wall: bool) -> Option<Spread> {
-    measured.cached.as_ref()?.frame.spread(by_wall)
+fn gpu(measured: &Measured, regime: Regime) -> Value {
+    median(measured.times(Some(regime)).and_then(|times| times.gpu_ms))
+}
+
+fn cpu(measured: &Measured, regime: Regime) -> Value {
+    median(measured.times(Some(regime)).and_then(|times| times.cpu_ms))
+}
+
+fn wall(measured: &Measured, regime: Regime) -> Value {
+    median(measured.times(Some(regime)).map(|times| times.wall_ms))
+}
+
+fn uploaded(measured: &Measured, regime: Regime) -> Value {
+    let mut regimes = measured.regimes.iter();
+    let times = regimes.find(|times| times.regime == regime);
+    times.map_or(Unknown, |times| Count(times.uploaded_bytes))
 }
 
 /// Certain wrong pixels of one kind of blocker; unknown of graded answers.

@@ -34,6 +34,7 @@ pub mod profile;
 pub mod published;
 pub mod published_row;
 pub mod read_back;
+pub mod regimes;
 pub mod results;
 pub mod results_baseline;
 pub mod results_csv;

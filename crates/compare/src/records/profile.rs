@@ -294,6 +294,7 @@ pub(crate) mod tests {
         };
         let some = |list: &[u64]| ms(list).into_iter().map(Some).collect::<Vec<_>>();
         let samples = Samples {
+            upkeep: None,
             passes: vec![
                 PassSamples {
                     name: "primitive".into(),
@@ -378,6 +379,7 @@ pub(crate) mod tests {
         let mut conditions = sample().conditions;
         conditions.adapter.gpu_unavailable = Some("they lie".into());
         let samples = Samples {
+            upkeep: None,
             gpu: vec![Some(Duration::from_millis(1))],
             cpu: vec![Duration::ZERO],
             wall: vec![Duration::ZERO],

@@ -17,7 +17,7 @@
 use crate::error::CompareError;
 use crate::files::json::{Mistake, check_schema};
 use crate::records::profile::{KIND, Profile};
-use crate::records::results::{Results, Run};
+use crate::records::results::{Results, Run, SCHEMA};
 use crate::records::statistics::Series;
 use crate::records::stress::Report;
 use serde::{Deserialize, de::DeserializeOwned};
@@ -164,7 +164,7 @@ pub fn stress(folder: &Path) -> Result<Option<Report>, CompareError> {
 
 fn parse_stress(text: &str) -> Result<Report, Mistake> {
     let head: Head = parse(text)?;
-    check_schema(text, head.schema)?;
+    check_schema(text, head.schema, 1)?;
     if head.methods.is_none() || head.cases.is_none() {
         let what = "\"methods\" or \"cases\" is missing".into();
         return Err(Mistake::at_field(text, "{", what));
@@ -212,7 +212,7 @@ fn parse_profile(text: &str) -> Result<Profile, Mistake> {
         };
         return Err(Mistake::at_field(text, "\"kind\"", what));
     }
-    check_schema(text, head.schema)?;
+    check_schema(text, head.schema, 1)?;
     let profile: Profile = parse(text)?;
     match without_times(&profile) {
         None => Ok(profile),
@@ -248,7 +248,7 @@ fn parse_results(text: &str) -> Result<Results, Mistake> {
         let what = "\"oracle\" or \"runs\" is missing".into();
         return Err(Mistake::at_field(text, "{", what));
     }
-    check_schema(text, head.schema)?;
+    check_schema(text, head.schema, SCHEMA)?;
     let results: Results = parse(text)?;
     // A mistake in a run's measurements reads as a run without any.
     let is_broken = |run: &&Run| run.measured.is_none() && run.unavailable.is_none();
@@ -327,7 +327,7 @@ mod tests {
         let texts = [
             good.replacen("\"lit\": 60000,", "\"lit\": 60000", 1),
             good.replacen("\"frames\": 10", "\"frames\": \"ten\"", 1),
-            good.replacen("\"schema\": 1", "\"schema\": 2", 1),
+            good.replacen("\"schema\": 2", "\"schema\": 1", 1),
             good.replacen("\"memory_bytes\": 12582912,", "", 1),
             "{\"schema\": 1, \"kind\": \"profile\"}\n".to_owned(),
             String::new(),

@@ -1,4 +1,4 @@
-//! The schema of `results.json` and `results.csv`, version 1. Scripts rely on it: extend it, rename
+//! The schema of `results.json` and `results.csv`, version 2. Scripts rely on it: extend it, rename
 //! nothing.
 //!
 //! ```
@@ -21,6 +21,7 @@
 use crate::records::assignments::assignments;
 use crate::records::budgets::Budgets;
 use crate::records::hint::Hint;
+use crate::records::regimes::{Regime, RegimeTimes};
 use crate::records::sequence::Sequence;
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
@@ -35,13 +36,16 @@ use skiagraph_reference::{
 };
 use std::{collections::BTreeMap, fmt};
 
+/// Version of the schema of `results.json`.
+pub const SCHEMA: u32 = 2;
+
 /// Name and version of this program, as files show them.
 pub const PROGRAM: &str = concat!("skiagraph ", env!("CARGO_PKG_VERSION"));
 
 /// Content of `results.json`: the results of one or several `compare` commands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
-    /// Version of this schema: 1.
+    /// Version of this schema, [`SCHEMA`].
     pub schema: u32,
     /// The program that measured, `skiagraph 0.1.0`.
     pub program: String,
@@ -59,8 +63,8 @@ pub struct Results {
     pub frames: u32,
     /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,
-    /// Number of timed frames of a still view in which only the camera moves; 0 if there are none.
-    pub cached_frames: u32,
+    /// Number of timed frames of each [regime](crate::records::regimes::Regime); 0 if there are none.
+    pub regime_frames: u32,
     /// Start of the comparison that measured the newest runs, in UTC: `2026-11-21T04:30:12Z`.
     pub began: String,
     /// Limits on frame time, wrong pixels and memory that the user set; left out of the file if
@@ -302,10 +306,10 @@ impl Run {
         self.area.is_none() && measured.is_none_or(|measured| measured.answer == Answer::Hard)
     }
 
-    /// False if the work ended early, after a single timed frame of this run; otherwise true.
+    /// False if the work ended before this run took turns with others; otherwise true.
     pub fn is_whole(&self) -> bool {
         let measured = self.measured.as_ref();
-        measured.is_none_or(|measured| measured.sequence.is_some() || measured.turns.is_some())
+        measured.is_none_or(|measured| measured.turns.is_some())
     }
 
     /// Returns method, view, viewport and map size as text: `nsm on main 512x256, map 1024`.
@@ -511,11 +515,12 @@ pub struct Measured {
     /// Times of each pass over the timed frames, in the order in which they ran.
     pub passes: Vec<Pass>,
     /// Times of whole frames: of a still view with every pass run, of a camera path with passes
-    /// skipped whose inputs had not changed.
+    /// skipped whose inputs had not changed, and with the upkeep of the CPU.
     pub frame: FrameTimes,
-    /// Times of frames in which only the camera moved and unchanged passes were skipped; null if no
-    /// pass was skipped.
-    pub cached: Option<Cached>,
+    /// Times of frames by what has moved since the frame before, from the least that moves to the
+    /// most; empty if they were not measured.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regimes: Vec<RegimeTimes>,
     /// Bytes of the textures and buffers that the graph makes; memory that several share counts
     /// once.
     pub memory_bytes: u64,
@@ -524,8 +529,8 @@ pub struct Measured {
     /// Bytes of the scene's resources that the graph reads, such as positions, indices and
     /// hierarchy.
     pub scene_bytes: u64,
-    /// Group of methods that took turns with this one, frame by frame; absent for a camera path,
-    /// which each method follows by itself.
+    /// Group of methods that took turns with this one, frame by frame; absent if the work ended
+    /// before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turns: Option<Turns>,
     /// Steady state of a method that reuses results of earlier frames: the pictures of a still view
@@ -608,12 +613,15 @@ impl Measured {
         Some(self.frame.gpu_ms?.median - self.gbuffer_ms().unwrap_or(0.0))
     }
 
-    /// Returns the times of frames in which every pass ran: those of a camera path's second walk,
-    /// if there was one.
-    pub fn full_times(&self) -> &FrameTimes {
-        let path = self.sequence.as_ref();
-        let every_pass = path.and_then(|path| path.every_pass.as_ref());
-        every_pass.unwrap_or(&self.frame)
+    /// Returns the times of frames before which that moved, with `None` those of
+    /// [`frame`](Self::frame). Returns `None` if they were not measured.
+    pub fn times(&self, regime: Option<Regime>) -> Option<&FrameTimes> {
+        let Some(regime) = regime else {
+            return Some(&self.frame);
+        };
+        let mut regimes = self.regimes.iter();
+        let times = regimes.find(|times| times.regime == regime)?;
+        Some(&times.frame)
     }
 
     /// Returns the number of wrong pixels outside the band (the pixels whose right answer rounding
@@ -635,16 +643,6 @@ pub struct Pass {
     pub gpu_ms: Option<Spread>,
     /// Milliseconds that the CPU took to encode the pass's commands.
     pub cpu_ms: Spread,
-}
-
-/// Times of frames in which only the camera moved, so that passes with unchanged inputs were
-/// skipped.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cached {
-    /// Times of whole frames.
-    pub frame: FrameTimes,
-    /// Names of the passes that did not run.
-    pub skipped: Vec<String>,
 }
 
 /// File names of a run's pictures, in the folder of the results.
@@ -739,8 +737,20 @@ pub(crate) mod tests {
         let times = |gpu: Option<f64>, wall: f64| FrameTimes {
             gpu_ms: gpu.map(spread),
             wall_ms: spread(wall),
+            cpu_ms: None,
             gpu_frames: gpu.map(|ms| vec![ms * 2.0, ms, ms * 1.5]),
+            cpu_frames: None,
             wall_frames: vec![wall * 2.0, wall, wall * 1.5],
+        };
+        let regime = |regime, gpu: Option<f64>| RegimeTimes {
+            regime,
+            frame: FrameTimes {
+                cpu_ms: Some(spread(0.125)),
+                cpu_frames: Some(vec![0.25, 0.125, 0.1875]),
+                ..times(gpu, 1.0)
+            },
+            uploaded_bytes: 96,
+            skipped: vec!["create_shadow_map".into()],
         };
         let run = |preset: &str, map_size| Run {
             preset: preset.into(),
@@ -833,16 +843,17 @@ pub(crate) mod tests {
                 })
                 .into(),
             frame: times(gpu.then_some(1.0), 2.0),
-            cached: gpu.then(|| Cached {
-                frame: times(Some(0.5), 1.0),
-                skipped: vec!["create_shadow_map".into()],
-            }),
+            regimes: vec![
+                regime(Regime::Camera, gpu.then_some(0.5)),
+                regime(Regime::Light, gpu.then_some(1.0)),
+            ],
             memory_bytes: 12_582_912,
             saved_bytes: 1_048_576,
             scene_bytes: 2_000_000,
             turns: Some(Turns {
                 group: 0,
                 anchor: times(Some(1.0), 2.0),
+                regimes: vec![regime(Regime::Camera, Some(0.5))],
             }),
             steady: None,
             texels: gpu.then(|| TexelsPerPixel {
@@ -876,7 +887,7 @@ pub(crate) mod tests {
             }),
         };
         Results {
-            schema: 1,
+            schema: SCHEMA,
             program: "skiagraph 0.1.0".into(),
             adapter: adapter(),
             machine: machine(),
@@ -884,7 +895,7 @@ pub(crate) mod tests {
             oracle: "exact".into(),
             frames: 10,
             warmup: 2,
-            cached_frames: 10,
+            regime_frames: 10,
             began: "2026-11-20T04:30:12Z".into(),
             budgets: Budgets::default(),
             commands: vec!["skiagraph compare nsm rt rt_hw --size 512x256".into()],

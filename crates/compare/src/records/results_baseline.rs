@@ -388,14 +388,14 @@ impl Measurement<'_> {
     }
 
     fn figures(&self) -> Figures {
-        let (measured, times) = (self.measured, self.measured.full_times());
+        let (measured, times) = (self.measured, &self.measured.frame);
         let cycle = measured.steady.as_ref().and_then(|steady| steady.judged);
         let wrong = cycle.map(|cycle| cycle.wrong_outside_band_mean.ceil() as u64);
         let rmse = measured.graded.rmse_outside_band;
         Figures {
             wrong: wrong.unwrap_or_else(|| measured.wrong_outside_band()),
             rmse: cycle.map_or(rmse, |cycle| cycle.rmse_mean),
-            ms: times.gpu_ms.unwrap_or(times.wall_ms).median,
+            ms: times.spread(false).unwrap_or(times.wall_ms).median,
         }
     }
 }
@@ -419,10 +419,10 @@ fn ratio(then: Measurement, now: Measurement) -> Result<Ratio, String> {
             ));
         }
     }
-    let times = [then.measured, now.measured].map(Measured::full_times);
+    let times = [then, now].map(|measurement| &measurement.measured.frame);
     let by_wall = times.iter().any(|times| times.gpu_frames.is_none());
-    let [then, now] = times.map(|times| times.frames(by_wall).unwrap_or(&[]));
-    unpaired::ratio(now, then).ok_or_else(|| {
+    let [then, now] = times.map(|times| times.costs(by_wall).unwrap_or_default());
+    unpaired::ratio(&now, &then).ok_or_else(|| {
         format!(
             "{} then and {} now, and both must be {LEAST_TURNS} or more",
             plural(then.len(), "frame"),
@@ -440,7 +440,7 @@ fn facts((results, run): (&Results, &Run)) -> Vec<Fact> {
         ("oracle", results.oracle.clone()),
         ("frames", results.frames.to_string()),
         ("warmup", results.warmup.to_string()),
-        ("cached frames", results.cached_frames.to_string()),
+        ("frames of each regime", results.regime_frames.to_string()),
         ("views", run.view.clone()),
         ("viewports", size(run.viewport)),
         ("methods", run.method_label()),
@@ -500,7 +500,7 @@ mod tests {
                 |turn: u32| Duration::from_secs_f64((ms + f64::from(turn % 3) * 0.01) / 1e3);
             let frames: Vec<Duration> = (0..10).map(frame).collect();
             let gpu: Vec<Option<Duration>> = frames.iter().copied().map(Some).collect();
-            measured.frame = FrameTimes::new(&gpu, &frames).unwrap();
+            measured.frame = FrameTimes::new(&gpu, None, &frames).unwrap();
         }
         results
     }

@@ -17,7 +17,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
 use std::collections::BTreeMap;
@@ -31,10 +30,6 @@ pub struct Sequence {
     /// Counts, over all frames, of answers that changed from one frame to the next although the
     /// right answers did not.
     pub shimmer: Shimmer,
-    /// Order statistics of the frames' times when no pass is skipped, measured in a second walk
-    /// along the path; absent if no frame skips a pass, and with `--cached-frames 0`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub every_pass: Option<FrameTimes>,
 }
 
 /// Measurements of one frame of a camera path.
@@ -65,10 +60,6 @@ pub struct SequenceFrame {
     /// the frame, because something that they depend on had changed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remade: Vec<Remade>,
-    /// Times of the frame when no pass is skipped, measured in a second walk along the path; absent
-    /// if it was not measured.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub every_pass: Option<FrameCost>,
 }
 
 /// A resource of the scene that was built again before a frame, such as a hierarchy over moved
@@ -79,25 +70,29 @@ pub struct Remade {
     pub name: String,
     /// `made` if it was built from scratch, `refitted` for a hierarchy whose boxes were updated.
     pub how: String,
-    /// Milliseconds that the work took on the CPU, uploads included; not part of the frame's times.
+    /// Milliseconds that the work took on the CPU, uploads included; part of the frame's upkeep.
     pub ms: f64,
 }
 
 /// Times of one frame of a camera path.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameCost {
     /// GPU time in milliseconds, from the start of the first pass to the end of the last; null if
     /// there are no timestamps or they cannot be trusted.
     pub gpu_ms: Option<f64>,
-    /// Milliseconds from the start of encoding until the outputs were read back, by the CPU's
-    /// clock.
+    /// CPU time of the frame's upkeep in milliseconds: what is made of the scene for the method,
+    /// new bind groups and encoding.
+    #[serde(default)]
+    pub cpu_ms: f64,
+    /// Milliseconds from the start of the upkeep until the GPU was done, by the CPU's clock.
     pub wall_ms: f64,
 }
 
 impl FrameCost {
-    /// Returns the GPU time in milliseconds, or the time by the CPU's clock if there is none.
+    /// Returns GPU time and upkeep in milliseconds, added; without GPU time the time by the CPU's
+    /// clock.
     pub fn ms(self) -> f64 {
-        self.gpu_ms.unwrap_or(self.wall_ms)
+        self.gpu_ms.map_or(self.wall_ms, |gpu| gpu + self.cpu_ms)
     }
 }
 
@@ -120,15 +115,6 @@ impl Sequence {
     /// if there are no frames.
     pub fn slowest(&self) -> Option<(usize, FrameCost)> {
         greatest(self.frames.iter().map(|frame| frame.cost), |cost| cost.ms())
-    }
-
-    /// Returns the index and times of the frame that takes longest when every pass runs, the first
-    /// of equal ones; `None` if this was not measured.
-    pub fn slowest_with_every_pass(&self) -> Option<(usize, FrameCost)> {
-        greatest(
-            self.frames.iter().filter_map(|frame| frame.every_pass),
-            |cost| cost.ms(),
-        )
     }
 
     /// Lists the resources of the scene that took a median of 0.1 ms or more to build again between

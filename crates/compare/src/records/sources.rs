@@ -120,7 +120,7 @@ impl Source {
         let conditions = |results: &Results| {
             let (adapter, scene) = (&results.adapter, results.scene.clone());
             let adapter = (adapter.to_string(), adapter.gpu_unavailable.is_some());
-            let counts = (results.frames, results.warmup, results.cached_frames);
+            let counts = (results.frames, results.warmup, results.regime_frames);
             let protocol = (results.oracle.clone(), counts);
             (results.program.clone(), adapter, scene, protocol)
         };

@@ -34,50 +34,69 @@ pub struct Spread {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrameTimes {
     /// Order statistics of the GPU times from the start of a frame's first pass to the end of its
-    /// last; null if there are no timestamps or they cannot be trusted.
+    /// last; 0 for a frame without passes, null if there are no timestamps or they cannot be
+    /// trusted.
     pub gpu_ms: Option<Spread>,
-    /// Order statistics of the times from the start of a frame's encoding until the GPU was done,
-    /// by the CPU's clock; on a camera path until the outputs were read back.
+    /// Order statistics of the CPU times of a frame's upkeep: what is made of the scene for the
+    /// method (hierarchies, boxes of lights, uploads), new bind groups and encoding. Null for
+    /// frames in which every pass runs whether anything has moved or not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cpu_ms: Option<Spread>,
+    /// Order statistics of the times from the start of a frame's upkeep (where it has none, of its
+    /// encoding) until the GPU was done, by the CPU's clock.
     pub wall_ms: Spread,
     /// GPU time of each frame in milliseconds, in order; null if the GPU time of any frame is
     /// missing.
     pub gpu_frames: Option<Vec<f64>>,
+    /// CPU time of each frame's upkeep in milliseconds, in order.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cpu_frames: Option<Vec<f64>>,
     /// Time of each frame by the CPU's clock in milliseconds, in order.
     pub wall_frames: Vec<f64>,
 }
 
 impl FrameTimes {
-    /// Creates the times of frames from the GPU time and the wall time of each frame, in order. GPU
-    /// times are left out if any is missing. Returns `None` if there are no frames.
-    pub fn new(gpu: &[Option<Duration>], wall: &[Duration]) -> Option<Self> {
+    /// Creates the times of frames from the GPU time, the CPU time of the upkeep, and the wall time
+    /// of each frame, in order. GPU times are left out if any is missing. Returns `None` if there
+    /// are no frames.
+    pub fn new(
+        gpu: &[Option<Duration>],
+        cpu: Option<&[Duration]>,
+        wall: &[Duration],
+    ) -> Option<Self> {
         let gpu_frames = all(gpu)
             .map(|gpu| in_ms(&gpu))
             .filter(|gpu| !gpu.is_empty());
-        let wall_frames = in_ms(wall);
+        let (cpu_frames, wall_frames) = (cpu.map(in_ms), in_ms(wall));
         let spread = |frames: &[f64]| Spread::from_ms(frames.iter().copied());
         Some(Self {
             gpu_ms: gpu_frames.as_deref().and_then(spread),
+            cpu_ms: cpu_frames.as_deref().and_then(spread),
             wall_ms: spread(&wall_frames)?,
             gpu_frames,
+            cpu_frames,
             wall_frames,
         })
     }
 
-    /// Returns the time of each frame in milliseconds, in order: wall times if `by_wall`, otherwise
-    /// GPU times. Returns `None` if those are missing.
-    pub fn frames(&self, by_wall: bool) -> Option<&[f64]> {
-        let wall = by_wall.then_some(&self.wall_frames[..]);
-        wall.or(self.gpu_frames.as_deref().filter(|_| !by_wall))
+    /// Returns the milliseconds that each frame costs, in order: wall times if `by_wall`, otherwise
+    /// GPU time and upkeep of the CPU added. Returns `None` if GPU times are missing.
+    pub fn costs(&self, by_wall: bool) -> Option<Vec<f64>> {
+        if by_wall {
+            return Some(self.wall_frames.clone());
+        }
+        let mut costs = self.gpu_frames.clone()?;
+        let upkeep = self.cpu_frames.iter().flatten();
+        costs
+            .iter_mut()
+            .zip(upkeep)
+            .for_each(|(ms, cpu)| *ms += cpu);
+        Some(costs)
     }
 
-    /// Returns the order statistics of the frames' times: of wall times if `by_wall`, otherwise of
-    /// GPU times. Returns `None` if those are missing.
+    /// Returns the order statistics of [`costs`](Self::costs); `None` if GPU times are missing.
     pub fn spread(&self, by_wall: bool) -> Option<Spread> {
-        if by_wall {
-            Some(self.wall_ms)
-        } else {
-            self.gpu_ms
-        }
+        Spread::from_ms(self.costs(by_wall)?.into_iter())
     }
 
     /// Sets the GPU times to `None`.

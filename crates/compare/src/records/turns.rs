@@ -15,6 +15,7 @@
 //! # Ok::<(), &str>(())
 //! ```
 
+use crate::records::regimes::RegimeTimes;
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +36,9 @@ pub struct Turns {
     /// first of the methods that were timed; it takes part in every group of the session, view and
     /// viewport.
     pub anchor: FrameTimes,
+    /// Times of the anchor in this group by what has moved since the frame before.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regimes: Vec<RegimeTimes>,
 }
 
 /// Ratio of the frame times of two methods, with an interval.

@@ -50,7 +50,7 @@ fn shadows_of_our_scene_are_right() -> Result<(), Box<dyn Error>> {
     let mut comparison = Comparison::new(Arc::new(engine_scene()?), methods)?;
     comparison.viewports = vec![[64, 64]];
     comparison.protocol.frames = 1; // times are not asked for
-    comparison.protocol.cached_frames = 0;
+    comparison.protocol.regime_frames = 0;
     let results = run(&comparison, Session::new(&gpu, &Silent))?;
     let [exact, mapped] = &results.runs[..] else {
         return Err("two methods on one view are two runs".into());

@@ -354,7 +354,7 @@ fn whatever_cannot_run_is_a_row_with_its_reason() {
     compared.protocol = Protocol {
         frames: 1,
         warmup: 0,
-        cached_frames: 0,
+        regime_frames: 0,
         ..Protocol::default()
     };
     compared.viewports = vec![[16, 16]];

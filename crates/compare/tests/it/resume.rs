@@ -21,7 +21,7 @@ fn compare(
 ) -> (String, Vec<String>, Value) {
     let mut comparison = comparison(park(), methods, own, map_sizes);
     comparison.viewports = vec![[24, 16], [16, 16]];
-    comparison.protocol.cached_frames = 1;
+    comparison.protocol.regime_frames = 1;
     comparison.protocol.pictures = true;
     let (heard, results) = keep(&comparison, out, kept).unwrap();
     (heard.notes(), heard.steps(), results)

@@ -112,11 +112,11 @@ pub fn along(mut comparison: Comparison, path: &str) -> Comparison {
 }
 
 /// Takes so many frames, before the timed ones, timed, and timed while only the camera moves.
-pub fn timed(mut comparison: Comparison, [warmup, frames, cached_frames]: [u32; 3]) -> Comparison {
+pub fn timed(mut comparison: Comparison, [warmup, frames, regime_frames]: [u32; 3]) -> Comparison {
     comparison.protocol = Protocol {
         warmup,
         frames,
-        cached_frames,
+        regime_frames,
         ..comparison.protocol
     };
     comparison

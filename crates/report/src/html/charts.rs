@@ -3,9 +3,10 @@
 use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
 use crate::looks::looks;
-use crate::summary::Row;
+use crate::summary::{Row, When};
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
+use skiagraph_compare::records::regimes::Regime;
 use skiagraph_compare::wording::{ms, size};
 use std::collections::BTreeMap;
 
@@ -35,11 +36,11 @@ fn drawn(svg: Result<String, Error>) -> String {
 pub fn fronts(tables: &[Shown]) -> String {
     let mut html = String::new();
     for (index, table) in tables.iter().enumerate() {
-        for kept in times(tables).iter().copied() {
-            let figure = figure(tables, vec![front(table, kept)]);
+        for when in times(tables) {
+            let figure = figure(tables, vec![front(table, when)]);
             for (class, width) in WIDTHS {
                 let svg = drawn(figure.to_page_svg(width));
-                html += &part(class, &[index], Some(kept), &svg);
+                html += &part(class, &[index], Some(when), &svg);
             }
         }
     }
@@ -47,9 +48,9 @@ pub fn fronts(tables: &[Shown]) -> String {
 }
 
 /// A chart beside others, as parts of these tables and this kind of time.
-fn halves(figure: &Figure, tables: &[usize], kept: Option<bool>) -> String {
+fn halves(figure: &Figure, tables: &[usize], when: Option<When>) -> String {
     let half =
-        |(class, width): (&str, u16)| part(class, tables, kept, &drawn(figure.to_page_svg(width)));
+        |(class, width): (&str, u16)| part(class, tables, when, &drawn(figure.to_page_svg(width)));
     HALVES.map(half).concat()
 }
 
@@ -66,13 +67,13 @@ pub fn paths(tables: &[Shown]) -> String {
 }
 
 /// Each row is a series, so that it has a lane of its own where it is exact.
-fn front(table: &Shown, kept: bool) -> Panel {
+fn front(table: &Shown, when: When) -> Panel {
     let row = |(index, row): (usize, &Row)| {
-        let (x, y) = (table.ms(row, kept)?, table.error(row)?);
+        let (x, y) = (table.ms(row, when)?, table.error(row)?);
         y.is_finite().then(|| Series {
             name: row.method.clone(),
             marks: vec![Mark {
-                spread: table.spread(row, kept),
+                spread: table.spread(row, when),
                 about: about(table, index),
                 ..Mark::new(x, y)
             }],
@@ -81,12 +82,12 @@ fn front(table: &Shown, kept: bool) -> Panel {
     let rows = table.summary.rows.iter().enumerate();
     let mut series: Vec<Series> = rows.filter_map(row).collect();
     series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
-    let clock = if table.by_wall { "wall clock" } else { "GPU" };
-    let frame = if kept {
-        "only the camera moves"
+    let clock = if table.by_wall {
+        "wall clock"
     } else {
-        "every pass run"
+        "GPU and CPU"
     };
+    let frame = when.map_or("frames as in the table", Regime::condition);
     let error = if table.summary.is_soft() {
         "RMSE of the shares of light"
     } else {
@@ -143,23 +144,23 @@ pub fn growths(tables: &[Shown]) -> String {
         let alike = (0..tables.len()).filter(|other| key(&tables[*other]) == key(table));
         let alike: Vec<usize> = alike.collect();
         let viewport = size(table.summary.viewport);
-        let mut add = |indices: &[usize], [title, x]: [&str; 2], kept, place: Place| {
+        let mut add = |indices: &[usize], [title, x]: [&str; 2], when, place: Place| {
             let rows = indices.iter().flat_map(|index| {
                 let table = &tables[*index];
                 table.summary.rows.iter().map(move |row| (table, row))
             });
-            let (panel, ticks) = growth(rows, [title, x], kept, place);
+            let (panel, ticks) = growth(rows, [title, x], when, place);
             if !panel.series.is_empty() {
                 let panels = figure(tables, vec![panel]);
-                html += &halves(&Figure { ticks, ..panels }, indices, Some(kept));
+                html += &halves(&Figure { ticks, ..panels }, indices, Some(when));
             }
         };
-        for kept in times(tables).iter().copied() {
+        for when in times(tables) {
             if alike[0] == index {
-                add(&alike, ["By viewport", "viewport"], kept, by_viewport);
+                add(&alike, ["By viewport", "viewport"], when, by_viewport);
             }
             let title = format!("By map, {viewport}");
-            add(&[index], [&title, "edge of the map, texels"], kept, by_map);
+            add(&[index], [&title, "edge of the map, texels"], when, by_map);
         }
     }
     html
@@ -188,13 +189,13 @@ fn by_map<'a>(_: &Shown, row: &'a Row) -> Option<(&'a str, f64, String)> {
 fn growth<'a>(
     rows: impl Iterator<Item = (&'a Shown<'a>, &'a Row<'a>)>,
     [title, x]: [&str; 2],
-    kept: bool,
+    when: When,
     place: Place,
 ) -> (Panel, Vec<(f64, String)>) {
     let mut lines: BTreeMap<&str, Series> = BTreeMap::new();
     let mut ticks = Vec::new();
     for (table, row) in rows.filter(|(table, row)| table.error(row).is_some()) {
-        let (Some(y), Some((line, x, name))) = (table.ms(row, kept), place(table, row)) else {
+        let (Some(y), Some((line, x, name))) = (table.ms(row, when), place(table, row)) else {
             continue;
         };
         let line = lines.entry(line).or_insert_with(|| Series {

@@ -40,7 +40,7 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
     let caption_of = |row: &Row, run: &Run, measured: &Measured| {
         let (sign, label) = (sign(tables, &row.method), xml(&row.label));
         let frame = frame_in_words(frame(measured)?);
-        let time = row.frame_ms(table.by_wall).map_or("–".into(), ms);
+        let time = row.frame_ms(None, table.by_wall).map_or("–".into(), ms);
         let error = error(table, row);
         let suffix = if row.views() > 1 && !table.summary.is_soft() && !is_right(row) {
             let share = percent(measured.wrong_outside_band(), run.pixels.facing_light);

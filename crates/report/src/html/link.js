@@ -7,7 +7,7 @@ function written() {
   const words = new URLSearchParams();
   const add = (name, value, usual) => value !== usual && value !== null && words.append(name, value);
   add('table', state.table, 0);
-  add('only-camera', state.kept, 'false');
+  add('time', state.time, 'frame');
   state.hidden.forEach((method) => add('hide', method));
   add('row', state.row, null);
   add('all', state.all, false);
@@ -32,7 +32,7 @@ function readLink() {
   const word = (name) => words.get(name) ?? '';
   const tables = data.tables.map((of, index) => String(index));
   state.table = isOf(word('table'), tables) ? Number(word('table')) : 0;
-  state.kept = word('only-camera') === 'true' && all('[data-kept="true"]').length > 0 ? 'true' : 'false';
+  state.time = isOf(word('time'), timed()) ? word('time') : 'frame';
   const { rows, views } = table();
   state.hidden = new Set(words.getAll('hide').filter((method) => rows.some((row) => row.method === method)));
   state.row = rows.some((row) => row.label === word('row')) ? word('row') : null;

@@ -6,8 +6,8 @@ const data = JSON.parse(document.getElementById('data').textContent);
 const state = {
   /** Index of the table: a source and viewport. */
   table: 0,
-  /** 'true' for times with what is kept while only the camera moves, 'false' with every pass run. */
-  kept: 'false',
+  /** What moves before each frame whose times the charts show; 'frame' for those of the table. */
+  time: 'frame',
   /** Names of methods that are not drawn. */
   hidden: new Set(),
   /** Label of the row that was clicked last. */

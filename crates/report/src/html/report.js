@@ -30,13 +30,13 @@ function headControls() {
   if (names.length > 1) {
     byId('choice').replaceChildren(choice('table-choice', 'Shown', names, state.table, chooseTable));
   }
-  if (all('[data-kept="true"]').length > 0) {
-    byId('front-controls').replaceChildren(toggle('time', 'Frames that are timed', [
-      ['false', 'light or meshes move'], ['true', 'only the camera moves'],
-    ], () => state.kept, (value) => {
-      state.kept = value;
-      changed();
-    }));
+  const times = timed();
+  if (times.length > 1) {
+    byId('front-controls').replaceChildren(toggle('time', 'What moves before each frame',
+      times.map((time) => [time, time === 'frame' ? 'as in the table' : time]), () => state.time, (value) => {
+        state.time = value;
+        changed();
+      }));
   }
 }
 

@@ -148,10 +148,10 @@ fn with_names(sentence: &str) -> String {
 
 /// Attributes of each row.
 fn attributes(index: usize, table: &Shown) -> Vec<String> {
-    let best = table.summary.verdict().fastest_exact;
+    let fastest = table.summary.verdict().fastest_exact;
     let of_row = |(place, row): (usize, &Row)| {
         let class = match row.views() > 0 && row.is_exact() {
-            _ if best == Some(place) => "exact best",
+            _ if fastest.values().any(|best| *best == place) => "exact best",
             _ if table.summary.is_old(row) => "old",
             true => "exact",
             false => "",

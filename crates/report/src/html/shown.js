@@ -1,7 +1,10 @@
 // Charts and tables stand in the page; what is chosen of them is shown.
 
 const isChosen = ({ dataset: of }) => of.table.split(' ').includes(String(state.table))
-  && (of.kept ?? state.kept) === state.kept;
+  && (of.time ?? state.time) === state.time;
+
+/** The choices of frames that the charts have times of. */
+const timed = () => [...new Set(all('[data-time]').map((part) => part.dataset.time))];
 const hide = (part, isHidden) => part.toggleAttribute('hidden', isHidden);
 
 function show() {

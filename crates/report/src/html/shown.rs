@@ -1,9 +1,10 @@
 //! Tables of the page, and parts of the page that belong to some of them. Every part stands in the
 //! page; its script shows those of the chosen tables.
 
-use crate::summary::{Row, by_wall};
+use crate::summary::{Row, When, by_wall};
 use crate::summary_table::Summary;
 use itertools::Itertools;
+use skiagraph_compare::records::regimes::Regime;
 use skiagraph_compare::records::results::Results;
 use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::table::Table;
@@ -110,46 +111,41 @@ impl Shown<'_> {
     }
 
     /// Returns the milliseconds of a row's frame; `None` if they are missing or 0, so that they
-    /// cannot be drawn on a logarithmic axis. `kept` selects a frame in which only the camera has
-    /// moved, so that passes are skipped; for a row without such times the result is the time of a
-    /// frame in which every pass runs.
-    pub fn ms(&self, row: &Row, kept: bool) -> Option<f64> {
-        let kept = row.kept_ms(self.by_wall).filter(|_| kept);
-        let ms = kept.or(row.frame_ms(self.by_wall));
+    /// cannot be drawn on a logarithmic axis.
+    pub fn ms(&self, row: &Row, when: When) -> Option<f64> {
+        let ms = row.frame_ms(when, self.by_wall);
         ms.filter(|ms| ms.is_finite() && *ms > 0.0)
     }
 
     /// Returns the first and third quartile of the times of [`ms`](Self::ms), in milliseconds;
     /// `None` if they are missing, equal or 0.
-    pub fn spread(&self, row: &Row, kept: bool) -> Option<[f64; 2]> {
-        let quartiles = row.quartiles(self.by_wall, kept)?;
+    pub fn spread(&self, row: &Row, when: When) -> Option<[f64; 2]> {
+        let quartiles = row.quartiles(when, self.by_wall)?;
         Some(quartiles).filter(|[q1, q3]| *q1 > 0.0 && q1 < q3 && q3.is_finite())
     }
 }
 
-/// Returns the values for `kept` of [`Shown::ms`] for which the tables have times: false for frames
-/// in which every pass runs, true for frames in which only the camera moved. True is missing if no
-/// row skips a pass in these.
-pub fn times(tables: &[Shown]) -> &'static [bool] {
-    let keeps = |table: &Shown| {
-        let mut rows = table.summary.rows.iter();
-        rows.any(|row| row.kept_ms(table.by_wall).is_some())
-    };
-    if tables.iter().any(keeps) {
-        &[false, true]
-    } else {
-        &[false]
-    }
+/// Returns the choices of frames for which the tables have times.
+pub fn times(tables: &[Shown]) -> Vec<When> {
+    let regimes = |table: &Shown| table.summary.regimes();
+    let regimes: BTreeSet<Regime> = tables.iter().flat_map(regimes).collect();
+    [None]
+        .into_iter()
+        .chain(regimes.into_iter().map(Some))
+        .collect()
 }
 
 /// Returns an HTML element with the CSS class `class` around the HTML `content`. The page's script
-/// shows it while one of the tables with the indices `tables` is chosen and, unless `kept` is
-/// `None`, while the times chosen are those of [`Shown::ms`] with this `kept`.
-pub fn part(class: &str, tables: &[usize], kept: Option<bool>, content: &str) -> String {
-    let time = kept.map_or(String::new(), |kept| format!(" data-kept=\"{kept}\""));
+/// shows it while one of the tables with the indices `tables` is chosen and, unless `when` is
+/// `None`, while this choice of frames is.
+pub fn part(class: &str, tables: &[usize], when: Option<When>, content: &str) -> String {
+    let word = |when: When| when.map_or("frame", Regime::word);
+    let time = when.map_or(String::new(), |when| {
+        format!(" data-time=\"{}\"", word(when))
+    });
 
     // The script begins with the first table.
-    let is_shown = tables.contains(&0) && kept != Some(true);
+    let is_shown = tables.contains(&0) && when.is_none_or(|when| when.is_none());
     let hidden = if is_shown { "" } else { " hidden" };
     let names = tables.iter().join(" ");
     format!("<div class=\"{class}\" data-table=\"{names}\"{time}{hidden}>{content}</div>\n")

@@ -1,0 +1,93 @@
+//! Moves the camera, the light or meshes of a scene a little, so that frames can be timed in which
+//! nothing else has changed.
+
+use crate::error::CompareError;
+use crate::measuring::frame_sequence::FrameSequence;
+use crate::records::regimes::Regime;
+use glam::Vec3;
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::{LightKind, Mesh};
+
+/// Length of a step as a share of what it is compared with: small, so that a frame's work stays the
+/// same, but more than `f32` rounds away.
+const STEP: f64 = 1e-4;
+
+/// Returns the regimes of the frames of a view or path: meshes move if parts of them do there.
+pub fn regimes(frames: &FrameSequence) -> &'static [Regime] {
+    match &frames.meshes {
+        Some(_) => &Regime::ALL,
+        None => &Regime::ALL[..3],
+    }
+}
+
+/// Moves what moves in a regime, in a provider that shows the frame with the index `index`. `index`
+/// has to be shown again before the next step.
+///
+/// # Errors
+/// A light or positions that cannot be used.
+pub fn step(
+    regime: Regime,
+    (frames, index): (&FrameSequence, usize),
+    viewport: [u32; 2],
+    provider: &mut SceneProvider,
+) -> Result<(), CompareError> {
+    let shape = match regime {
+        Regime::Nothing => None,
+        Regime::Camera => {
+            let mut camera = frames.poses[index].camera(viewport);
+            let distance = camera.near.max(camera.eye.length());
+            camera.eye += camera.right * (STEP * distance);
+            provider.set_camera(&camera);
+            None
+        }
+        Regime::Light => {
+            let lights: Vec<LightKind> = provider.lights().iter().map(moved_light).collect();
+            let light = moved_light(&provider.light());
+            let set = provider.set_lights(&lights);
+            set.map_err(|error| CompareError::Input(format!("a moved light: {error}")))?;
+            provider.set_light(light);
+            None
+        }
+        Regime::SomeMeshes => {
+            let meshes = frames.meshes.as_deref().unwrap_or_default();
+            let beside = meshes.get(index + 1).or(meshes.get(index.wrapping_sub(1)));
+            beside.map(|mesh| (mesh.positions.clone(), mesh.normals.clone()))
+        }
+        Regime::AllMeshes => Some(shifted(&provider.scene().mesh)),
+    };
+    let Some((positions, normals)) = shape else {
+        return Ok(());
+    };
+    let deformed = provider.deform(positions, normals);
+    deformed.map_err(|error| CompareError::Input(format!("frame {index}: {error}")))
+}
+
+/// A light that is turned or shifted by a step.
+fn moved_light(light: &LightKind) -> LightKind {
+    match *light {
+        LightKind::Directional(mut light) => {
+            let across = light.direction.any_orthogonal_vector().normalize_or_zero();
+            light.direction += across * (STEP * light.direction.length());
+            light.into()
+        }
+        LightKind::Spot(mut light) => {
+            light.position.x += STEP * (1.0 + light.position.length());
+            light.into()
+        }
+        LightKind::Point(mut light) => {
+            light.position.x += STEP * (1.0 + light.position.length());
+            light.into()
+        }
+    }
+}
+
+/// A mesh of which every position is shifted by a step.
+fn shifted(mesh: &Mesh) -> (Vec<Vec3>, Vec<Vec3>) {
+    let size = mesh
+        .positions
+        .iter()
+        .map(|position| position.abs().max_element());
+    let step = Vec3::splat(STEP as f32 * size.fold(0.0, f32::max));
+    let positions = mesh.positions.iter().map(|position| *position + step);
+    (positions.collect(), mesh.normals.clone())
+}

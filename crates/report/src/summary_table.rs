@@ -2,8 +2,8 @@
 //! fastest first, and a verdict.
 
 use crate::notes::{
-    band_warning, blocked_by, hint, load_warning, path_costs, remembering, surface_warning,
-    times_missing,
+    band_warning, blocked_by, hint, load_warning, path_costs, remembering, scene_notes,
+    surface_warning, times_missing,
 };
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
@@ -138,6 +138,7 @@ impl<'a> Summary<'a> {
             size(self.viewport)
         )];
         lines.extend(self.conditions());
+        lines.extend(scene_notes(self.results));
         let mut sentences = self.verdict().sentences;
         sentences.extend(self.notes());
         if is_broken {

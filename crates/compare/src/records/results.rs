@@ -69,6 +69,10 @@ pub struct Results {
     pub budgets: Budgets,
     /// Commands that measured the runs, the first one first.
     pub commands: Vec<String>,
+    /// Notes on the scene, one line each: what its import repaired or left out, and the camera,
+    /// light and ground that were chosen for it. Left out of the file if there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Hash of the plan of which the runs are cells, 16 hexadecimal digits: they may be of several
     /// machines of one kind. Absent without a plan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -888,6 +892,7 @@ pub(crate) mod tests {
             began: "2026-11-20T04:30:12Z".into(),
             budgets: Budgets::default(),
             commands: vec!["skiagraph compare nsm rt rt_hw --size 512x256".into()],
+            notes: vec!["1 point and 2 lines left out".into()],
             runs: vec![
                 Run {
                     measured: Some(measured("create_shadow_map", true, None)),

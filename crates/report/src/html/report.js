@@ -7,8 +7,6 @@ function drawHead() {
   document.title = `${source.scene}: Skiagraph report`;
   byId('subtitle').textContent = table().conditions.slice(0, 2).join(' · ');
   byId('facts').replaceChildren(...table().conditions.slice(2).map((text) => el('p', { class: lineClass(text) }, text)));
-  // Text between backquotes is a name.
-  const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
   byId('verdict').replaceChildren(...table().sentences.map((text) => el('p', {}, ...words(text))));
   byId('notes').replaceChildren(...table().notes.map((text) => el('li', { class: lineClass(text) }, ...words(text))));
 }
@@ -23,6 +21,9 @@ function chooseTable(chosen) {
   const choice = byId('table-choice');
   if (choice) choice.selectedIndex = chosen;
   changed();
+/** Text between backquotes is a name. */
+const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
+
 }
 
 function headControls() {
@@ -80,6 +81,12 @@ if (data.tables.length > 0) {
   tableControls();
   drawers.push(drawHead, show, drawViewer, drawGraph, remember);
   changed();
+  const noted = data.sources.filter((source) => source.notes.length > 0);
+  byId('scene-notes').replaceChildren(...noted.flatMap((source) => [
+    data.sources.length > 1 ? el('h3', {}, source.scene) : '',
+    el('ul', {}, ...source.notes.map((text) => el('li', { class: lineClass(text) }, ...words(text)))),
+  ]));
+  hide(byId('scene-notes-section'), noted.length === 0);
   addEventListener('resize', paint);
 } else {
   for (const id of ['front', 'table', 'pictures', 'passes', 'paths', 'growth', 'graph']) byId(`${id}-section`).hidden = true;

@@ -169,6 +169,29 @@ fn a_view_may_look_along_its_up() {
 }
 
 #[test]
+fn settings_are_chosen_on_other_views_than_that_of_an_eye() {
+    let folder = folder();
+    let tune = COMPARE.replace("compare rt", "compare nsm --tune --replace");
+    for scene in [
+        "objects.gltf --eye 2,2,2 --look -1,-0.8,-1",
+        "objects.gltf --eye 2,2,2 --look -1,-0.8,-1 --view main",
+        "room.gltf --eye 1,1.5,2 --light ceiling_lamp",
+    ] {
+        let (runs, table) = results(folder.path(), &format!("{tune} --scene {scene}"));
+        assert!(!table.contains("0 views"), "{scene}: {table}");
+        let chosen_on = runs
+            .iter()
+            .flat_map(|run| run["tuned"]["chosen_on"].as_array());
+        let chosen_on: Vec<&Value> = chosen_on.flatten().collect();
+        assert!(!chosen_on.is_empty(), "{scene}");
+        assert!(
+            runs.iter().all(|run| !chosen_on.contains(&&run["view"])),
+            "{chosen_on:?}"
+        );
+    }
+}
+
+#[test]
 fn a_view_with_hardly_any_shadow_is_told() {
     let folder = folder();
     let line = format!("{COMPARE} --scene objects.gltf --light 0,-1,0");

@@ -1,9 +1,16 @@
 // The page's head, its lesser sections, and the first drawing.
 
+/** Several scenes stand in an overview at the top. */
+const hasOverview = all('#overview table').length > 0;
+hide(byId('overview-section'), !hasOverview);
+hide(byId('scene'), !hasOverview);
+
 function drawHead() {
   const source = data.sources[table()?.source ?? 0];
   if (!source) return;
-  byId('title').textContent = `Which shadow method for ${source.scene}?`;
+  const question = `Which shadow method for ${source.scene}?`;
+  byId('title').textContent = hasOverview ? 'Which shadow method?' : question;
+  byId('scene').textContent = question;
   document.title = `${source.scene}: Skiagraph report`;
   byId('subtitle').textContent = table().conditions.slice(0, 2).join(' · ');
   byId('facts').replaceChildren(...table().conditions.slice(2).map((text) => el('p', { class: lineClass(text) }, text)));
@@ -92,7 +99,6 @@ if (data.tables.length > 0) {
   for (const id of ['front', 'table', 'pictures', 'passes', 'paths', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
 }
 hide(byId('stress-section'), all('#stress table').length === 0);
-hide(byId('overview-section'), all('#overview table').length === 0);
 for (const link of all('#overview [data-choose]')) {
   link.addEventListener('click', (event) => {
     event.preventDefault();

@@ -7,7 +7,7 @@ use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::scene::write_scene;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
 use skiagraph_compare::own_scene::OwnScene;
-use skiagraph_compare::own_scene_notes::{from_below, notes};
+use skiagraph_compare::own_scene_notes;
 use skiagraph_compare::sink::Sink;
 use skiagraph_compare::wording::did_you_mean;
 use skiagraph_scene::{
@@ -28,11 +28,13 @@ pub struct SceneSelection {
     /// Camera paths from the animations of a mesh file; empty for other scenes, whose files list
     /// them.
     pub paths: Vec<CameraPath>,
+    /// Notes on the scene, one line each, that were printed while it was loaded.
+    pub notes: Vec<String>,
 }
 
 impl SceneSelection {
-    /// Loads the scene and selects its views. Prints a warning if the import had to repair or leave
-    /// out something.
+    /// Loads the scene and selects its views. Prints what the import had to repair or leave out,
+    /// and what was chosen for the scene.
     ///
     /// # Errors
     /// If the scene cannot be loaded, lacks a named view, or the camera of the arguments is
@@ -55,8 +57,9 @@ impl SceneSelection {
 
     fn load_quietly(args: &SceneArgs, is_mesh: bool) -> Result<Self, CliError> {
         let library = SceneLibrary::from_environment();
+        let mut notes = Notes::default();
         if let Some(file) = library.stand_in(args.scene()) {
-            note(&format!(
+            notes.print(format!(
                 "{} stands in for the built-in scene `{}`, which differs",
                 file.display(),
                 args.scene()
@@ -65,14 +68,14 @@ impl SceneSelection {
         let (options, explain) = (args.mesh_scene(), |error| explain(error, args, &library));
         let own = if is_mesh {
             let own = OwnScene::of_mesh(Path::new(args.scene()), &options).map_err(explain)?;
-            for text in notes(&options, &own) {
-                note(&format!("{}: {text}", args.scene()));
+            for text in own_scene_notes::notes(&options, &own) {
+                notes.print_on(args, text);
             }
             own
         } else {
             library.load(args.scene()).map_err(explain)?.into()
         };
-        warn(args, &own.report);
+        notes.print_report(args, &own.report);
         if args.eye.is_some() && args.view.as_deref() == Some("all") && own.scene.views.len() > 1 {
             return Err(CliError::Usage(
                 "--eye is one view of your own: leave out --view all, or --eye".into(),
@@ -88,15 +91,12 @@ impl SceneSelection {
         let standing = views.first();
         let (paths, failed) = standing.map_or_else(Default::default, |view| own.paths(view));
         for text in failed {
-            note(&format!("{}: {text}: left out", args.scene()));
+            notes.print_on(args, format!("{text}: left out"));
         }
         if !paths.is_empty() {
             let names = paths.iter().map(|path| path.view.name.as_str());
             let names = names.collect::<Vec<_>>().join(", ");
-            note(&format!(
-                "{}: its animations, for --path: {names}",
-                args.scene()
-            ));
+            notes.print_on(args, format!("its animations, for --path: {names}"));
         }
         if let Some(path) = &args.write_scene {
             let file = if is_mesh {
@@ -108,26 +108,45 @@ impl SceneSelection {
         }
         let under_lights = |views| under_lights(&own.scene, views, args.light_name());
         let (views, further) = (under_lights(views)?, under_lights(further)?);
-        if let Some(text) = from_below(&views, options.sun) {
-            note(&text);
+        if let Some(text) = own_scene_notes::from_below(&views, options.sun) {
+            notes.print(text);
         }
         Ok(Self {
             scene: own.scene,
             views,
             further,
             paths,
+            notes: notes.0,
         })
     }
 }
 
-/// Prints the repairs of an import, several below each other.
-fn warn(args: &SceneArgs, report: &ImportReport) {
-    if report.has_warnings() {
-        let text = report.to_string();
-        let text = text.trim_end();
-        let begin = if text.contains('\n') { "\n  " } else { " " };
-        let text = text.replace('\n', "\n  ");
-        note(&format!("{}:{begin}{text}", args.scene()));
+/// Lines on a scene that were printed.
+#[derive(Default)]
+struct Notes(Vec<String>);
+
+impl Notes {
+    fn print(&mut self, text: String) {
+        note(&text);
+        self.0.push(text);
+    }
+
+    /// Prints a line behind the name of the scene.
+    fn print_on(&mut self, args: &SceneArgs, text: String) {
+        note(&format!("{}: {text}", args.scene()));
+        self.0.push(text);
+    }
+
+    /// Prints the repairs of an import, several below each other.
+    fn print_report(&mut self, args: &SceneArgs, report: &ImportReport) {
+        if report.has_warnings() {
+            let text = report.to_string();
+            let text = text.trim_end();
+            let begin = if text.contains('\n') { "\n  " } else { " " };
+            self.0.extend(text.lines().map(str::to_owned));
+            let text = text.replace('\n', "\n  ");
+            note(&format!("{}:{begin}{text}", args.scene()));
+        }
     }
 }
 

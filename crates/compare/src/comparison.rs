@@ -131,6 +131,9 @@ pub struct Comparison {
     /// Commit that the measuring program was built from, for the results to record; `None` to
     /// record none.
     pub commit: Option<String>,
+    /// Notes on the scene for the results to record, such as its import's repairs and the
+    /// [parts chosen for it](crate::own_scene_notes::notes), one line each; empty to record none.
+    pub notes: Vec<String>,
 }
 
 impl Comparison {
@@ -152,6 +155,7 @@ impl Comparison {
             published: Vec::new(),
             command: None,
             commit: None,
+            notes: Vec::new(),
             scene,
         })
     }

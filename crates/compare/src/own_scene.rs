@@ -41,9 +41,9 @@ pub struct MeshSceneOptions {
     pub file: MeshFileOptions,
     /// Camera of the views that are chosen for a file without cameras. Without an `eye`, they are
     /// [chosen](default_views) for `up` (y unless given), `fov_y_degrees` (60 unless given) and
-    /// `direction`. With an `eye`, the view looks from there at the middle of the mesh.
-    /// [`OwnScene::views`] applies all parts of the camera: give the same one there. `up` is also
-    /// up for the floor and the ground.
+    /// `direction`. With an `eye`, the only view has this camera, and looks from there at the
+    /// middle of the mesh unless `direction` is given. [`OwnScene::views`] applies all parts of the
+    /// camera: give the same one there. `up` is also up for the floor and the ground.
     pub camera: OwnCamera,
     /// Direction in which the light of a sun travels, world space, of any length above 0, for a
     /// file without lights; `None` chooses a sun or a lamp.
@@ -83,8 +83,7 @@ pub struct Chosen {
 /// scene or a scene file nothing is chosen, and there are no clips.
 #[derive(Debug)]
 pub struct OwnScene {
-    /// The loaded scene. A view that was chosen for an `eye` in the options gets its clip planes
-    /// only from [`views`](Self::views).
+    /// The loaded scene.
     pub scene: Scene,
     /// Changes that the import made, and parts that it left out.
     pub report: ImportReport,
@@ -164,7 +163,8 @@ impl OwnScene {
                 chosen.places = defaults.views.iter().map(|view| view.place).collect();
                 views = defaults.views.into_iter().map(|view| view.view).collect();
             } else {
-                views.push(towards(&mesh, camera.eye.unwrap_or_default()));
+                let view = towards(&mesh, camera.eye.unwrap_or_default());
+                views.push(camera.of_view(&view, &mesh, true));
             }
         }
         let scene = Scene {
@@ -275,7 +275,7 @@ impl OwnScene {
     }
 }
 
-/// A view from an eye to the middle of a mesh. Its clip planes are not fitted.
+/// A view from an eye to the middle of a mesh, before its clip planes are fitted.
 fn towards(mesh: &Mesh, eye: DVec3) -> View {
     let bounds = mesh.bounds();
     let middle = bounds.map(|(min, max)| (min.as_dvec3() + max.as_dvec3()) * 0.5);

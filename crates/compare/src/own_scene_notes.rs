@@ -3,14 +3,17 @@
 //!
 //! ```
 //! use skiagraph_compare::own_scene::{MeshSceneOptions, OwnScene};
-//! use skiagraph_compare::own_scene_notes::notes;
+//! use skiagraph_compare::own_scene_notes::{chosen_for_it, notes};
 //!
 //! let folder = tempfile::tempdir()?;
 //! let file = folder.path().join("tile.obj");
 //! std::fs::write(&file, "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n")?;
 //! let options = MeshSceneOptions::default();
 //! let own = OwnScene::of_mesh(&file, &options)?;
-//! assert!(notes(&options, &own)[1].starts_with("it holds no camera and no light"));
+//! let notes = notes(&options, &own);
+//! assert!(notes[1].starts_with("it holds no camera and no light"));
+//! let sentence = chosen_for_it(&notes).ok_or("both are chosen")?;
+//! assert!(sentence.starts_with("The camera and the light are not the file's: it holds no"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -20,6 +23,12 @@ use crate::wording::length;
 use glam::DVec3;
 use itertools::Itertools;
 use skiagraph_scene::{Scene, View};
+
+/// Begins the note on the parts that a file lacks.
+const LACKS: &str = "it holds ";
+
+/// Comes between these parts and the chosen ones.
+const CHOSEN: &str = "; chosen ";
 
 /// Returns lines on a mesh file that was loaded with `options`: its views and lights, its size, and
 /// the options of the program `skiagraph` (`--eye`, `--light`) that choose others.
@@ -32,6 +41,20 @@ pub fn notes(options: &MeshSceneOptions, own: &OwnScene) -> Vec<String> {
         floor(options, chosen),
     ];
     notes.into_iter().flatten().collect()
+}
+
+/// Returns a sentence if `notes`, those of [`notes()`], tell of a camera or light that was chosen
+/// for the file.
+pub fn chosen_for_it(notes: &[String]) -> Option<String> {
+    notes.iter().find_map(|note| {
+        let (lacks, _) = note.strip_prefix(LACKS)?.split_once(CHOSEN)?;
+        let (parts, are) = match lacks {
+            "no camera and no light" => ("camera and the light", "are"),
+            "no camera" => ("camera", "is"),
+            _ => ("light", "is"),
+        };
+        Some(format!("The {parts} {are} not the file's: {note}."))
+    })
 }
 
 /// The views and lights that a file holds.
@@ -109,10 +132,8 @@ fn choices(options: &MeshSceneOptions, scene: &Scene, chosen: &Chosen) -> Option
         0 | 1 => "",
         _ => "; `compare` takes all of them, --view one",
     };
-    Some(format!(
-        "it holds {lacks}; chosen {}{several}",
-        views.join("; ")
-    ))
+    let views = views.join("; ");
+    Some(format!("{LACKS}{lacks}{CHOSEN}{views}{several}"))
 }
 
 /// Why a view looks from its place.

@@ -182,6 +182,9 @@ pub struct Param {
     /// Values that the search of `skiagraph compare --tune` for good settings tries, at least two
     /// and all different; empty if the search leaves the param alone.
     pub tune: Vec<ParamValue>,
+    /// True if the param decides how soft shadows look, by the field `look` of its document: the
+    /// search tries [`tune`](Self::tune) only under lights with an extent.
+    pub is_look: bool,
 }
 
 /// Reason why a value does not fit a [`Param`].
@@ -464,6 +467,7 @@ mod tests {
             description: String::new(),
             refused: BTreeMap::new(),
             tune: Vec::new(),
+            is_look: false,
         };
         for (text, inside) in [
             ("0.51", true),

@@ -2,7 +2,7 @@
 //! times of steps.
 
 use crate::graded::area_reference;
-use crate::notes::{band_warning, of_runs, surface_warning};
+use crate::notes::{band_warning, of_runs, scene_notes, surface_warning};
 use skiagraph_compare::lists::{entry, place, unique};
 use skiagraph_compare::records::columns::{self, Column, STEPS};
 use skiagraph_compare::records::published_row::PublishedFile;
@@ -62,6 +62,7 @@ pub fn header(
     if let Some(reason) = &results.adapter.gpu_unavailable {
         lines.push(format!("no GPU times: {reason}"));
     }
+    lines.extend(scene_notes(results));
     format!(
         "## {}\n\n    {}\n\n{}",
         results.scene,

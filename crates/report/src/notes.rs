@@ -29,6 +29,15 @@ pub fn load_warning(machine: &Machine) -> Option<String> {
     ))
 }
 
+/// Returns the [notes on the scene](Results::notes) as lines that say so; warnings stay as they
+/// are.
+pub fn scene_notes(results: &Results) -> impl Iterator<Item = String> {
+    results.notes.iter().map(|note| match note.as_str() {
+        note if note.starts_with("warning: ") => note.to_owned(),
+        note => format!("scene: {note}"),
+    })
+}
+
 /// Returns a warning if the GPU rasterised pixels of a run's view with a surface that another one
 /// hides; `None` if there are no such pixels. Methods are judged on the rasterised surface.
 pub fn surface_warning(run: &Run) -> Option<String> {

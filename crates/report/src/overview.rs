@@ -24,6 +24,8 @@ pub struct Overview<'a> {
 struct Column<'a> {
     /// Name of the scene, with the light if it has several.
     head: String,
+    /// Index in the list of summaries.
+    index: usize,
     summary: &'a Summary<'a>,
     verdict: Verdict,
 }
@@ -65,19 +67,26 @@ pub fn scene_names<'a>(scenes: &[(&'a Path, &'a Results)]) -> Vec<String> {
 
 impl<'a> Overview<'a> {
     /// Creates the overview of summaries, each behind the name of its scene; `None` if all are of
-    /// one scene.
+    /// one scene. The columns are sorted: first those without a recommended method, then by the
+    /// share of its wrong pixels outside the band, the greatest first, and by its RMSE.
     pub fn new(summaries: &[(&str, &'a Summary<'a>)]) -> Option<Self> {
         let scenes = summaries.iter().map(|(scene, _)| *scene).unique().count();
-        let column = |(scene, summary): &(&str, &'a Summary<'a>)| Column {
+        let column = |(index, (scene, summary)): (usize, &(&str, &'a Summary<'a>))| Column {
             head: match summary.light {
                 Some(light) => format!("{scene} under {light}"),
                 None => (*scene).to_owned(),
             },
+            index,
             verdict: summary.verdict(),
             summary,
         };
+        let columns = summaries.iter().enumerate().map(column);
+        let columns = columns.sorted_by(|one, other| {
+            let ([wrong, rmse], worse) = (one.error(), other.error());
+            worse[0].total_cmp(&wrong).then(worse[1].total_cmp(&rmse))
+        });
         (scenes > 1).then(|| Self {
-            columns: summaries.iter().map(column).collect(),
+            columns: columns.collect(),
             scenes,
         })
     }
@@ -85,10 +94,10 @@ impl<'a> Overview<'a> {
     /// Returns the tables of methods and scenes, one for each viewport.
     pub fn matrices(&self) -> Vec<Matrix> {
         let matrix = |viewport: [u32; 2]| {
-            let columns = self.columns.iter().enumerate();
-            let columns = columns.filter(|(_, column)| column.summary.viewport == viewport);
+            let columns = self.columns.iter();
+            let columns = columns.filter(|column| column.summary.viewport == viewport);
             let (summaries, columns): (Vec<usize>, Vec<_>) = columns
-                .map(|(index, column)| (index, (column.head.as_str(), column.summary)))
+                .map(|column| (column.index, (column.head.as_str(), column.summary)))
                 .unzip();
             Matrix {
                 viewport,
@@ -99,8 +108,8 @@ impl<'a> Overview<'a> {
         self.viewports().into_iter().map(matrix).collect()
     }
 
-    /// Returns sentences: the verdict on each scene, the methods that are exact on all scenes, and
-    /// the methods that the verdicts recommend.
+    /// Returns sentences: how the scenes are sorted, the verdict on each scene, the methods that
+    /// are exact on all scenes, and the methods that the verdicts recommend.
     pub fn sentences(&self) -> Vec<String> {
         let verdict = |column: &Column| {
             let name = self.name(column);
@@ -108,7 +117,8 @@ impl<'a> Overview<'a> {
             let sentences = sentences.map(|sentence| format!("{name}: {sentence}"));
             sentences.collect::<Vec<_>>()
         };
-        let mut sentences: Vec<String> = self.columns.iter().flat_map(verdict).collect();
+        let mut sentences = vec![ORDER.to_owned()];
+        sentences.extend(self.columns.iter().flat_map(verdict));
         sentences.push(self.exact_on_all());
         sentences.extend(self.taken());
         sentences
@@ -140,7 +150,8 @@ impl<'a> Overview<'a> {
     }
 
     fn viewports(&self) -> Vec<[u32; 2]> {
-        unique(self.columns.iter().map(|column| column.summary.viewport))
+        let columns = self.columns.iter().sorted_by_key(|column| column.index);
+        unique(columns.map(|column| column.summary.viewport))
     }
 
     /// A column in words, with its viewport where there are several.
@@ -201,6 +212,22 @@ impl<'a> Overview<'a> {
         let first = text.get_mut(..1)?;
         first.make_ascii_uppercase();
         Some(text + ".")
+    }
+}
+
+/// How the columns are sorted.
+const ORDER: &str =
+    "Order of the scenes: the worst first, by the share of wrong pixels of the recommended method.";
+
+impl Column<'_> {
+    /// Share of wrong pixels of the recommended method, and its RMSE to decide between equal
+    /// shares; infinite without such a method.
+    fn error(&self) -> [f64; 2] {
+        let first = self.verdict.first.first();
+        let Some(row) = first.and_then(|index| self.summary.rows.get(*index)) else {
+            return [f64::INFINITY; 2];
+        };
+        [row.wrong().share(), row.rmse().unwrap_or(0.0)]
     }
 }
 
@@ -277,7 +304,8 @@ mod tests {
             );
             insta::assert_snapshot!(text);
             insta::assert_snapshot!("in_a_document", overview.markdown());
-            assert_eq!(overview.matrices()[0].summaries, [0, 1, 2]);
+            // On `room` the recommended method is wrong, on the others right.
+            assert_eq!(overview.matrices()[0].summaries, [2, 0, 1]);
         });
         with_overview(&three()[..1], |overview| assert!(overview.is_none()));
     }

@@ -31,8 +31,8 @@ pub struct Row<'a> {
 /// A run and its measurements.
 type Measurement<'a> = (&'a Run, &'a Measured);
 
-/// Choice of frames: those before each of which that has moved. `None` chooses the frames of a still
-/// view in which every pass runs, and all frames of a path.
+/// Choice of frames: those before each of which that has moved. `None` chooses the frames of a
+/// still view in which every pass runs, and all frames of a path.
 pub type When = Option<Regime>;
 
 /// Greatest value of a figure among the views, and the frames of camera paths, that a [`Row`]
@@ -185,7 +185,7 @@ impl<'a> Row<'a> {
         )
     }
 
-    /// Returns the view or path on which the time that `percent` percent of the frames do not exceed
+    /// Returns the view or path on which the time that `percent` percent of the frames keep to
     /// is the longest, in milliseconds. `None` if a view has no such times. `by_wall` selects wall
     /// time instead of GPU time and the upkeep of the CPU.
     pub fn percentile(&self, percent: u8, by_wall: bool) -> Option<Worst> {

@@ -2,8 +2,8 @@
 //! fastest first, and a verdict.
 
 use crate::notes::{
-    band_warning, blocked_by, hint, load_warning, path_costs, remembering, surface_warning,
-    times_missing,
+    band_warning, blocked_by, hint, load_warning, path_costs, remembering, scene_notes,
+    surface_warning, times_missing,
 };
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
@@ -139,6 +139,7 @@ impl<'a> Summary<'a> {
             size(self.viewport)
         )];
         lines.extend(self.conditions());
+        lines.extend(scene_notes(self.results));
         let mut sentences = self.verdict().sentences;
         sentences.extend(self.notes());
         if is_broken {
@@ -406,7 +407,8 @@ impl<'a> Summary<'a> {
     }
 }
 
-/// Heads of the table's columns. The first that decide: a terminal has no room for all side by side.
+/// Heads of the table's columns, the first that decide: a terminal has no room for all beside each
+/// other.
 fn heads(are_paths: bool, regimes: &[Regime]) -> Vec<&'static str> {
     let mut heads = vec!["method", WRONG, "%"];
     if are_paths {

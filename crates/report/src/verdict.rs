@@ -922,8 +922,8 @@ mod tests {
             sentences,
             [
                 "None is exact here. `crsm` is the least wrong (wrong on 0.020 % of the surfaces \
-                 that face the light, 40.0 ms a frame). `nsm` is 4.0 times as fast: wrong on 0.500 % \
-                 of the surfaces that face the light."
+                 that face the light, 40.0 ms a frame). `nsm` is 4.0 times as fast: wrong on 0.500 \
+                 % of the surfaces that face the light."
             ]
         );
         let (_, sentences) = outcome(&[run("a", 0, 10.0, 10.0), run("b", 0, 10.2, 10.2)]);

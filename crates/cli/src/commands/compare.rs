@@ -154,7 +154,9 @@ impl Loaded {
         let targets = Target::all(args)?;
         let command = command_line(words);
         let comparison = |scene| -> Result<Comparison, CliError> {
-            let (scene, views) = views(args, scene, &methods, session)?;
+            let mut selection = SceneSelection::load(scene)?;
+            let notes = std::mem::take(&mut selection.notes);
+            let (scene, views) = views(args, scene, selection, &methods, session)?;
             Ok(Comparison {
                 views,
                 viewports: unique(args.size.iter().map(|Size(size)| *size)),
@@ -179,6 +181,7 @@ impl Loaded {
                 published: published.clone(),
                 command: Some(command.clone()),
                 commit: COMMIT.map(str::to_owned),
+                notes,
                 scene,
             })
         };
@@ -280,6 +283,7 @@ struct Measured {
 fn views(
     args: &CompareArgs,
     scene_args: &SceneArgs,
+    selection: SceneSelection,
     methods: &[Method],
     session: Session,
 ) -> Result<(Arc<Scene>, Vec<ViewOrPath>), CliError> {
@@ -288,7 +292,8 @@ fn views(
         mut views,
         further,
         paths: own,
-    } = SceneSelection::load(scene_args)?;
+        ..
+    } = selection;
     views.extend(further);
     let scene = Arc::new(scene);
     let light = light_name(scene_args, methods, &scene, session);

@@ -37,10 +37,10 @@ fn describe(name: &str, graph: &Graph) -> String {
             None => format!("--set {name}=…"),
         };
         let tune = param.tune.iter().join(", ");
-        let tune = if tune.is_empty() {
-            tune
-        } else {
-            format!("; tune: {tune}")
+        let tune = match (tune.as_str(), param.is_look) {
+            ("", _) => tune,
+            (_, true) => format!("; tune under a light with an extent: {tune}"),
+            (_, false) => format!("; tune: {tune}"),
         };
         text += &format!("  {setting:<24} {}{}{tune}\n", param.ty, range(param));
         if !param.description.is_empty() {

@@ -26,6 +26,13 @@ fn said(folder: &TempDir, arguments: &str) -> String {
     text
 }
 
+/// Notes on the scene in the results of the last comparison.
+fn notes(folder: &TempDir) -> Vec<String> {
+    let text = fs::read_to_string(folder.path().join("out/results.json")).unwrap();
+    let results: Value = serde_json::from_str(&text).unwrap();
+    serde_json::from_value(results["notes"].clone()).unwrap()
+}
+
 const COMPARE: &str = "compare rt --size 64x48 --frames 1 --warmup 0 --images none --out out";
 
 #[test]
@@ -59,6 +66,9 @@ fn cameras_and_lights_of_a_file_are_taken_by_name() {
         text.contains("the scene `room` has no view `top`"),
         "{text}"
     );
+    let notes = notes(&folder);
+    assert_eq!(notes.len(), 4, "{notes:?}");
+    assert!(notes[3].starts_with("node 7 \"Off\": its light is left out"));
     // A camera of one's own beside the lights of the file.
     let own = said(&folder, "room.gltf --eye 0,1,2 --light torch");
     assert!(!own.contains("chosen"), "{own}");
@@ -75,6 +85,13 @@ fn a_room_without_a_camera_is_seen_from_inside() {
     assert!(pixels["lit"].as_u64() > Some(300), "{pixels}");
     assert!(pixels["shadow"].as_u64() > Some(300), "{pixels}");
     let text = said(&folder, "bare_room.gltf");
+    let notes = notes(&folder);
+    let printed = notes.iter().map(|note| format!("bare_room.gltf: {note}\n"));
+    assert_eq!(
+        printed.collect::<String>(),
+        text,
+        "results keep what is printed"
+    );
     let chosen = "it holds no camera and no light; chosen `inside`, from inside, for there is a \
                   place to stand: --eye ";
     assert!(text.contains(chosen), "{text}");
@@ -148,6 +165,29 @@ fn a_view_may_look_along_its_up() {
             assert!(pixels["lit"].as_u64() > Some(300), "{look}: {pixels}");
             assert!(pixels["shadow"].as_u64() > Some(20), "{look}: {pixels}");
         }
+    }
+}
+
+#[test]
+fn settings_are_chosen_on_other_views_than_that_of_an_eye() {
+    let folder = folder();
+    let tune = COMPARE.replace("compare rt", "compare nsm --tune --replace");
+    for scene in [
+        "objects.gltf --eye 2,2,2 --look -1,-0.8,-1",
+        "objects.gltf --eye 2,2,2 --look -1,-0.8,-1 --view main",
+        "room.gltf --eye 1,1.5,2 --light ceiling_lamp",
+    ] {
+        let (runs, table) = results(folder.path(), &format!("{tune} --scene {scene}"));
+        assert!(!table.contains("0 views"), "{scene}: {table}");
+        let chosen_on = runs
+            .iter()
+            .flat_map(|run| run["tuned"]["chosen_on"].as_array());
+        let chosen_on: Vec<&Value> = chosen_on.flatten().collect();
+        assert!(!chosen_on.is_empty(), "{scene}");
+        assert!(
+            runs.iter().all(|run| !chosen_on.contains(&&run["view"])),
+            "{chosen_on:?}"
+        );
     }
 }
 

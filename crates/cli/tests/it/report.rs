@@ -198,6 +198,11 @@ fn the_page_works_in_a_browser() {
         assert_eq!(outcome["faults"], Value::Array(Vec::new()), "{page}");
         assert_eq!(outcome["failed"], Value::Array(Vec::new()), "{page}");
     }
+    // A4 is 210 mm wide, less 24 mm of margins.
+    for page in ["out/report.html", "all.html", "scenes.html"] {
+        let outcome = browsed(folder, page, 703, true, include_str!("report/print.js"));
+        assert_eq!(outcome["failed"], Value::Array(Vec::new()), "{page}");
+    }
 }
 
 /// Returns the script of axe-core; `None`, with a message, where it is not installed and may be

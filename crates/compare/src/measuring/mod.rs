@@ -53,3 +53,4 @@ mod trial;
 mod truth_folder;
 pub mod tune;
 pub mod view_or_path;
+mod walk;

@@ -27,6 +27,8 @@ pub struct ResultsFolder {
     pub others: Vec<Run>,
     /// Command lines that measured `others`.
     pub commands: Vec<String>,
+    /// Notes on the scene that were recorded with `others`.
+    pub notes: Vec<String>,
 }
 
 impl ResultsFolder {
@@ -46,8 +48,10 @@ impl ResultsFolder {
     /// its runs.
     pub fn whole(&self, own: &Results) -> Results {
         let commands = [&self.commands[..], &own.commands].concat();
+        let notes = [&self.notes[..], &own.notes].concat();
         Results {
             commands: unique(commands),
+            notes: unique(notes),
             runs: [&own.runs[..], &self.others].concat(),
             ..own.clone()
         }
@@ -87,6 +91,7 @@ impl ResultsFolder {
             let earlier = read_back::results_of(&file)?;
             check_alike(&path, &earlier, own)?;
             self.commands = unique([earlier.commands, self.commands.clone()].concat());
+            self.notes = unique([earlier.notes, self.notes.clone()].concat());
             self.others = earlier.runs;
             self.others.retain(|run| !self.dropped.contains(run));
         }

@@ -83,6 +83,7 @@ pub(crate) fn earlier(
     }
     if resumes || !rest.is_empty() {
         opened.commands = earlier.commands;
+        opened.notes = earlier.notes;
     }
     opened.others = rest;
     let total = runs.len();

@@ -180,6 +180,7 @@ impl<'a> Series<'a> {
             began,
             budgets: comparison.budgets,
             commands: comparison.command.iter().cloned().collect(),
+            notes: comparison.notes.clone(),
             runs: Vec::new(),
             plan: None,
             others: Vec::new(),

@@ -17,7 +17,7 @@ use skiagraph_passes::{Built, SceneProvider};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Frames that are timed together: what is shown, and what has moved since the frame before.
+/// Frames that are timed together: the same is shown, or has moved since the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
     /// Every pass runs.
@@ -31,11 +31,11 @@ pub enum Kind {
 /// One turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turn {
-    /// What is shown, and what has moved.
+    /// The choice of frames that it belongs to.
     pub kind: Kind,
     /// Index of the frame that is shown.
     pub frame: usize,
-    /// True if the times count; false for a frame that warms up, or that brings back what has moved.
+    /// True if the times count; false for a frame that warms up, or brings back what has moved.
     pub is_kept: bool,
 }
 
@@ -247,8 +247,8 @@ impl Take<'_> {
     }
 }
 
-/// Runs a frame without timing. If no pass ran, returns a frame without times, and the time that the
-/// CPU took.
+/// Runs a frame without timing. If no pass ran, returns a frame without times, and the time that
+/// the CPU took.
 fn rest(
     session: Session,
     executor: &mut Executor,
@@ -287,9 +287,9 @@ pub fn made_since<'b>(before: &[Built], now: &'b [Built]) -> impl Iterator<Item 
     now.iter().filter(move |built| built.times > times(built))
 }
 
-/// Runs `warmup` frames, then `frames` timed ones, with every pass. `done` is called with the number
-/// of finished frames. If the session's sink asks for an early end, the frames timed until then are
-/// returned.
+/// Runs `warmup` frames, then `frames` timed ones, with every pass. `done` is called with the
+/// number of finished frames. If the session's sink asks for an early end, the frames timed until
+/// then are returned.
 ///
 /// # Errors
 /// Those of the executor.

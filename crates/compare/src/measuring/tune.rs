@@ -72,7 +72,8 @@ const LONGEST_SIDE: u32 = 8192;
 /// [`Comparison::tuned`] records the searches. If the comparison has several views, every second
 /// one is taken out of it, and settings are chosen on these; otherwise they are chosen on other
 /// views of the scene. Where these are fewer than three, views are generated that show from other
-/// sides what the judged ones show. Params that a method sets stay as they are. A method whose
+/// sides what the judged ones show. Params that a method sets stay as they are,
+/// and so do those of the [look](Param::is_look) if no light has an extent. A method whose
 /// document promises exact shadows for all casters is not searched, and neither is one that
 /// remembers earlier frames. Values are chosen in the first of the comparison's viewports, and run
 /// in all. If it has fewer than 256 × 256 pixels, they are chosen in a larger one: both sides are
@@ -90,7 +91,9 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
     comparison.check(Session::new(session.gpu, &Silent))?;
     let scene = comparison.scene.clone();
     let methods = comparison.settled(session);
-    check_methods(&methods)?;
+    let mut lights = comparison.views.iter().map(|view| view.light(&scene));
+    let is_soft = lights.any(|light| light.has_extent());
+    check_methods(&methods, is_soft)?;
     let most = most_work(comparison);
     let Split { chosen_on, judged } = Split::new(&comparison.views, &scene)?;
     let viewport = trial_viewport(comparison);
@@ -111,12 +114,12 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
     let (mut compared, mut tuned) = (Vec::new(), Vec::new());
     for (own, method) in comparison.methods.iter().zip(&methods) {
         compared.push(own.clone());
-        if !needs_tuning(method) {
+        if !needs_tuning(method, is_soft) {
             continue;
         }
         let method = method.at(viewport);
         let trials = Trials::new(session, &method, &views, &mut provider, limits);
-        let Some((params, record)) = best(session, &method, trials, most)? else {
+        let Some((params, record)) = best(session, (&method, is_soft), trials, most)? else {
             session.sink.note(&format!(
                 "{} is not tuned: it cannot run on the views that settings are chosen on, \
                  remembers earlier frames, or no pixel faces a light that it takes",
@@ -165,8 +168,8 @@ fn trial_viewport(comparison: &Comparison) -> [u32; 2] {
 }
 
 /// Refuses methods among which none has params to tune.
-fn check_methods(methods: &[Method]) -> Result<(), CompareError> {
-    if methods.iter().any(needs_tuning) {
+fn check_methods(methods: &[Method], is_soft: bool) -> Result<(), CompareError> {
+    if methods.iter().any(|method| needs_tuning(method, is_soft)) {
         return Ok(());
     }
     let names = methods
@@ -175,15 +178,16 @@ fn check_methods(methods: &[Method]) -> Result<(), CompareError> {
         .join(", ");
     Err(CompareError::Input(format!(
         "nothing to tune: {names} set or lack all params that a document marks with `tune`, or are \
-         exact with any of them"
+         exact with any of them; params with `look` are tuned under lights with an extent alone"
     )))
 }
 
 /// True if [`tune`] searches for settings of a method: its document marks with `tune` params that
-/// the method does not set, and does not promise exact shadows for all casters.
-pub fn needs_tuning(method: &Method) -> bool {
+/// the method does not set, and does not promise exact shadows for all casters. Params of the
+/// [look](Param::is_look) count only if `is_soft`: a light of the comparison has an extent.
+pub fn needs_tuning(method: &Method, is_soft: bool) -> bool {
     let promise = guarantee::promise(method);
-    !promise.is_some_and(|promise| promise.is_exact_for_all()) && !axes(method).is_empty()
+    !promise.is_some_and(|promise| promise.is_exact_for_all()) && !axes(method, is_soft).is_empty()
 }
 
 /// A param to tune, with its values; the first one is that which the method has.
@@ -193,10 +197,12 @@ struct Values {
     is_word: bool,
 }
 
-/// The params of a method that may be tuned, but for the size of its map.
-fn axes(method: &Method) -> Vec<Values> {
+/// The params of a method that may be tuned, but for the size of its map. Against hard shadows the
+/// sharpest look always has the least error: such params are left out unless `is_soft`.
+fn axes(method: &Method, is_soft: bool) -> Vec<Values> {
     let params = method.preset.graph.params().iter();
     let marked = params.filter(|param| !param.tune.is_empty() && param.name.as_str() != MAP_SIZE);
+    let marked = marked.filter(|param| is_soft || !param.is_look);
     let free = marked.filter(|param| !method.params.contains_key(param.name.as_str()));
     let axis = |param: &Param| {
         let now = method.value(param.name.as_str())?.clone();
@@ -279,8 +285,13 @@ fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
     let none = || CompareError::Input("no view of the scene to tune methods on".into());
     let like = views.first().ok_or_else(none)?;
     let is_other = |other: &&View| (other.eye, other.direction) != (like.eye, like.direction);
-    let own = scene.views.iter().filter(is_other).take(OTHERS);
-    let mut other_views: Vec<Vec<View>> = own.map(|other| under_lights(other, views)).collect();
+    let own = scene.views.iter().filter(is_other);
+    let own = own.map(|other| under_lights(other, views));
+    // Results tell views by name: one of a judged view's name would take its runs away.
+    let names: Vec<&str> = views.iter().map(|view| view.name.as_str()).collect();
+    let is_free = |other: &View| !names.contains(&other.name.as_str());
+    let own = own.filter(|other| other.iter().all(is_free)).take(OTHERS);
+    let mut other_views: Vec<Vec<View>> = own.collect();
     other_views.extend(generated(views, scene, 0, OTHERS - other_views.len()));
     if other_views.is_empty() {
         return Err(CompareError::Input(format!(
@@ -349,14 +360,14 @@ fn trial_views<'s>(
 /// if the method runs on none of the views.
 fn best(
     session: Session,
-    method: &Method,
+    (method, is_soft): (&Method, bool),
     mut trials: Trials,
     most: u64,
 ) -> Result<Option<(ParamValues, Tuned)>, CompareError> {
     if trials.is_blind() {
         return Ok(None);
     }
-    let axes = axes(method);
+    let axes = axes(method, is_soft);
     let ways = axes.iter().map(|axis| Axis {
         values: axis.values.len(),
         is_word: axis.is_word,

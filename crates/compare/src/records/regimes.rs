@@ -6,9 +6,9 @@
 //! // As it stands in the list `regimes` of a run.
 //! let light: RegimeTimes = serde_json::from_str(
 //!     r#"{"regime": "light", "uploaded_bytes": 144, "frame": {
-//!         "gpu_ms": {"min": 2, "q1": 2, "median": 3, "q3": 3, "p95": 3}, "gpu_frames": [3, 2],
-//!         "cpu_ms": {"min": 1, "q1": 1, "median": 1, "q3": 1, "p95": 1}, "cpu_frames": [1, 1],
-//!         "wall_ms": {"min": 5, "q1": 5, "median": 5, "q3": 5, "p95": 5}, "wall_frames": [5, 5]}}"#,
+//!         "gpu_ms": null, "gpu_frames": [3, 2], "cpu_ms": null, "cpu_frames": [1, 1],
+//!         "wall_ms": {"min": 5, "q1": 5, "median": 5, "q3": 5, "p95": 5},
+//!         "wall_frames": [5, 5]}}"#,
 //! )?;
 //! assert_eq!(light.regime, Regime::Light);
 //! let (by_gpu, by_wall) = (light.frame.costs(false), light.frame.costs(true));
@@ -19,8 +19,8 @@
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 
-/// What has moved since the frame before. A pass whose inputs are unchanged is skipped, so that
-/// methods differ in what they do in each.
+/// Kind of frame, by that which has moved since the frame before. A pass whose inputs are unchanged
+/// is skipped, so that methods differ in what they do in each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
@@ -73,7 +73,7 @@ impl Regime {
 /// Times of a method in frames before each of which the same has moved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RegimeTimes {
-    /// What has moved before each of the frames.
+    /// The kind of the frames.
     pub regime: Regime,
     /// Times of the frames, with those of the CPU's upkeep.
     pub frame: FrameTimes,

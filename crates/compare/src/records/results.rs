@@ -63,7 +63,7 @@ pub struct Results {
     pub frames: u32,
     /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,
-    /// Number of timed frames of each [regime](crate::records::regimes::Regime); 0 if there are none.
+    /// Number of timed frames of each [`Regime`]; 0 if there are none.
     pub regime_frames: u32,
     /// Start of the comparison that measured the newest runs, in UTC: `2026-11-21T04:30:12Z`.
     pub began: String,
@@ -73,6 +73,10 @@ pub struct Results {
     pub budgets: Budgets,
     /// Commands that measured the runs, the first one first.
     pub commands: Vec<String>,
+    /// Notes on the scene, one line each: what its import repaired or left out, and the camera,
+    /// light and ground that were chosen for it. Left out of the file if there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Hash of the plan of which the runs are cells, 16 hexadecimal digits: they may be of several
     /// machines of one kind. Absent without a plan.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -899,6 +903,7 @@ pub(crate) mod tests {
             began: "2026-11-20T04:30:12Z".into(),
             budgets: Budgets::default(),
             commands: vec!["skiagraph compare nsm rt rt_hw --size 512x256".into()],
+            notes: vec!["1 point and 2 lines left out".into()],
             runs: vec![
                 Run {
                     measured: Some(measured("create_shadow_map", true, None)),

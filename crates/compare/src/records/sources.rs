@@ -108,6 +108,7 @@ impl Source {
             results: Results {
                 runs: Vec::new(),
                 commands: Vec::new(),
+                notes: Vec::new(),
                 ..results.clone()
             },
             folders: Vec::new(),
@@ -160,6 +161,7 @@ impl Source {
     fn add(&mut self, folder: PathBuf, other: Results) {
         let place = place(&mut self.folders, folder);
         let commands = [&self.results.commands[..], &other.commands].concat();
+        let notes = [&self.results.notes[..], &other.notes].concat();
         let machine = other.machine.clone();
         let plan = self.results.plan.clone().or_else(|| other.plan.clone());
         if self.results.began < other.began {
@@ -170,6 +172,7 @@ impl Source {
             };
         }
         self.results.commands = unique(commands);
+        self.results.notes = unique(notes);
         self.results.plan = plan;
         for mut run in other.runs {
             run.machine.get_or_insert_with(|| machine.clone());
@@ -264,6 +267,7 @@ mod tests {
             assert_eq!(source.folder_of(newer), Path::new("new"));
             assert_eq!(source.results.began, later().began);
             assert_eq!(source.results.commands.len(), 2);
+            assert_eq!(source.results.notes, sample().notes, "once");
             let load = |run: usize| source.results.machine_of(&runs[run]).load;
             assert_eq!(load(newer), Some(7.0), "that of its own comparison");
             assert_eq!((newer, load(1)), (0, Some(0.25)));

@@ -4,7 +4,10 @@ use crate::support::{NOWHERE, comparison, gpu, mesh, park_comparison};
 use glam::DVec3;
 use skiagraph_compare::{
     comparison::Comparison,
-    measuring::{series, tune::tune},
+    measuring::{
+        series,
+        tune::{needs_tuning, tune},
+    },
     records::{hint::Cause, results::Run},
     sink::{Session, Silent},
 };
@@ -95,6 +98,13 @@ fn one_setting_that_makes_most_pixels_right_is_hinted_at() {
         "{acne:?}"
     );
     assert_eq!(hint(&runs[2]), None);
+}
+
+#[test]
+fn the_softness_of_shadows_is_tuned_under_lights_with_an_extent_alone() {
+    let pcf = &sheets(&["pcf@bias=0,slope_bias=1,cull=none,fit=scene"]).methods[0];
+    assert!(!needs_tuning(pcf, false), "only the radius is left");
+    assert!(needs_tuning(pcf, true));
 }
 
 #[test]

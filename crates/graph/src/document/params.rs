@@ -36,6 +36,10 @@ pub(crate) struct ParamFields {
     /// Values that `compare --tune` tries, two at least: words of a `Choice`, booleans or numbers.
     #[serde(default)]
     tune: Vec<Expr>,
+    /// True if the param decides how soft shadows look: `compare --tune` then tries the values of
+    /// `tune` only under lights with an extent, whose shadows have a right softness.
+    #[serde(default)]
+    look: bool,
     /// Description of its effect, for those who set it.
     #[serde(default, deserialize_with = "prose")]
     description: String,
@@ -86,6 +90,7 @@ pub(super) fn read(tag: &Located<String>, fields: &[Field]) -> Result<Param, Dia
         description: fields.description,
         refused: BTreeMap::new(),
         tune: Vec::new(),
+        is_look: fields.look,
     };
     param.tune = tuned(&param, &fields.tune)?;
     Ok(param)

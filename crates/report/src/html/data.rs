@@ -5,6 +5,7 @@ use crate::html::shown::Shown;
 use crate::results_table::timed_frames;
 use crate::summary::Row;
 use serde::Serialize;
+use skiagraph_compare::own_scene_notes::chosen_for_it;
 use skiagraph_compare::records::results::PROGRAM;
 use skiagraph_compare::records::sources::Source;
 use std::collections::BTreeSet;
@@ -34,6 +35,7 @@ struct Conditions<'a> {
     warmup: u32,
     dates: BTreeSet<&'a str>,
     commands: &'a [String],
+    notes: &'a [String],
     folders: Vec<String>,
 }
 
@@ -65,7 +67,7 @@ pub fn text(sources: &[Source], tables: &[Shown], pictures: &Pictures) -> String
     let data = Data {
         program: PROGRAM,
         sources: sources.iter().map(conditions).collect(),
-        tables: tables.iter().map(table).collect(),
+        tables: tables.iter().map(|shown| table(shown, sources)).collect(),
         pictures,
         left_out: &pictures.left_out,
     };
@@ -88,11 +90,14 @@ fn conditions(source: &Source) -> Conditions<'_> {
         warmup: results.warmup,
         dates: dates.collect(),
         commands: &results.commands,
+        notes: &results.notes,
         folders: folders.map(|folder| folder.display().to_string()).collect(),
     }
 }
 
-fn table<'a>(shown: &'a Shown) -> Table<'a> {
+fn table<'a>(shown: &'a Shown, sources: &[Source]) -> Table<'a> {
+    let mut sentences = shown.summary.verdict().sentences;
+    sentences.extend(chosen_for_it(&sources[shown.source].results.notes));
     let line = |row: &'a Row| Line {
         label: &row.label,
         method: &row.method,
@@ -103,7 +108,7 @@ fn table<'a>(shown: &'a Shown) -> Table<'a> {
         viewport: shown.summary.viewport,
         of: &shown.title,
         views: shown.summary.views(),
-        sentences: shown.summary.verdict().sentences,
+        sentences,
         conditions: shown.summary.conditions(),
         notes: shown.summary.notes(),
         rows: shown.summary.rows.iter().map(line).collect(),

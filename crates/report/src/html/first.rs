@@ -7,6 +7,7 @@ use crate::summary::Row;
 use crate::verdict::MAX_BAND;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::results::{Measured, Run};
+use skiagraph_compare::records::sequence::SequenceFrame;
 use skiagraph_compare::wording::{ms, percent};
 
 /// Returns HTML with the pictures of each table's verdict: reference, recommended method, and
@@ -39,7 +40,11 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
     let (run, judged) = worst_view(runner_up.unwrap_or(taken))?;
     let caption_of = |row: &Row, run: &Run, measured: &Measured| {
         let (sign, label) = (sign(tables, &row.method), xml(&row.label));
-        let frame = frame_in_words(frame(measured)?);
+        if let Some(frame) = frame(measured)? {
+            let figures = figures_of_frame(table, measured, frame)?;
+            let frame = frame_in_words(Some(frame));
+            return Some(format!("<b>{sign}{label}</b>{frame}: {figures}"));
+        }
         let time = row.frame_ms(None, table.by_wall).map_or("–".into(), ms);
         let error = error(table, row);
         let suffix = if row.views() > 1 && !table.summary.is_soft() && !is_right(row) {
@@ -48,9 +53,7 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
         } else {
             String::new()
         };
-        Some(format!(
-            "<b>{sign}{label}</b>{frame}: {error}{suffix}, {time} ms"
-        ))
+        Some(format!("<b>{sign}{label}</b>: {error}{suffix}, {time} ms"))
     };
     let (its_run, measured) = on_view(taken, &run.view)?;
     let mut shown = vec![
@@ -111,6 +114,30 @@ fn wrong<'a>(row: &Row, (run, judged): (&'a Run, &Measured), caption: &str) -> O
 /// The frame of a camera path that the pictures show; the outer `None` without pictures.
 fn frame(measured: &Measured) -> Option<Option<usize>> {
     Some(measured.images.as_ref()?.frame)
+}
+
+/// The frame's own error and time: those of the row are of the whole path.
+fn figures_of_frame(table: &Shown, measured: &Measured, frame: usize) -> Option<String> {
+    let frame = measured.sequence.as_ref()?.frames.get(frame)?;
+    let error = error_of_frame(frame, !table.summary.is_soft());
+    let cost = frame.cost;
+    let time = if table.by_wall {
+        Some(cost.wall_ms)
+    } else {
+        cost.gpu_ms.map(|_| cost.ms())
+    };
+    Some(format!("{error}, {} ms", time.map_or("–".into(), ms)))
+}
+
+/// Returns the error of one frame of a camera path: of hard shadows (`is_hard`) the share of the
+/// pixels facing the light that are wrong outside the band, else the root mean square error of the
+/// shares of light.
+pub fn error_of_frame(frame: &SequenceFrame, is_hard: bool) -> String {
+    match frame.wrong_outside_band {
+        _ if !is_hard => format!("RMSE {:.4}", frame.graded.rmse),
+        0 => "no wrong pixel".into(),
+        wrong => format!("{} wrong", percent(wrong, frame.facing_light)),
+    }
 }
 
 /// A comma and the frame of a camera path; nothing for a view.

@@ -98,6 +98,7 @@ mod tests {
     use crate::test_support::{results as sample, stress};
     use serde_json::Value;
     use skiagraph_compare::records::results::Results;
+    use skiagraph_compare::records::sequence::Sequence;
     use skiagraph_compare::records::sources::{Kept, sources};
     use std::path::Path;
 
@@ -209,6 +210,52 @@ mod tests {
             run.measured.as_mut().unwrap().images = None;
         }
         assert_eq!(first(without), None);
+    }
+
+    #[test]
+    fn a_picture_of_a_path_is_captioned_with_its_frames_own_figures() {
+        let mut results = two_with_pictures();
+        let frames = |wrong: [u64; 2]| -> Sequence {
+            let frame = |wrong: u64| {
+                serde_json::json!({
+                    "facing_light": 1000, "wrong": wrong, "wrong_outside_band": wrong,
+                    "graded": {"rmse": wrong as f64}, "rays": null,
+                    "gpu_ms": 0.25 + wrong as f64, "wall_ms": 10.0 + wrong as f64
+                })
+            };
+            let frames = wrong.map(frame);
+            let shimmer = serde_json::json!({"compared": 900, "changed": 3});
+            let path = serde_json::json!({"shimmer": shimmer, "frames": frames});
+            serde_json::from_value(path).unwrap()
+        };
+        for (run, wrong) in results.runs.iter_mut().zip([[2, 7], [0, 0]]) {
+            let measured = run.measured.as_mut().unwrap();
+            measured.sequence = Some(frames(wrong));
+            measured.images.as_mut().unwrap().frame = Some(1);
+        }
+        let html = page(&source(Path::new("nowhere"), results), &[]).html;
+        for caption in [
+            "rt</b>, frame 1: no wrong pixel, 10.0 ms",
+            "nsm 1024</b>, frame 1: 0.700 % wrong, 17.0 ms; blue",
+        ] {
+            assert!(html.contains(caption), "{caption}: {html}");
+        }
+    }
+
+    #[test]
+    fn the_verdict_says_that_the_camera_is_not_the_files() {
+        let sentences = |note: &str| {
+            let mut results = sample();
+            results.notes = vec![note.into()];
+            let html = page(&source(Path::new("nowhere"), results), &[]).html;
+            let data = data_of(&html);
+            assert_eq!(data["sources"][0]["notes"][0], note);
+            data["tables"][0]["sentences"].to_string()
+        };
+        let chosen = "it holds no camera; chosen --eye 0,1,2";
+        let sentence = format!("The camera is not the file's: {chosen}.");
+        assert!(sentences(chosen).contains(&sentence));
+        assert!(!sentences("its cameras, for --view: main").contains("not the file's"));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Chooses the pictures of a page, those of the reference and of errors first, as far as there is
 //! room.
 
+use crate::html::first::error_of_frame;
 use crate::notes::map_figures;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use itertools::Itertools;
@@ -36,6 +37,8 @@ pub struct Set {
     label: Option<String>,
     /// Frame of a camera path that it shows, counted from 0.
     frame: Option<usize>,
+    /// Error of the method in that frame, in words.
+    frame_error: Option<String>,
     shaded: Option<usize>,
     visibility: Option<usize>,
     error: Option<usize>,
@@ -85,6 +88,14 @@ impl Kind {
             Self::Projection => "projection",
         }
     }
+}
+
+/// The error of a run in the frame that its pictures show; `None` for a still view.
+fn frame_error(run: &Run) -> Option<String> {
+    let measured = run.measured.as_ref()?;
+    let frame = measured.images.as_ref()?.frame?;
+    let frame = measured.sequence.as_ref()?.frames.get(frame)?;
+    Some(error_of_frame(frame, run.is_hard()))
 }
 
 /// A file that could go in.
@@ -167,6 +178,7 @@ impl Pictures {
             viewport: run.viewport,
             label: label.clone(),
             frame: candidate.frame,
+            frame_error: frame_error(run).filter(|_| label.is_some()),
             graded: !run.is_hard(),
             ..Set::default()
         });

@@ -1,17 +1,28 @@
 // The page's head, its lesser sections, and the first drawing.
 
+/** Several scenes stand in an overview at the top. */
+const hasOverview = all('#overview table').length > 0;
+hide(byId('overview-section'), !hasOverview);
+hide(byId('scene'), !hasOverview);
+
 function drawHead() {
   const source = data.sources[table()?.source ?? 0];
   if (!source) return;
-  byId('title').textContent = `Which shadow method for ${source.scene}?`;
+  const question = `Which shadow method for ${source.scene}?`;
+  byId('title').textContent = hasOverview ? 'Which shadow method?' : question;
+  byId('scene').textContent = question;
   document.title = `${source.scene}: Skiagraph report`;
   byId('subtitle').textContent = table().conditions.slice(0, 2).join(' · ');
+  const count = data.tables.length;
+  byId('printed').textContent = count === 1 ? '' : `Printed for ${table().of}, one of ${count} scenes, sizes or `
+    + 'lights: choose another on the page to print it.';
   byId('facts').replaceChildren(...table().conditions.slice(2).map((text) => el('p', { class: lineClass(text) }, text)));
-  // Text between backquotes is a name.
-  const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
   byId('verdict').replaceChildren(...table().sentences.map((text) => el('p', {}, ...words(text))));
   byId('notes').replaceChildren(...table().notes.map((text) => el('li', { class: lineClass(text) }, ...words(text))));
 }
+
+/** Text between backquotes is a name. */
+const words = (text) => text.split('`').map((part, index) => (index % 2 === 1 ? el('code', {}, part) : part));
 
 /** Warnings stand out. */
 const lineClass = (text) => (text.startsWith('warning: ') ? 'warning' : 'quiet');
@@ -70,6 +81,12 @@ function drawConditions() {
     }).flatMap(([name, text]) => [el('dt', {}, name), el('dd', {}, text)])),
     ...source.commands.map((command) => el('pre', {}, command)),
   ]), ...data.left_out.map((line) => el('p', { class: 'quiet', id: 'left-out' }, line)));
+  const noted = data.sources.filter((source) => source.notes.length > 0);
+  byId('scene-notes').replaceChildren(...noted.flatMap((source) => [
+    data.sources.length > 1 ? el('h3', {}, source.scene) : '',
+    el('ul', {}, ...source.notes.map((text) => el('li', { class: lineClass(text) }, ...words(text)))),
+  ]));
+  hide(byId('scene-notes-section'), noted.length === 0);
   byId('footer').textContent = `Written by ${data.program}. Wrong pixels are counted against exact rays from every `
     + 'pixel; the band holds those whose right answer hangs on rounding.';
 }
@@ -85,7 +102,6 @@ if (data.tables.length > 0) {
   for (const id of ['front', 'table', 'pictures', 'passes', 'paths', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
 }
 hide(byId('stress-section'), all('#stress table').length === 0);
-hide(byId('overview-section'), all('#overview table').length === 0);
 for (const link of all('#overview [data-choose]')) {
   link.addEventListener('click', (event) => {
     event.preventDefault();

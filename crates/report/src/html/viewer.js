@@ -107,7 +107,8 @@ function drawViewer() {
 }
 
 function caption(pane, side) {
-  const text = `${pane.label} · ${kinds[pane.kind]}`;
+  const error = setOf(pane)?.frame_error;
+  const text = `${pane.label}${error ? `: ${error}` : ''} · ${kinds[pane.kind]}`;
   return el('span', { class: `caption ${side}` }, text);
 }
 

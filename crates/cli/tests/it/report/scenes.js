@@ -10,7 +10,9 @@ try {
   await settled();
   const chosen = find('#table-choice').selectedOptions[0].text;
   check('a cell leads to its scene', chosen.startsWith('level') && chosen.includes('96x64'), chosen);
-  check('and to its rows', rows().length > 0 && find('#title').textContent.includes('level'), find('#title').textContent);
+  check('and to its rows', rows().length > 0 && find('#scene').textContent.includes('level'), find('#scene').textContent);
+  const top = (selector) => find(selector).getBoundingClientRect().top;
+  check('the overview comes first', top('#overview') < top('#scene') && top('#scene') < top('#verdict'));
 } catch (error) {
   failed.push(String(error.stack));
 }

@@ -61,9 +61,10 @@
 //!   that are shares are *graded*, answers of 0 and 1 *hard*.
 //! - *Step* of a method: its passes with the same name up to the first dot
 //!   ([`step`](records::results::step())).
-//! - Times are of frames in which *every pass runs*, or of frames in which *only the camera moves*,
-//!   so that passes with unchanged inputs are skipped. Methods are timed *in turns*, frame by
-//!   frame.
+//! - Times are of frames in which *every pass runs*, of a path's frames, and of frames before each
+//!   of which the same has moved (a [`Regime`](records::regimes::Regime)), so that passes with
+//!   unchanged inputs are skipped. *Upkeep* is the CPU's work for such a frame. Methods are timed
+//!   *in turns*, frame by frame.
 //! - *Early end*: the work stops because [`Sink::stop`](sink::Sink::stop) asks for it; the error is
 //!   [`CompareError::Interrupted`](error::CompareError::Interrupted).
 //! - *Steady state* ([`Steady`](records::steady::Steady)): some methods reuse results of earlier

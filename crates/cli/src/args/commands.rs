@@ -76,7 +76,7 @@ pub struct CompareArgs {
     pub warmup: u32,
     /// Timed frames before each of which the same has moved: nothing, the camera, the light, meshes
     /// (on a path that moves parts). 0 for none. Without it: as many as --frames.
-    #[arg(long, value_name = "N",
+    #[arg(long, value_name = "N", alias = "cached-frames",
           value_parser = frames(0), allow_negative_numbers = true)]
     pub regime_frames: Option<u32>,
     /// Shadow rays of the reference: `exact` (no offset, the own triangle excluded) or

@@ -1,12 +1,12 @@
 //! A panel of bars: linear from 0, grouped, each under the mark of its series.
 
 use crate::{
-    canvas::{Root, words},
+    canvas::{Root, panel_title},
     data::{Panel, Series},
     error::Error,
     marker::Look,
     panel::{ABOVE, builder, label},
-    text::{BODY, HEAD, clean, width},
+    text::{BODY, clean, width},
 };
 use plotters::prelude::*;
 
@@ -33,7 +33,7 @@ pub(crate) fn draw(
     let (across, _) = axes.plotting_area().get_pixel_range();
     let wide = f64::from(across.end - across.start) / groups.len().max(1) as f64;
     let title = (across.start, corner.1 + ABOVE / 2);
-    words(root, title, HEAD, &panel.title)?;
+    panel_title(root, title, corner.0 + size.0, &panel.title)?;
     let step = label_step(groups, wide);
     let name = |place: &SegmentValue<usize>| match place {
         SegmentValue::CenterOf(group) if group % step == 0 => groups

@@ -3,7 +3,7 @@
 use crate::{
     colours::{INK, as_variables},
     error::Error,
-    text::{HEAD, clean},
+    text::{HEAD, clean, width},
 };
 use plotters::{
     coord::Shift,
@@ -100,6 +100,17 @@ pub(crate) fn words(root: &Root, at: (i32, i32), size: f64, text: &str) -> Resul
     let at = (at.0, at.1 + 1);
     root.draw(&Text::new(clean(text), at, style))?;
     Ok(())
+}
+
+/// Draws the title of a panel from `at` on, smaller where it would pass the panel's `right` edge.
+pub(crate) fn panel_title(
+    root: &Root,
+    at: (i32, i32),
+    right: i32,
+    text: &str,
+) -> Result<(), Error> {
+    let room = f64::from(right - at.0) / f64::from(width(text, HEAD).max(1));
+    words(root, at, HEAD * room.clamp(0.1, 1.0), text)
 }
 
 /// Returns the style of text of this font size in pixels: bold if it is larger than [`HEAD`], as

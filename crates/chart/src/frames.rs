@@ -3,12 +3,11 @@
 
 use crate::{
     bars::{tick, top},
-    canvas::{Canvas, words},
+    canvas::{Canvas, panel_title},
     data::Panel,
     error::Error,
     marker::Look,
     panel::{ABOVE, builder, draw_line, draw_mark, label},
-    text::HEAD,
 };
 
 /// Draws a panel of frames into a rectangle of the canvas, given by its top left corner and size in
@@ -28,12 +27,8 @@ pub(crate) fn draw(
         let mut axes = builder(&root.clone().shrink(corner, size))
             .build_cartesian_2d(0.0..last, 0.0..top(fitted))?;
         let (across, _) = axes.plotting_area().get_pixel_range();
-        words(
-            root,
-            (across.start, corner.1 + ABOVE / 2),
-            HEAD,
-            &panel.title,
-        )?;
+        let title = (across.start, corner.1 + ABOVE / 2);
+        panel_title(root, title, corner.0 + size.0, &panel.title)?;
         let mut mesh = axes.configure_mesh();
         mesh.y_labels(7)
             .max_light_lines(2)

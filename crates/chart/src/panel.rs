@@ -1,7 +1,7 @@
 //! Draws one logarithmic panel: axes, the strip for values of 0, lines, Pareto front, marks.
 
 use crate::{
-    canvas::{Canvas, Root, style, words},
+    canvas::{Canvas, Root, panel_title, style},
     colours::{AXIS, FRONT, GRID, GUIDE, STRIP},
     data::{Kind, Mark, Panel, Series},
     error::Error,
@@ -105,7 +105,7 @@ pub(crate) fn draw(
         let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;
         let (across, down) = axes.plotting_area().get_pixel_range();
         let title = (across.start, corner.1 + ABOVE / 2);
-        words(root, title, HEAD, &panel.title)?;
+        panel_title(root, title, corner.0 + size.0, &panel.title)?;
         if panel.kind == Kind::Growth {
             let ends = guide(&x, &y).map(|end| axes.backend_coord(&end));
             root.draw(&DashedPathElement::new(ends, 4, 4, GUIDE))?;

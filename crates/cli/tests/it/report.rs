@@ -155,7 +155,12 @@ fn set_times(run: &mut Value) {
     let width = run["viewport"][0].as_f64().unwrap();
     let map = run["map_size"].as_f64().unwrap_or(0.0);
     let ms = (method + 1) as f64 * width / 64.0 + map / 1e3;
-    for (frame, share) in [("/frame", 1.0), ("/cached/frame", 0.5)] {
+    let regimes = [
+        ("/regimes/0/frame", 0.25),
+        ("/regimes/1/frame", 0.5),
+        ("/regimes/2/frame", 1.0),
+    ];
+    for (frame, share) in [("/frame", 1.0)].into_iter().chain(regimes) {
         for clock in ["gpu_frames", "wall_frames"] {
             if let Some(times) = run.pointer_mut(&format!("{frame}/{clock}")) {
                 *times = vec![share * ms; 8].into(); // as many as tell times apart

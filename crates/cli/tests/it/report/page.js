@@ -56,10 +56,10 @@ try {
   check('and says of which methods the front is', seen('#hidden').length === 1);
   find('#legend [data-method="nsm"]').click();
   check('and brings it back', marks().length === 7, marks());
-  find('#time [data-value="true"]').click();
-  check('the other time is drawn', seen('#front text').some((text) => text.textContent.includes('only the camera moves')));
+  find('#time [data-value="camera"]').click();
+  check('the other time is drawn', seen('#front text').some((text) => text.textContent.includes('while the camera moves')));
   check('alone', seen('#front svg').length === 1, seen('#front svg').length);
-  find('#time [data-value="false"]').click();
+  find('#time [data-value="frame"]').click();
   point(seen('#front .mark')[0], 'pointermove', 0.5, 0.5);
   check('a mark tells its figures', !find('#tip').hidden && find('#tip').textContent.includes('frame ms: '), find('#tip').textContent);
   check('in lines', find('#tip').textContent.split('\n').length >= 4, find('#tip').textContent);
@@ -192,14 +192,14 @@ try {
   // The link holds what is chosen, and brings it back.
   await settled();
   check('the link tells what is chosen', location.hash.includes('row=') && location.hash.includes('picture=error+nsm'), location.hash);
-  const link = '#table=0&only-camera=true&hide=pcf&row=nsm+128&sort=memory&down=true&filter=nsm&theme=dark'
+  const link = '#table=0&time=camera&hide=pcf&row=nsm+128&sort=memory&down=true&filter=nsm&theme=dark'
     + '&picture=visibility+reference&picture=shaded+nsm+64&mode=wipe&wipe=0.25';
   location.hash = link;
   await settled();
   check('a link’s rows', rows().length === 2 && rows().every((label) => label.startsWith('nsm')), rows());
   check('sorted', head('memory').ariaSort === 'descending', head('memory').ariaSort);
   check('and its row', seen('#table tr[aria-current]')[0]?.dataset.label === 'nsm 128');
-  check('its marks', !marks().some((name) => name.startsWith('pcf')) && find('#time [aria-pressed="true"]').dataset.value === 'true');
+  check('its marks', !marks().some((name) => name.startsWith('pcf')) && find('#time [aria-pressed="true"]').dataset.value === 'camera');
   check('its pictures', find('#method-right').selectedOptions[0].text === 'nsm 64' && find('#divider')?.ariaValueNow === '25', find('#method-right').selectedOptions[0].text);
   check('its theme', document.documentElement.dataset.theme === 'dark');
   location.hash = '#table=7&hide=nothing&row=none&sort=up&view=no&picture=a&wipe=4&zoom=x&theme=pink&other=1';

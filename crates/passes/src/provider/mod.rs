@@ -1,30 +1,28 @@
 //! The scene as resources of a graph, each uploaded when a live pass first asks for it.
 
+mod build;
+mod uploads;
+
 use crate::{
-    atlas::Atlas,
-    buffers::{Buffers, On, Patched, binding_limit},
-    built::{Built, How, Work},
+    buffers::{On, binding_limit},
+    built::{Built, Work},
     error::Error,
     eye::Eye,
-    geometry::{Change, Geometry, nodes_to_walk},
-    hierarchies::{Tree, all},
-    host_buffers::{Bound, HostMesh, HostWrite, Kernels, Written},
+    geometry::Geometry,
+    host_buffers::{HostMesh, HostWrite},
     lights,
     names::*,
     parts::{PartId, Room},
-    ray_query::{Source, Structures},
-    uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
+    ray_query::Structures,
 };
-use glam::{DAffine3, Vec3, Vec4};
-#[cfg(feature = "embree")]
-use skiagraph_gpu::CpuWork;
+use glam::{DAffine3, Vec3};
 use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
-use skiagraph_graph::{Describe, Plan, Provided, ProvidedBinding};
+use skiagraph_graph::Plan;
 use skiagraph_scene::{
-    BvhNode, Camera, Light, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, Scene, Sheets,
-    View, packed_masks::mask_words,
+    Camera, Light, LightKind, Mesh, Movable, Scene, Sheets, View, packed_masks::mask_words,
 };
-use std::{ops::Range, sync::Arc, time::Instant};
+use std::sync::Arc;
+use uploads::Uploads;
 
 /// Provider of a scene's resources to graphs: the buffers of one mesh, one camera and the lights,
 /// on one device. It builds each resource when a graph's pass first binds it. Primitives are
@@ -77,25 +75,22 @@ use std::{ops::Range, sync::Arc, time::Instant};
 /// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 ///
 /// [`Adjacency::opposite`]: skiagraph_scene::Adjacency::opposite
-/// [centre]: LightSpaceNode::centre
+/// [centre]: skiagraph_scene::LightSpaceNode::centre
+/// [`BvhNode`]: skiagraph_scene::BvhNode
+/// [`LightSpaceNode`]: skiagraph_scene::LightSpaceNode
+/// [`CameraUniform`]: crate::uniforms::CameraUniform
+/// [`UnprojectionUniform`]: crate::uniforms::UnprojectionUniform
+/// [`LightUniform`]: crate::uniforms::LightUniform
+/// [`LightAreaUniform`]: crate::uniforms::LightAreaUniform
+/// [`Describe::describe`]: skiagraph_graph::Describe::describe
 #[derive(Clone)]
 pub struct SceneProvider {
-    pub(crate) scene: Arc<Scene>,
-    pub(crate) versions: Versions,
-    /// Words of [`MASKS`] and [`SHEETS`], made at once: plans ask how many there are.
-    pub(crate) masks: Arc<Vec<u32>>,
-    sheets: Arc<Sheets>,
-    pub(crate) buffers: Buffers,
+    uploads: Uploads,
     structures: Structures,
     /// The device that all of them are on, once there is one.
     device: Option<DeviceIdentity>,
     #[cfg(feature = "embree")]
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
-    pub(crate) geometry: Geometry,
-    kernels: Kernels,
-    /// Materials of the mesh, once they were asked for.
-    atlas: Arc<Atlas>,
-    pub(crate) built: Vec<Built>,
 }
 
 impl SceneProvider {
@@ -105,21 +100,12 @@ impl SceneProvider {
     /// `camera` is all zeros. Until [`set_view`](Self::set_view) or [`set_light`](Self::set_light)
     /// is called, the resource `light` is the scene's [default light](Scene::light).
     pub fn new(scene: Arc<Scene>) -> Self {
-        let lights = lights::from_scene(&scene);
         Self {
-            versions: Versions::new(Eye::default(), scene.light(), lights),
-            masks: mask_words(&scene.mesh).into(),
-            sheets: Sheets::new(&scene.mesh).into(),
-            scene,
-            buffers: Buffers::default(),
+            uploads: Uploads::new(scene),
             structures: Structures::default(),
             device: None,
             #[cfg(feature = "embree")]
             embree: None,
-            geometry: Geometry::whole(),
-            kernels: Kernels::default(),
-            atlas: Arc::default(),
-            built: Vec::new(),
         }
     }
 
@@ -174,10 +160,10 @@ impl SceneProvider {
         if self.device.as_ref().is_some_and(|own| own.is(device)) {
             return;
         }
-        let work = self.buffers.work;
-        (self.buffers, self.structures, self.kernels) = Default::default();
-        self.buffers.work = work;
-        self.geometry.move_to(device);
+        let work = self.uploads.buffers.work;
+        (self.uploads.buffers, self.structures, self.uploads.kernels) = Default::default();
+        self.uploads.buffers.work = work;
+        self.uploads.geometry.move_to(device);
         self.device = Some(DeviceIdentity::new(device));
     }
 
@@ -194,357 +180,17 @@ impl SceneProvider {
     /// Lists the resources that this provider has built: an entry for each, in the order of their
     /// first build. An entry describes the last build of its resource.
     pub fn built(&self) -> &[Built] {
-        &self.built
+        &self.uploads.built
     }
 
     /// Returns counters of the work that this provider has done so far: bytes uploaded, positions
     /// moved, nodes fitted.
     pub fn work(&self) -> Work {
-        let (uploads, rest) = (self.buffers.work, self.geometry.work);
+        let (uploads, rest) = (self.uploads.buffers.work, self.uploads.geometry.work);
         Work {
             uploaded: uploads.uploaded,
             copied: uploads.copied,
             ..rest
-        }
-    }
-
-    /// The buffer of that name with what is in it now.
-    fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
-        let is_parted = self.geometry.is_in_parts();
-        self.buffers.lay_over(self.versions.shape, is_parted);
-        self.buffers.keeps_gaps = self.geometry.a_host_part().is_some();
-        let version = self.version(name);
-        if let Some(buffer) = self.buffers.get(name, version) {
-            return Ok(buffer.clone());
-        }
-        let began = self.begin();
-        let how = self.upload_named(name, on)?;
-        self.note(name, how, began);
-        let buffer = self.buffers.get(name, version);
-        buffer.cloned().ok_or_else(|| unknown(name))
-    }
-
-    /// The time, and the bytes uploaded so far, at which a resource begins to be made.
-    fn begin(&self) -> (Instant, u64) {
-        (Instant::now(), self.buffers.work.uploaded)
-    }
-
-    /// Notes what was made; of lights, which list they are of.
-    fn note(&mut self, name: &str, how: How, began: (Instant, u64)) {
-        let (time, uploaded) = (began.0.elapsed(), self.buffers.work.uploaded - began.1);
-        let listed = || NAMES.iter().copied().find(|own| *own == name);
-        let Some(name) = lights::list_of(name).or_else(listed) else {
-            return;
-        };
-        match self.built.iter_mut().find(|built| built.name == name) {
-            Some(built) => {
-                (built.how, built.time, built.uploaded) = (how, time, uploaded);
-                built.times += 1;
-            }
-            None => self.built.push(Built {
-                name,
-                how,
-                time,
-                uploaded,
-                times: 1,
-            }),
-        }
-    }
-
-    fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
-        &mut self,
-        name: &str,
-        items: &[T],
-        on: On,
-    ) -> Result<How, Error> {
-        let version = self.version(name);
-        self.buffers.make(name, items, version, on)?;
-        Ok(How::Made)
-    }
-
-    fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
-        // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
-        // to bind, and so the smallest leaves are joined.
-        let most = binding_limit(&on.device.limits()) / size_of::<BvhNode>() as u64;
-        let (version, held) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
-        let mesh = &self.scene.mesh;
-        let fitted = self.geometry.bvh(mesh, most as usize, version, held);
-        let (tree, nodes) = (&fitted.tree, nodes_to_walk(&fitted.tree));
-        let (buffers, changed) = (&mut self.buffers, &fitted.nodes);
-        let patched = buffers.patch_list(BVH_NODES, nodes, changed, version, on)?;
-        let (primitives, changed) = (&tree.primitives, &fitted.primitives);
-        buffers.patch_list(BVH_PRIMITIVES, primitives, changed, version, on)?;
-        let writes = match patched {
-            Patched::All => self.geometry.host_writes(None),
-            _ => self.geometry.host_writes(held),
-        };
-        let with_nodes = |(piece, write): (usize, HostWrite)| {
-            let levels = write.mesh.levels(tree, piece, on.device);
-            let first = tree.nodes_of(piece).start;
-            HostWrite {
-                nodes: Some((first, levels)),
-                ..write
-            }
-        };
-        let writes: Vec<HostWrite> = writes.into_iter().map(with_nodes).collect();
-        self.write_host_parts(BVH_NODES, patched, writes, on)?;
-        Ok(fitted.how)
-    }
-
-    /// Uploads the positions or normals that have changed, with a fourth coordinate.
-    fn upload_corners(
-        &mut self,
-        name: &str,
-        (items, w): (&[Vec3], f32),
-        on: On,
-    ) -> Result<How, Error> {
-        let (version, held) = (self.version(name), self.buffers.version(name));
-        let (held, mesh) = (held.unwrap_or_default(), &self.scene.mesh);
-        let list = (name, items.len());
-        let changed = self.geometry.moved_since(held, list, mesh);
-        let append = |range: Range<usize>, to: &mut Vec<Vec4>| {
-            to.extend(items[range].iter().map(|item| item.extend(w)));
-        };
-        let changed = (items.len(), &changed[..]);
-        let patched = self.buffers.patch(name, changed, append, version, on)?;
-        let since = (patched != Patched::All).then_some(held);
-        let writes = self.geometry.host_writes(since).into_iter();
-        let writes = writes.map(|(_, write)| write).collect();
-        self.write_host_parts(name, patched, writes, on)?;
-        Ok(How::Made)
-    }
-
-    /// Has the GPU write parts of hosts' buffers into the buffer of that name, which was patched.
-    fn write_host_parts(
-        &mut self,
-        name: &str,
-        patched: Patched,
-        writes: Vec<HostWrite>,
-        on: On,
-    ) -> Result<(), Error> {
-        if writes.is_empty() {
-            return Ok(());
-        }
-        let Some(buffer) = self.buffers.renew(name, patched, on) else {
-            return Ok(());
-        };
-        match self.bind_host_parts((name, &buffer), HostWrite::sorted(writes), on) {
-            Ok(bound) => {
-                let uploaded = bound.record(self.buffers.record(name, on));
-                self.buffers.work.uploaded += uploaded;
-                Ok(())
-            }
-            Err(error) => {
-                // It has not what its version says.
-                self.buffers.forget(name);
-                Err(error)
-            }
-        }
-    }
-
-    fn bind_host_parts(
-        &mut self,
-        (name, buffer): (&str, &wgpu::Buffer),
-        writes: Vec<HostWrite>,
-        on: On,
-    ) -> Result<Bound, Error> {
-        self.geometry.check_host_parts()?;
-        if name == POSITIONS {
-            let written = Written::positions(buffer);
-            return self.kernels.bind(&written, &writes, on.device);
-        }
-        let [positions, indices] = [self.buffer(POSITIONS, on)?, self.buffer(INDICES, on)?];
-        if name == NORMALS {
-            let written = Written::normals(buffer, [&positions, &indices]);
-            return self.kernels.bind(&written, &writes, on.device);
-        }
-        let primitives = self.buffer(BVH_PRIMITIVES, on)?;
-        let written = Written::nodes(buffer, [&positions, &indices, &primitives]);
-        self.kernels.bind(&written, &writes, on.device)
-    }
-
-    /// Uploads the numbers of those triangles that have other corners than before.
-    fn upload_triangles<const N: usize>(
-        &mut self,
-        name: &str,
-        items: &[[u32; N]],
-        on: On,
-    ) -> Result<How, Error> {
-        let (version, held) = (self.version(name), self.buffers.version(name));
-        let mesh = &self.scene.mesh;
-        let held = held.unwrap_or_default();
-        let turned = self.geometry.triangles_since(held, mesh);
-        let turned = turned.iter().map(|range| N * range.start..N * range.end);
-        let (items, changed) = (items.as_flattened(), turned.collect::<Vec<_>>());
-        self.buffers
-            .patch_list(name, items, &changed, version, on)?;
-        Ok(How::Made)
-    }
-
-    /// Uploads the items behind those that were there, of a list that only grows.
-    fn upload_appended<T: bytemuck::NoUninit + bytemuck::Zeroable>(
-        &mut self,
-        name: &str,
-        items: &[T],
-        on: On,
-    ) -> Result<How, Error> {
-        let (version, held) = (self.version(name), self.buffers.version(name));
-        if held.is_none_or(|held| self.geometry.is_begun_after(held)) {
-            return self.upload_items(name, items, on);
-        }
-        self.buffers.extend(name, items, version, on)?;
-        Ok(How::Made)
-    }
-
-    fn upload_tree<N: bytemuck::Pod>(
-        &mut self,
-        [nodes, primitives]: [&str; 2],
-        tree: Tree<N>,
-        on: On,
-    ) -> Result<How, Error> {
-        self.upload_items(nodes, &tree.nodes, on)?;
-        let version = self.versions.get(primitives);
-        match tree.primitives {
-            Some(items) => drop(self.upload_items(primitives, &items, on)?),
-            None => self.buffers.still_hold(primitives, version),
-        }
-        Ok(tree.how)
-    }
-
-    fn light_uniform(&mut self, light: LightKind) -> LightUniform {
-        self.geometry.lay(light, &self.scene.mesh)
-    }
-
-    /// The light, if it can be used; of the scene's lights the error names which one it is.
-    fn checked(&self, light: LightKind) -> Result<LightKind, Error> {
-        let Err(reason) = light.check() else {
-            return Ok(light);
-        };
-        let mut lights = self.scene.lights.iter();
-        // Numbers that are none equal nothing, but their mistakes do.
-        let named = lights.find(|light| light.kind.check().as_ref() == Err(&reason));
-        let named = named.and_then(|light| light.check().err());
-        Err(Error::Light(named.unwrap_or(reason)))
-    }
-
-    fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
-        if self.light().directional().is_none() {
-            return Err(Error::LightSpaceKind(self.light().word()));
-        }
-        if let Some(part) = self.geometry.a_host_part() {
-            return Err(Error::OnDevice(LIGHT_SPACE_NODES, part));
-        }
-        let light = self.light_uniform(self.light());
-        let space = LightSpace {
-            direction: light.to_light,
-            centre: light.centre,
-        };
-        // As in the other hierarchy, leaves are joined where there are too many nodes to bind; the
-        // last item is the centre.
-        let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64 - 1;
-        if self.geometry.is_in_parts() {
-            // An eighth of the scene's size nearer or farther, boxes are as tight.
-            let space = (space, light.max_distance / 16.0);
-            return self.upload_light_space_of_parts(space, most as usize, on);
-        }
-        let mesh = &self.scene.mesh;
-        let tree = self.geometry.light_space(space, mesh, most as usize)?;
-        self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
-    }
-
-    fn upload_light_space_of_parts(
-        &mut self,
-        space: (LightSpace, f32),
-        most: usize,
-        on: On,
-    ) -> Result<How, Error> {
-        let version = self.version(LIGHT_SPACE_NODES);
-        let (mesh, versions) = (&self.scene.mesh, [self.versions.shape, version]);
-        let geometry = &mut self.geometry;
-        let parted = geometry.light_space_of_parts(space, mesh, most, versions)?;
-        let buffers = &mut self.buffers;
-        let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
-        let is_held = names.map(|name| buffers.take_up(name, parted.since));
-        let [nodes, primitives] = parted.changed;
-        let nodes = if is_held[0] {
-            nodes
-        } else {
-            all(parted.nodes.len())
-        };
-        buffers.patch_list(names[0], &parted.nodes, &nodes, version, on)?;
-        let items = &parted.tree.primitives;
-        let primitives = if is_held[1] {
-            primitives
-        } else {
-            all(items.len())
-        };
-        buffers.patch_list(names[1], items, &primitives, version, on)?;
-        for name in names {
-            buffers.leave(name, parted.since, version);
-        }
-        Ok(if parted.since == 0 {
-            How::Made
-        } else {
-            How::Refitted
-        })
-    }
-
-    fn upload_named(&mut self, name: &str, on: On) -> Result<How, Error> {
-        let scene = Arc::clone(&self.scene);
-        let mesh = &scene.mesh;
-        match name {
-            POSITIONS => self.upload_corners(name, (&mesh.positions, 1.0), on),
-            NORMALS => self.upload_corners(name, (&mesh.normals, 0.0), on),
-            INDICES => self.upload_triangles(name, &mesh.triangles, on),
-            NORMAL_INDICES => self.upload_triangles(name, &mesh.normal_indices, on),
-            ADJACENCY => {
-                let opposite = self.geometry.adjacency(mesh, self.version(name));
-                self.upload_triangles(name, opposite.as_chunks::<3>().0, on)
-            }
-            MASKS => self.upload_items(name, &Arc::clone(&self.masks), on),
-            SHEETS => self.upload_items(name, Arc::clone(&self.sheets).words(), on),
-            UVS => self.upload_appended(name, &mesh.surfaces.uvs, on),
-            UV_INDICES => self.upload_triangles(name, &mesh.surfaces.uv_indices, on),
-            MATERIAL_INDICES => {
-                self.upload_triangles(name, mesh.surfaces.of.as_chunks::<1>().0, on)
-            }
-            MATERIALS | TEXELS => {
-                Arc::make_mut(&mut self.atlas).append(&mesh.surfaces)?;
-                let atlas = Arc::clone(&self.atlas);
-                if !self.geometry.is_in_parts() {
-                    // No other materials come, so that it is not worth its memory.
-                    self.atlas = Arc::default();
-                }
-                match name {
-                    MATERIALS => self.upload_appended(name, &atlas.records, on),
-                    _ => self.upload_appended(name, &atlas.texels, on),
-                }
-            }
-            CAMERA => self.upload_items(name, &[self.versions.eye.now.finite()?.camera], on),
-            UNPROJECTION => {
-                self.upload_items(name, &[self.versions.eye.now.finite()?.unprojection], on)
-            }
-            LIGHT => {
-                let light = self.checked(self.light())?;
-                let light = self.light_uniform(light);
-                self.upload_items(name, &[light], on)
-            }
-            LIGHT_AREA => {
-                let light = self.checked(self.light())?;
-                self.upload_items(name, &[LightAreaUniform::from(&light)], on)
-            }
-            BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
-            LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
-            _ => {
-                for &light in self.lights() {
-                    self.checked(light)?;
-                }
-                let lights = &self.versions.lights.now;
-                let lay = |light| self.geometry.lay(light, mesh);
-                let content = lights::content(name, lights, lay);
-                let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| unknown(name));
-                self.upload_items(name, &content.ok_or_else(missing)?, on)
-            }
         }
     }
 
@@ -574,7 +220,7 @@ impl SceneProvider {
     /// Returns the provider's scene. Its mesh is the one that was set last, in its current shape:
     /// with parts moved and positions deformed.
     pub fn scene(&self) -> &Arc<Scene> {
-        &self.scene
+        &self.uploads.scene
     }
 
     /// Sets the camera of a view on a viewport of `[width, height]` pixels, and the view's light:
@@ -582,13 +228,13 @@ impl SceneProvider {
     /// scene's lights, or the view's light alone if it is none of these.
     pub fn set_view(&mut self, view: &View, viewport: [u32; 2]) {
         self.set_camera(&view.camera(viewport));
-        let light = self.scene.light_of(view);
-        let mut lights = lights::from_scene(&self.scene);
+        let light = self.uploads.scene.light_of(view);
+        let mut lights = lights::from_scene(&self.uploads.scene);
         // A view may be under one of the scene's lights, or have one of its own.
         if !lights.contains(&light) {
             lights = vec![light];
         }
-        self.versions.set_lights(lights);
+        self.uploads.versions.set_lights(lights);
         self.set_light(light);
     }
 
@@ -602,12 +248,12 @@ impl SceneProvider {
 
     /// Sets the camera to a host program's own, which [`Eye::new`] makes from its matrices.
     pub fn set_eye(&mut self, eye: &Eye) {
-        self.versions.eye.set(*eye);
+        self.uploads.versions.eye.set(*eye);
     }
 
     /// Returns the light that was set last: the resources `light` and `light_area` describe it.
     pub fn light(&self) -> LightKind {
-        self.versions.light.light.now
+        self.uploads.versions.light.light.now
     }
 
     /// Returns the index of [`light`](Self::light) in [`lights`](Self::lights); 0 if it is not in
@@ -623,7 +269,7 @@ impl SceneProvider {
     /// scene, in the scene's order (its default light if it has none); or only a view's own light,
     /// if [`set_view`](Self::set_view) was given a view with a light that the scene does not list.
     pub fn lights(&self) -> &[LightKind] {
-        &self.versions.lights.now
+        &self.uploads.versions.lights.now
     }
 
     /// Sets the light that the resources `light` and `light_area` describe;
@@ -634,7 +280,7 @@ impl SceneProvider {
     /// that cannot be used, such as one without a direction, is an error of the next refresh, too
     /// ([`Error::Light`]).
     pub fn set_light(&mut self, light: LightKind) {
-        self.versions.set_light(light);
+        self.uploads.versions.set_light(light);
     }
 
     /// Sets the lights that the resources `lights` and `light_areas` describe, all at once;
@@ -652,7 +298,7 @@ impl SceneProvider {
     /// list. The lights then stay as they were.
     pub fn set_lights(&mut self, lights: &[LightKind]) -> Result<(), Error> {
         lights::check(lights)?;
-        self.versions.set_lights(lights.to_vec());
+        self.uploads.versions.set_lights(lights.to_vec());
         Ok(())
     }
 
@@ -660,13 +306,13 @@ impl SceneProvider {
     /// triangles and other items: if they change, graphs must be planned anew
     /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
     pub fn set_mesh(&mut self, mesh: Mesh) {
-        self.masks = mask_words(&mesh).into();
-        self.sheets = Sheets::new(&mesh).into();
-        Arc::make_mut(&mut self.scene).mesh = mesh;
-        self.atlas = Arc::default();
-        self.geometry = self.geometry.replaced_by(Geometry::whole());
+        self.uploads.masks = mask_words(&mesh).into();
+        self.uploads.sheets = Sheets::new(&mesh).into();
+        Arc::make_mut(&mut self.uploads.scene).mesh = mesh;
+        self.uploads.atlas = Arc::default();
+        self.uploads.geometry = self.uploads.geometry.replaced_by(Geometry::whole());
         self.structures = Structures::default();
-        self.versions.change_mesh();
+        self.uploads.versions.change_mesh();
     }
 
     /// Replaces the mesh by one that is cut into parts, which
@@ -677,7 +323,7 @@ impl SceneProvider {
     pub fn set_parts(&mut self, parts: impl Into<Arc<Movable>>) {
         let parts = parts.into();
         self.set_mesh(parts.rest.clone());
-        self.geometry = self.geometry.replaced_by(Geometry::parted(parts));
+        self.uploads.geometry = self.uploads.geometry.replaced_by(Geometry::parted(parts));
     }
 
     /// Deforms the mesh: replaces the positions (world space, scene units) and unit normals of
@@ -696,10 +342,10 @@ impl SceneProvider {
     /// number that is not finite, [`Error::OnDevice`] for a mesh with parts of hosts' buffers. The
     /// mesh then stays as it was.
     pub fn deform(&mut self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<(), Error> {
-        if let Some(part) = self.geometry.a_host_part() {
+        if let Some(part) = self.uploads.geometry.a_host_part() {
             return Err(Error::OnDevice("deform", part));
         }
-        let mesh = &self.scene.mesh;
+        let mesh = &self.uploads.scene.mesh;
         let expected = [mesh.positions.len(), mesh.normals.len()];
         let given = [positions.len(), normals.len()];
         if given != expected {
@@ -711,10 +357,10 @@ impl SceneProvider {
                 return Err(Error::NotFinite { what, index, value });
             }
         }
-        if self.geometry.deform(mesh, &positions, &normals) {
-            let mesh = &mut Arc::make_mut(&mut self.scene).mesh;
+        if self.uploads.geometry.deform(mesh, &positions, &normals) {
+            let mesh = &mut Arc::make_mut(&mut self.uploads.scene).mesh;
             (mesh.positions, mesh.normals) = (positions, normals);
-            self.versions.change_shape();
+            self.uploads.versions.change_shape();
         }
         Ok(())
     }
@@ -731,8 +377,11 @@ impl SceneProvider {
     /// is not the number of parts, or a map is singular, not finite, or moves a position beyond
     /// f32; the error names the part of such a map. The mesh then stays as it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
-        let change = self.geometry.set_transforms(maps, &mut self.scene)?;
-        self.note_change(change);
+        let change = self
+            .uploads
+            .geometry
+            .set_transforms(maps, &mut self.uploads.scene)?;
+        self.uploads.note_change(change);
         Ok(())
     }
 
@@ -742,8 +391,11 @@ impl SceneProvider {
     /// [`Error::NoPart`] for a part that the mesh does not have; [`Error::Move`] for a map that is
     /// singular, not finite, or moves a position beyond f32. The mesh then stays as it was.
     pub fn set_transform(&mut self, part: PartId, map: &DAffine3) -> Result<(), Error> {
-        let change = self.geometry.set_transform(part, map, &mut self.scene)?;
-        self.note_change(change);
+        let change = self
+            .uploads
+            .geometry
+            .set_transform(part, map, &mut self.uploads.scene)?;
+        self.uploads.note_change(change);
         Ok(())
     }
 
@@ -752,7 +404,7 @@ impl SceneProvider {
     /// [`set_parts`](Self::set_parts) or [`from_parts`](Self::from_parts) was given, then the parts
     /// that were [added](Self::add_part) later.
     pub fn parts(&self) -> impl Iterator<Item = PartId> {
-        self.geometry.parts().iter().copied()
+        self.uploads.geometry.parts().iter().copied()
     }
 
     /// Makes room for parts that [`add_part`](Self::add_part) and
@@ -767,11 +419,13 @@ impl SceneProvider {
     /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::TooLarge`] if the device
     /// cannot bind the mesh with that room. The mesh then stays as it was.
     pub fn reserve(&mut self, room: Room, limits: &wgpu::Limits) -> Result<(), Error> {
-        self.geometry.limit = Some(binding_limit(limits));
-        self.geometry.reserve(room, &mut self.scene)?;
-        self.masks = mask_words(&self.scene.mesh).into();
-        self.put_sheets(&Mesh::default(), 0);
-        self.versions.change_mesh();
+        self.uploads.geometry.limit = Some(binding_limit(limits));
+        self.uploads
+            .geometry
+            .reserve(room, &mut self.uploads.scene)?;
+        self.uploads.masks = mask_words(&self.uploads.scene.mesh).into();
+        self.uploads.put_sheets(&Mesh::default(), 0);
+        self.uploads.versions.change_mesh();
         Ok(())
     }
 
@@ -800,9 +454,13 @@ impl SceneProvider {
     /// [`reserve`](Self::reserve) was given. The mesh then stays as it was. If `reserve` was not
     /// called, a mesh that the device cannot bind is an error of the next refresh instead.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
-        let (part, change) = self.geometry.add(mesh, map, &mut self.scene)?;
-        self.put_sheets(mesh, self.geometry.part(part)?.at.triangle);
-        self.note_change(change);
+        let (part, change) = self
+            .uploads
+            .geometry
+            .add(mesh, map, &mut self.uploads.scene)?;
+        self.uploads
+            .put_sheets(mesh, self.uploads.geometry.part(part)?.at.triangle);
+        self.uploads.note_change(change);
         Ok(part)
     }
 
@@ -825,9 +483,15 @@ impl SceneProvider {
     /// than the provider's resources.
     pub fn add_host_part(&mut self, mesh: &HostMesh, map: &DAffine3) -> Result<PartId, Error> {
         self.check_mesh(mesh)?;
-        let (part, change) = self.geometry.add_host(mesh, map, &mut self.scene)?;
-        self.put_sheets(&mesh.movable().rest, self.geometry.part(part)?.at.triangle);
-        self.note_change(change);
+        let (part, change) = self
+            .uploads
+            .geometry
+            .add_host(mesh, map, &mut self.uploads.scene)?;
+        self.uploads.put_sheets(
+            &mesh.movable().rest,
+            self.uploads.geometry.part(part)?.at.triangle,
+        );
+        self.uploads.note_change(change);
         Ok(part)
     }
 
@@ -841,8 +505,8 @@ impl SceneProvider {
     /// [`Error::OtherDevice`] if the mesh is on another device than the provider's resources.
     pub fn set_host_mesh(&mut self, mesh: &HostMesh) -> Result<usize, Error> {
         self.check_mesh(mesh)?;
-        let (parts, change) = self.geometry.set_host_mesh(mesh);
-        self.note_change(change);
+        let (parts, change) = self.uploads.geometry.set_host_mesh(mesh);
+        self.uploads.note_change(change);
         Ok(parts)
     }
 
@@ -869,8 +533,8 @@ impl SceneProvider {
     /// not, [`Error::Bounds`] for bounds that hold nothing, [`Error::Move`] for bounds that the
     /// part's map moves beyond f32.
     pub fn rewrite_part(&mut self, part: PartId, bounds: [Vec3; 2]) -> Result<(), Error> {
-        let change = self.geometry.rewrite(part, bounds)?;
-        self.note_change(change);
+        let change = self.uploads.geometry.rewrite(part, bounds)?;
+        self.uploads.note_change(change);
         Ok(())
     }
 
@@ -888,13 +552,15 @@ impl SceneProvider {
         queue: &wgpu::Queue,
     ) -> Result<(), Error> {
         self.check_device(device)?;
-        self.geometry.check_host_parts()?;
-        let writes = self.geometry.host_writes(None).into_iter();
+        self.uploads.geometry.check_host_parts()?;
+        let writes = self.uploads.geometry.host_writes(None).into_iter();
         let writes = HostWrite::sorted(writes.map(|(_, write)| write).collect());
         if writes.is_empty() {
             return Ok(());
         }
-        self.kernels.check_bounds(&writes, On { device, queue })
+        self.uploads
+            .kernels
+            .check_bounds(&writes, On { device, queue })
     }
 
     /// Removes a part. From the next [`refresh`](skiagraph_gpu::Executor::refresh) of an executor
@@ -906,191 +572,11 @@ impl SceneProvider {
     /// # Errors
     /// [`Error::NoPart`] for a part that the mesh does not have.
     pub fn remove_part(&mut self, part: PartId) -> Result<(), Error> {
-        let change = self.geometry.remove(part, &mut self.scene)?;
-        self.note_change(change);
+        let change = self
+            .uploads
+            .geometry
+            .remove(part, &mut self.uploads.scene)?;
+        self.uploads.note_change(change);
         Ok(())
-    }
-
-    /// Notes which triangles of a part that was put into the mesh are sheets.
-    fn put_sheets(&mut self, part: &Mesh, first: usize) {
-        let total = self.scene.mesh.triangles.len();
-        Arc::make_mut(&mut self.sheets).put(part, first, total);
-    }
-
-    fn note_change(&mut self, change: Change) {
-        if change.is_grown {
-            self.versions.change_mesh();
-        }
-        if change.is_turned || change.is_painted {
-            // Texture coordinates come in the order of corners.
-            self.masks = mask_words(&self.scene.mesh).into();
-            self.versions.change_winding();
-        }
-        if change.is_painted {
-            self.versions.change_surfaces();
-        }
-        if change.is_elsewhere || change.is_turned {
-            self.versions.change_shape();
-        }
-    }
-}
-
-/// Names of the resources that every provider has.
-fn known() -> impl Iterator<Item = String> {
-    let names = NAMES.iter().copied();
-    let names = names.filter(|name| *name != EMBREE || cfg!(feature = "embree"));
-    names.map(str::to_owned)
-}
-
-fn unknown(name: &str) -> Error {
-    Error::Unknown {
-        name: name.to_owned(),
-        known: known().collect(),
-    }
-}
-
-impl Describe for SceneProvider {
-    fn names(&self) -> Vec<String> {
-        known().chain(lights::names(self.lights().len())).collect()
-    }
-
-    fn describe(&self, name: &str) -> Option<Provided> {
-        let mesh = &self.scene.mesh;
-        let corners = 3 * mesh.triangles.len();
-        let bound = |binding, items: Option<usize>, stride: usize| {
-            Some(Provided::new(
-                binding,
-                items.map(|items| items as u64),
-                stride as u64,
-            ))
-        };
-        let array = |items, stride| bound(ProvidedBinding::Storage, items, stride);
-        let uniform = |bytes| bound(ProvidedBinding::Uniform, Some(1), bytes);
-        match name {
-            POSITIONS => array(Some(mesh.positions.len()), 16),
-            INDICES | NORMAL_INDICES | ADJACENCY => array(Some(corners), 4),
-            NORMALS => array(Some(mesh.normals.len()), 16),
-            // Known only once the hierarchy is built.
-            BVH_NODES | LIGHT_SPACE_NODES => array(None, 32),
-            BVH_PRIMITIVES | LIGHT_SPACE_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
-            TLAS => Some(Provided::ACCELERATION_STRUCTURE),
-            EMBREE => cfg!(feature = "embree").then_some(Provided::CPU_WORK),
-            MASKS => array(Some(self.masks.len()), 4),
-            SHEETS => array(Some(self.sheets.words().len()), 4),
-            UVS => array(Some(mesh.surfaces.uvs.len()), 8),
-            UV_INDICES => array(Some(3 * mesh.surfaces.uv_indices.len()), 4),
-            MATERIALS => array(Some(mesh.surfaces.materials.len()), 32),
-            MATERIAL_INDICES => array(Some(mesh.surfaces.of.len()), 4),
-            // Known only once the textures are read.
-            TEXELS => array(None, 4),
-            CAMERA => uniform(size_of::<CameraUniform>()),
-            UNPROJECTION => uniform(size_of::<UnprojectionUniform>()),
-            LIGHT => uniform(size_of::<LightUniform>())
-                .map(|light| light.with_kind(lights::provided_kind(&self.light()))),
-            LIGHT_AREA => uniform(size_of::<LightAreaUniform>()),
-            name => lights::describe(name, self.lights()),
-        }
-    }
-}
-
-impl Provider for SceneProvider {
-    fn version(&self, name: &str) -> u64 {
-        if name == TLAS {
-            return self.structures.version(self.versions.shape);
-        }
-        let of_lights = lights::version(name, &self.versions);
-        of_lights.unwrap_or_else(|| self.versions.get(name))
-    }
-
-    fn has_versions(&self) -> bool {
-        true
-    }
-
-    fn device(&self) -> Option<&DeviceIdentity> {
-        self.device.as_ref()
-    }
-
-    fn missing(&self, name: &str) -> Option<String> {
-        let is_of_shape = is_of_shape(name) || lights::describe(name, self.lights()).is_some();
-        (self.geometry.is_unplaced() && is_of_shape).then(|| {
-            "the parts of the mesh have no places yet: call `SceneProvider::set_transforms`, then \
-             `Executor::refresh`"
-                .to_owned()
-        })
-    }
-
-    fn build(
-        &mut self,
-        name: &str,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<wgpu::Buffer, ProviderError> {
-        let checked = self.check_device(device);
-        let buffer = checked.and_then(|()| self.buffer(name, On { device, queue }));
-        buffer.map_err(ProviderError::from_error)
-    }
-
-    fn submit_built(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<(), ProviderError> {
-        let submitted = self.buffers.submit(On { device, queue });
-        submitted.map_err(ProviderError::from_error)
-    }
-
-    fn build_acceleration_structure(
-        &mut self,
-        name: &str,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-    ) -> Result<wgpu::Tlas, ProviderError> {
-        let why = |error: Error| ProviderError::from_error(error);
-        if name != TLAS {
-            return Err(why(unknown(name)));
-        }
-        self.check_device(device).map_err(why)?;
-        let on = On { device, queue };
-        let vertices = self.buffer(POSITIONS, on).map_err(why)?;
-        let indices = self.buffer(INDICES, on).map_err(why)?;
-        // It is built of what they hold.
-        self.submit_built(device, queue)?;
-        let began = self.begin();
-        let tlas = self.structures.get(Source {
-            mesh: &self.scene.mesh,
-            geometry: &self.geometry,
-            buffers: [&vertices, &indices],
-            shape: self.versions.shape,
-            device,
-            queue,
-        });
-        let (tlas, triangles) = tlas.map_err(why)?;
-        if let Some(triangles) = triangles {
-            self.geometry.work.triangles += triangles as u64;
-            self.note(TLAS, How::Made, began);
-        }
-        Ok(tlas)
-    }
-
-    #[cfg(feature = "embree")]
-    fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
-        let why = |error: Error| ProviderError::from_error(error);
-        if name != EMBREE {
-            return Err(why(unknown(name)));
-        }
-        let version = self.versions.get(EMBREE);
-        if let Some((embree, held)) = &self.embree
-            && *held == version
-        {
-            return Ok(embree.clone());
-        }
-        if let Some(part) = self.geometry.a_host_part() {
-            return Err(why(Error::OnDevice(EMBREE, part)));
-        }
-        let began = self.begin();
-        let embree = Arc::new(crate::embree::Embree::build(&self.scene).map_err(why)?);
-        self.embree = Some((embree.clone(), version));
-        self.note(EMBREE, How::Made, began);
-        Ok(embree)
     }
 }

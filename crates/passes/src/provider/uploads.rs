@@ -1,0 +1,444 @@
+//! The scene, and the buffers that it is uploaded to.
+
+use crate::{
+    atlas::Atlas,
+    buffers::{Buffers, On, Patched, binding_limit},
+    built::{Built, How},
+    error::Error,
+    eye::Eye,
+    geometry::{Change, Geometry, nodes_to_walk},
+    hierarchies::{Tree, all},
+    host_buffers::{Bound, HostWrite, Kernels, Written},
+    lights,
+    names::*,
+    uniforms::{LightAreaUniform, LightUniform},
+};
+use glam::{Vec3, Vec4};
+use skiagraph_scene::{
+    BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets, packed_masks::mask_words,
+};
+use std::{ops::Range, sync::Arc, time::Instant};
+
+/// A scene under a camera and lights, and what is uploaded of it.
+#[derive(Clone)]
+pub(super) struct Uploads {
+    pub scene: Arc<Scene>,
+    pub versions: Versions,
+    /// Words of [`MASKS`] and [`SHEETS`], made at once: plans ask how many there are.
+    pub masks: Arc<Vec<u32>>,
+    pub sheets: Arc<Sheets>,
+    pub buffers: Buffers,
+    pub geometry: Geometry,
+    pub kernels: Kernels,
+    /// Materials of the mesh, once they were asked for.
+    pub atlas: Arc<Atlas>,
+    pub built: Vec<Built>,
+}
+
+impl Uploads {
+    pub fn new(scene: Arc<Scene>) -> Self {
+        let lights = lights::from_scene(&scene);
+        Self {
+            versions: Versions::new(Eye::default(), scene.light(), lights),
+            masks: mask_words(&scene.mesh).into(),
+            sheets: Sheets::new(&scene.mesh).into(),
+            scene,
+            buffers: Buffers::default(),
+            geometry: Geometry::whole(),
+            kernels: Kernels::default(),
+            atlas: Arc::default(),
+            built: Vec::new(),
+        }
+    }
+
+    /// The light of the resources `light` and `light_area`.
+    fn light(&self) -> LightKind {
+        self.versions.light.light.now
+    }
+
+    /// The lights of the resources `lights` and `light_areas`.
+    fn lights(&self) -> &[LightKind] {
+        &self.versions.lights.now
+    }
+
+    /// Returns the version of a buffer.
+    pub fn version(&self, name: &str) -> u64 {
+        let of_lights = lights::version(name, &self.versions);
+        of_lights.unwrap_or_else(|| self.versions.get(name))
+    }
+
+    /// The buffer of that name with what is in it now.
+    pub fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
+        let is_parted = self.geometry.is_in_parts();
+        self.buffers.lay_over(self.versions.shape, is_parted);
+        self.buffers.keeps_gaps = self.geometry.a_host_part().is_some();
+        let version = self.version(name);
+        if let Some(buffer) = self.buffers.get(name, version) {
+            return Ok(buffer.clone());
+        }
+        let began = self.begin();
+        let how = self.upload_named(name, on)?;
+        self.note(name, how, began);
+        let buffer = self.buffers.get(name, version);
+        buffer.cloned().ok_or_else(|| unknown(name))
+    }
+
+    /// The time, and the bytes uploaded so far, at which a resource begins to be made.
+    pub fn begin(&self) -> (Instant, u64) {
+        (Instant::now(), self.buffers.work.uploaded)
+    }
+
+    /// Notes what was made; of lights, which list they are of.
+    pub fn note(&mut self, name: &str, how: How, began: (Instant, u64)) {
+        let (time, uploaded) = (began.0.elapsed(), self.buffers.work.uploaded - began.1);
+        let listed = || NAMES.iter().copied().find(|own| *own == name);
+        let Some(name) = lights::list_of(name).or_else(listed) else {
+            return;
+        };
+        match self.built.iter_mut().find(|built| built.name == name) {
+            Some(built) => {
+                (built.how, built.time, built.uploaded) = (how, time, uploaded);
+                built.times += 1;
+            }
+            None => self.built.push(Built {
+                name,
+                how,
+                time,
+                uploaded,
+                times: 1,
+            }),
+        }
+    }
+
+    fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        on: On,
+    ) -> Result<How, Error> {
+        let version = self.version(name);
+        self.buffers.make(name, items, version, on)?;
+        Ok(How::Made)
+    }
+
+    fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
+        // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
+        // to bind, and so the smallest leaves are joined.
+        let most = binding_limit(&on.device.limits()) / size_of::<BvhNode>() as u64;
+        let (version, held) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
+        let mesh = &self.scene.mesh;
+        let fitted = self.geometry.bvh(mesh, most as usize, version, held);
+        let (tree, nodes) = (&fitted.tree, nodes_to_walk(&fitted.tree));
+        let (buffers, changed) = (&mut self.buffers, &fitted.nodes);
+        let patched = buffers.patch_list(BVH_NODES, nodes, changed, version, on)?;
+        let (primitives, changed) = (&tree.primitives, &fitted.primitives);
+        buffers.patch_list(BVH_PRIMITIVES, primitives, changed, version, on)?;
+        let writes = match patched {
+            Patched::All => self.geometry.host_writes(None),
+            _ => self.geometry.host_writes(held),
+        };
+        let with_nodes = |(piece, write): (usize, HostWrite)| {
+            let levels = write.mesh.levels(tree, piece, on.device);
+            let first = tree.nodes_of(piece).start;
+            HostWrite {
+                nodes: Some((first, levels)),
+                ..write
+            }
+        };
+        let writes: Vec<HostWrite> = writes.into_iter().map(with_nodes).collect();
+        self.write_host_parts(BVH_NODES, patched, writes, on)?;
+        Ok(fitted.how)
+    }
+
+    /// Uploads the positions or normals that have changed, with a fourth coordinate.
+    fn upload_corners(
+        &mut self,
+        name: &str,
+        (items, w): (&[Vec3], f32),
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, held) = (self.version(name), self.buffers.version(name));
+        let (held, mesh) = (held.unwrap_or_default(), &self.scene.mesh);
+        let list = (name, items.len());
+        let changed = self.geometry.moved_since(held, list, mesh);
+        let append = |range: Range<usize>, to: &mut Vec<Vec4>| {
+            to.extend(items[range].iter().map(|item| item.extend(w)));
+        };
+        let changed = (items.len(), &changed[..]);
+        let patched = self.buffers.patch(name, changed, append, version, on)?;
+        let since = (patched != Patched::All).then_some(held);
+        let writes = self.geometry.host_writes(since).into_iter();
+        let writes = writes.map(|(_, write)| write).collect();
+        self.write_host_parts(name, patched, writes, on)?;
+        Ok(How::Made)
+    }
+
+    /// Has the GPU write parts of hosts' buffers into the buffer of that name, which was patched.
+    fn write_host_parts(
+        &mut self,
+        name: &str,
+        patched: Patched,
+        writes: Vec<HostWrite>,
+        on: On,
+    ) -> Result<(), Error> {
+        if writes.is_empty() {
+            return Ok(());
+        }
+        let Some(buffer) = self.buffers.renew(name, patched, on) else {
+            return Ok(());
+        };
+        match self.bind_host_parts((name, &buffer), HostWrite::sorted(writes), on) {
+            Ok(bound) => {
+                let uploaded = bound.record(self.buffers.record(name, on));
+                self.buffers.work.uploaded += uploaded;
+                Ok(())
+            }
+            Err(error) => {
+                // It has not what its version says.
+                self.buffers.forget(name);
+                Err(error)
+            }
+        }
+    }
+
+    fn bind_host_parts(
+        &mut self,
+        (name, buffer): (&str, &wgpu::Buffer),
+        writes: Vec<HostWrite>,
+        on: On,
+    ) -> Result<Bound, Error> {
+        self.geometry.check_host_parts()?;
+        if name == POSITIONS {
+            let written = Written::positions(buffer);
+            return self.kernels.bind(&written, &writes, on.device);
+        }
+        let [positions, indices] = [self.buffer(POSITIONS, on)?, self.buffer(INDICES, on)?];
+        if name == NORMALS {
+            let written = Written::normals(buffer, [&positions, &indices]);
+            return self.kernels.bind(&written, &writes, on.device);
+        }
+        let primitives = self.buffer(BVH_PRIMITIVES, on)?;
+        let written = Written::nodes(buffer, [&positions, &indices, &primitives]);
+        self.kernels.bind(&written, &writes, on.device)
+    }
+
+    /// Uploads the numbers of those triangles that have other corners than before.
+    fn upload_triangles<const N: usize>(
+        &mut self,
+        name: &str,
+        items: &[[u32; N]],
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, held) = (self.version(name), self.buffers.version(name));
+        let mesh = &self.scene.mesh;
+        let held = held.unwrap_or_default();
+        let turned = self.geometry.triangles_since(held, mesh);
+        let turned = turned.iter().map(|range| N * range.start..N * range.end);
+        let (items, changed) = (items.as_flattened(), turned.collect::<Vec<_>>());
+        self.buffers
+            .patch_list(name, items, &changed, version, on)?;
+        Ok(How::Made)
+    }
+
+    /// Uploads the items behind those that were there, of a list that only grows.
+    fn upload_appended<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, held) = (self.version(name), self.buffers.version(name));
+        if held.is_none_or(|held| self.geometry.is_begun_after(held)) {
+            return self.upload_items(name, items, on);
+        }
+        self.buffers.extend(name, items, version, on)?;
+        Ok(How::Made)
+    }
+
+    fn upload_tree<N: bytemuck::Pod>(
+        &mut self,
+        [nodes, primitives]: [&str; 2],
+        tree: Tree<N>,
+        on: On,
+    ) -> Result<How, Error> {
+        self.upload_items(nodes, &tree.nodes, on)?;
+        let version = self.versions.get(primitives);
+        match tree.primitives {
+            Some(items) => drop(self.upload_items(primitives, &items, on)?),
+            None => self.buffers.still_hold(primitives, version),
+        }
+        Ok(tree.how)
+    }
+
+    fn light_uniform(&mut self, light: LightKind) -> LightUniform {
+        self.geometry.lay(light, &self.scene.mesh)
+    }
+
+    /// The light, if it can be used; of the scene's lights the error names which one it is.
+    fn checked(&self, light: LightKind) -> Result<LightKind, Error> {
+        let Err(reason) = light.check() else {
+            return Ok(light);
+        };
+        let mut lights = self.scene.lights.iter();
+        // Numbers that are none equal nothing, but their mistakes do.
+        let named = lights.find(|light| light.kind.check().as_ref() == Err(&reason));
+        let named = named.and_then(|light| light.check().err());
+        Err(Error::Light(named.unwrap_or(reason)))
+    }
+
+    fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
+        if self.light().directional().is_none() {
+            return Err(Error::LightSpaceKind(self.light().word()));
+        }
+        if let Some(part) = self.geometry.a_host_part() {
+            return Err(Error::OnDevice(LIGHT_SPACE_NODES, part));
+        }
+        let light = self.light_uniform(self.light());
+        let space = LightSpace {
+            direction: light.to_light,
+            centre: light.centre,
+        };
+        // As in the other hierarchy, leaves are joined where there are too many nodes to bind; the
+        // last item is the centre.
+        let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64 - 1;
+        if self.geometry.is_in_parts() {
+            // An eighth of the scene's size nearer or farther, boxes are as tight.
+            let space = (space, light.max_distance / 16.0);
+            return self.upload_light_space_of_parts(space, most as usize, on);
+        }
+        let mesh = &self.scene.mesh;
+        let tree = self.geometry.light_space(space, mesh, most as usize)?;
+        self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
+    }
+
+    fn upload_light_space_of_parts(
+        &mut self,
+        space: (LightSpace, f32),
+        most: usize,
+        on: On,
+    ) -> Result<How, Error> {
+        let version = self.version(LIGHT_SPACE_NODES);
+        let (mesh, versions) = (&self.scene.mesh, [self.versions.shape, version]);
+        let geometry = &mut self.geometry;
+        let parted = geometry.light_space_of_parts(space, mesh, most, versions)?;
+        let buffers = &mut self.buffers;
+        let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
+        let is_held = names.map(|name| buffers.take_up(name, parted.since));
+        let [nodes, primitives] = parted.changed;
+        let nodes = if is_held[0] {
+            nodes
+        } else {
+            all(parted.nodes.len())
+        };
+        buffers.patch_list(names[0], &parted.nodes, &nodes, version, on)?;
+        let items = &parted.tree.primitives;
+        let primitives = if is_held[1] {
+            primitives
+        } else {
+            all(items.len())
+        };
+        buffers.patch_list(names[1], items, &primitives, version, on)?;
+        for name in names {
+            buffers.leave(name, parted.since, version);
+        }
+        Ok(if parted.since == 0 {
+            How::Made
+        } else {
+            How::Refitted
+        })
+    }
+
+    fn upload_named(&mut self, name: &str, on: On) -> Result<How, Error> {
+        let scene = Arc::clone(&self.scene);
+        let mesh = &scene.mesh;
+        match name {
+            POSITIONS => self.upload_corners(name, (&mesh.positions, 1.0), on),
+            NORMALS => self.upload_corners(name, (&mesh.normals, 0.0), on),
+            INDICES => self.upload_triangles(name, &mesh.triangles, on),
+            NORMAL_INDICES => self.upload_triangles(name, &mesh.normal_indices, on),
+            ADJACENCY => {
+                let opposite = self.geometry.adjacency(mesh, self.version(name));
+                self.upload_triangles(name, opposite.as_chunks::<3>().0, on)
+            }
+            MASKS => self.upload_items(name, &Arc::clone(&self.masks), on),
+            SHEETS => self.upload_items(name, Arc::clone(&self.sheets).words(), on),
+            UVS => self.upload_appended(name, &mesh.surfaces.uvs, on),
+            UV_INDICES => self.upload_triangles(name, &mesh.surfaces.uv_indices, on),
+            MATERIAL_INDICES => {
+                self.upload_triangles(name, mesh.surfaces.of.as_chunks::<1>().0, on)
+            }
+            MATERIALS | TEXELS => {
+                Arc::make_mut(&mut self.atlas).append(&mesh.surfaces)?;
+                let atlas = Arc::clone(&self.atlas);
+                if !self.geometry.is_in_parts() {
+                    // No other materials come, so that it is not worth its memory.
+                    self.atlas = Arc::default();
+                }
+                match name {
+                    MATERIALS => self.upload_appended(name, &atlas.records, on),
+                    _ => self.upload_appended(name, &atlas.texels, on),
+                }
+            }
+            CAMERA => self.upload_items(name, &[self.versions.eye.now.finite()?.camera], on),
+            UNPROJECTION => {
+                self.upload_items(name, &[self.versions.eye.now.finite()?.unprojection], on)
+            }
+            LIGHT => {
+                let light = self.checked(self.light())?;
+                let light = self.light_uniform(light);
+                self.upload_items(name, &[light], on)
+            }
+            LIGHT_AREA => {
+                let light = self.checked(self.light())?;
+                self.upload_items(name, &[LightAreaUniform::from(&light)], on)
+            }
+            BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
+            LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
+            _ => {
+                for &light in self.lights() {
+                    self.checked(light)?;
+                }
+                let lights = &self.versions.lights.now;
+                let lay = |light| self.geometry.lay(light, mesh);
+                let content = lights::content(name, lights, lay);
+                let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| unknown(name));
+                self.upload_items(name, &content.ok_or_else(missing)?, on)
+            }
+        }
+    }
+    /// Notes which triangles of a part that was put into the mesh are sheets.
+    pub fn put_sheets(&mut self, part: &Mesh, first: usize) {
+        let total = self.scene.mesh.triangles.len();
+        Arc::make_mut(&mut self.sheets).put(part, first, total);
+    }
+
+    pub fn note_change(&mut self, change: Change) {
+        if change.is_grown {
+            self.versions.change_mesh();
+        }
+        if change.is_turned || change.is_painted {
+            // Texture coordinates come in the order of corners.
+            self.masks = mask_words(&self.scene.mesh).into();
+            self.versions.change_winding();
+        }
+        if change.is_painted {
+            self.versions.change_surfaces();
+        }
+        if change.is_elsewhere || change.is_turned {
+            self.versions.change_shape();
+        }
+    }
+}
+/// Names of the resources that every provider has.
+pub(super) fn known() -> impl Iterator<Item = String> {
+    let names = NAMES.iter().copied();
+    let names = names.filter(|name| *name != EMBREE || cfg!(feature = "embree"));
+    names.map(str::to_owned)
+}
+
+pub(super) fn unknown(name: &str) -> Error {
+    Error::Unknown {
+        name: name.to_owned(),
+        known: known().collect(),
+    }
+}

@@ -1,66 +1,23 @@
 //! The resources of a scene as plans and executors ask for them.
 
-use super::{
-    SceneProvider,
-    uploads::{known, unknown},
-};
-use crate::{
-    buffers::On,
-    built::How,
-    error::Error,
-    lights,
-    names::*,
-    ray_query::Source,
-    uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
-};
+use super::SceneProvider;
+use crate::{buffers::On, built::How, error::Error, lights, names::*, ray_query::Source};
 #[cfg(feature = "embree")]
 use skiagraph_gpu::CpuWork;
 use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
-use skiagraph_graph::{Describe, Provided, ProvidedBinding};
+use skiagraph_graph::{Describe, Provided};
 #[cfg(feature = "embree")]
 use std::sync::Arc;
 
 impl Describe for SceneProvider {
     fn names(&self) -> Vec<String> {
-        known().chain(lights::names(self.lights().len())).collect()
+        let lights = lights::names(self.lights().len());
+        self.uploads.names().chain(lights).collect()
     }
 
     fn describe(&self, name: &str) -> Option<Provided> {
-        let mesh = &self.uploads.scene.mesh;
-        let corners = 3 * mesh.triangles.len();
-        let bound = |binding, items: Option<usize>, stride: usize| {
-            Some(Provided::new(
-                binding,
-                items.map(|items| items as u64),
-                stride as u64,
-            ))
-        };
-        let array = |items, stride| bound(ProvidedBinding::Storage, items, stride);
-        let uniform = |bytes| bound(ProvidedBinding::Uniform, Some(1), bytes);
-        match name {
-            POSITIONS => array(Some(mesh.positions.len()), 16),
-            INDICES | NORMAL_INDICES | ADJACENCY => array(Some(corners), 4),
-            NORMALS => array(Some(mesh.normals.len()), 16),
-            // Known only once the hierarchy is built.
-            BVH_NODES | LIGHT_SPACE_NODES => array(None, 32),
-            BVH_PRIMITIVES | LIGHT_SPACE_PRIMITIVES => array(Some(mesh.triangles.len()), 4),
-            TLAS => Some(Provided::ACCELERATION_STRUCTURE),
-            EMBREE => cfg!(feature = "embree").then_some(Provided::CPU_WORK),
-            MASKS => array(Some(self.uploads.masks.len()), 4),
-            SHEETS => array(Some(self.uploads.sheets.words().len()), 4),
-            UVS => array(Some(mesh.surfaces.uvs.len()), 8),
-            UV_INDICES => array(Some(3 * mesh.surfaces.uv_indices.len()), 4),
-            MATERIALS => array(Some(mesh.surfaces.materials.len()), 32),
-            MATERIAL_INDICES => array(Some(mesh.surfaces.of.len()), 4),
-            // Known only once the textures are read.
-            TEXELS => array(None, 4),
-            CAMERA => uniform(size_of::<CameraUniform>()),
-            UNPROJECTION => uniform(size_of::<UnprojectionUniform>()),
-            LIGHT => uniform(size_of::<LightUniform>())
-                .map(|light| light.with_kind(lights::provided_kind(&self.light()))),
-            LIGHT_AREA => uniform(size_of::<LightAreaUniform>()),
-            name => lights::describe(name, self.lights()),
-        }
+        let resource = self.uploads.find(name)?;
+        (resource.describe)(&self.uploads, name)
     }
 }
 
@@ -81,8 +38,13 @@ impl Provider for SceneProvider {
     }
 
     fn missing(&self, name: &str) -> Option<String> {
-        let is_of_shape = is_of_shape(name) || lights::describe(name, self.lights()).is_some();
-        (self.uploads.geometry.is_unplaced() && is_of_shape).then(|| {
+        let made_from = self.uploads.find(name)?.made_from;
+        let is_free = matches!(
+            made_from,
+            MadeFrom::Eye | MadeFrom::Light | MadeFrom::Winding | MadeFrom::Mesh
+        );
+        let is_placed = !is_free && self.describe(name).is_some();
+        (self.uploads.geometry.is_unplaced() && is_placed).then(|| {
             "the parts of the mesh have no places yet: call `SceneProvider::set_transforms`, then \
              `Executor::refresh`"
                 .to_owned()
@@ -117,7 +79,7 @@ impl Provider for SceneProvider {
     ) -> Result<wgpu::Tlas, ProviderError> {
         let why = |error: Error| ProviderError::from_error(error);
         if name != TLAS {
-            return Err(why(unknown(name)));
+            return Err(why(self.uploads.unknown(name)));
         }
         self.check_device(device).map_err(why)?;
         let on = On { device, queue };
@@ -146,9 +108,9 @@ impl Provider for SceneProvider {
     fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
         let why = |error: Error| ProviderError::from_error(error);
         if name != EMBREE {
-            return Err(why(unknown(name)));
+            return Err(why(self.uploads.unknown(name)));
         }
-        let version = self.uploads.versions.get(EMBREE);
+        let version = self.uploads.version(EMBREE);
         if let Some((embree, held)) = &self.embree
             && *held == version
         {

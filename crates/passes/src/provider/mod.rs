@@ -1,6 +1,7 @@
 //! The scene as resources of a graph, each uploaded when a live pass first asks for it.
 
 mod build;
+mod resources;
 mod uploads;
 
 use crate::{
@@ -29,32 +30,7 @@ use uploads::Uploads;
 /// triangles, with their index in [`Mesh::triangles`] as id. Positions are welded: corners of equal
 /// position share one.
 ///
-/// | resource | content |
-/// |---|---|
-/// | `scene.positions` | `array<vec4<f32>>`, welded, w = 1 |
-/// | `scene.indices` | `array<u32>`, three per primitive |
-/// | `scene.normals` | `array<vec4<f32>>`, unit length, w = 0 |
-/// | `scene.normal_indices` | `array<u32>`, three per primitive |
-/// | `scene.adjacency` | `array<u32>`, three per primitive: [`Adjacency::opposite`] |
-/// | `scene.bvh_nodes` | 32-byte [`BvhNode`]s, node 0 is the root |
-/// | `scene.bvh_primitives` | `array<u32>`, primitive ids in leaf order |
-/// | `scene.light_space_nodes` | 32-byte [`LightSpaceNode`]s, node 0 the root; last the [centre] |
-/// | `scene.light_space_primitives` | `array<u32>`, primitive ids in their leaf order |
-/// | `scene.tlas` | `acceleration_structure`; primitive id = custom data + primitive index |
-/// | `scene.embree` | work for the CPU, with the feature `embree` |
-/// | `scene.masks` | `array<u32>`: [`mask_words`], what `shared/masks.wgsl` reads |
-/// | `scene.sheets` | `array<u32>`: a bit per primitive, set for [`Sheets`] |
-/// | `scene.uvs` | `array<vec2<f32>>`, v down |
-/// | `scene.uv_indices` | `array<u32>`, three per primitive |
-/// | `scene.materials` | 32-byte [`MaterialRecord`](crate::MaterialRecord)s |
-/// | `scene.material_indices` | `array<u32>`, one per primitive |
-/// | `scene.texels` | `array<u32>`, RGBA8 texels of all base-colour textures, sRGB, red lowest |
-/// | `camera` | [`CameraUniform`] |
-/// | `unprojection` | [`UnprojectionUniform`] |
-/// | `light` | [`LightUniform`] |
-/// | `light_area` | [`LightAreaUniform`] |
-/// | `lights` | array of [`LightUniform`], one per light; `lights[2]` alone is a uniform |
-/// | `light_areas` | array of [`LightAreaUniform`]; `light_areas[2]` alone is a uniform |
+#[doc = resources::table!()]
 ///
 /// Resources that are built stay, and are shared by all graphs that are executed with the same
 /// provider. A provider therefore belongs to the device that it was first used with, until it
@@ -74,14 +50,6 @@ use uploads::Uploads;
 /// item, and its hierarchy one leaf around a triangle without area, which no ray hits.
 /// [`Describe::describe`] still says 0 items, so that nothing is drawn.
 ///
-/// [`Adjacency::opposite`]: skiagraph_scene::Adjacency::opposite
-/// [centre]: skiagraph_scene::LightSpaceNode::centre
-/// [`BvhNode`]: skiagraph_scene::BvhNode
-/// [`LightSpaceNode`]: skiagraph_scene::LightSpaceNode
-/// [`CameraUniform`]: crate::uniforms::CameraUniform
-/// [`UnprojectionUniform`]: crate::uniforms::UnprojectionUniform
-/// [`LightUniform`]: crate::uniforms::LightUniform
-/// [`LightAreaUniform`]: crate::uniforms::LightAreaUniform
 /// [`Describe::describe`]: skiagraph_graph::Describe::describe
 #[derive(Clone)]
 pub struct SceneProvider {
@@ -101,7 +69,7 @@ impl SceneProvider {
     /// is called, the resource `light` is the scene's [default light](Scene::light).
     pub fn new(scene: Arc<Scene>) -> Self {
         Self {
-            uploads: Uploads::new(scene),
+            uploads: Uploads::new(scene, resources::RESOURCES),
             structures: Structures::default(),
             device: None,
             #[cfg(feature = "embree")]
@@ -160,9 +128,8 @@ impl SceneProvider {
         if self.device.as_ref().is_some_and(|own| own.is(device)) {
             return;
         }
-        let work = self.uploads.buffers.work;
-        (self.uploads.buffers, self.structures, self.uploads.kernels) = Default::default();
-        self.uploads.buffers.work = work;
+        self.uploads.buffers.clear();
+        (self.structures, self.uploads.kernels) = Default::default();
         self.uploads.geometry.move_to(device);
         self.device = Some(DeviceIdentity::new(device));
     }

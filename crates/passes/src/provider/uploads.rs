@@ -2,7 +2,7 @@
 
 use crate::{
     atlas::Atlas,
-    buffers::{Buffers, On, Patched, binding_limit},
+    buffers::{Buffers, Held, On, Patched, binding_limit},
     built::{Built, How},
     error::Error,
     eye::Eye,
@@ -11,17 +11,29 @@ use crate::{
     host_buffers::{Bound, HostWrite, Kernels, Written},
     lights,
     names::*,
-    uniforms::{LightAreaUniform, LightUniform},
 };
 use glam::{Vec3, Vec4};
+use skiagraph_graph::Provided;
 use skiagraph_scene::{
     BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets, packed_masks::mask_words,
 };
 use std::{ops::Range, sync::Arc, time::Instant};
 
+/// A resource of scenes.
+pub(super) struct Resource {
+    pub name: &'static str,
+    pub made_from: MadeFrom,
+    pub held: Held,
+    /// Describes it to plans; `None` for a light that the scene does not have.
+    pub describe: fn(&Uploads, &str) -> Option<Provided>,
+    /// Uploads it, of the scene's mesh.
+    pub upload: fn(&mut Uploads, &Mesh, &str, On) -> Result<How, Error>,
+}
+
 /// A scene under a camera and lights, and what is uploaded of it.
 #[derive(Clone)]
 pub(super) struct Uploads {
+    resources: &'static [Resource],
     pub scene: Arc<Scene>,
     pub versions: Versions,
     /// Words of [`MASKS`] and [`SHEETS`], made at once: plans ask how many there are.
@@ -36,14 +48,18 @@ pub(super) struct Uploads {
 }
 
 impl Uploads {
-    pub fn new(scene: Arc<Scene>) -> Self {
+    pub fn new(scene: Arc<Scene>, resources: &'static [Resource]) -> Self {
         let lights = lights::from_scene(&scene);
+        let held = resources
+            .iter()
+            .map(|resource| (resource.name, resource.held));
         Self {
             versions: Versions::new(Eye::default(), scene.light(), lights),
             masks: mask_words(&scene.mesh).into(),
             sheets: Sheets::new(&scene.mesh).into(),
             scene,
-            buffers: Buffers::default(),
+            buffers: Buffers::new(held),
+            resources,
             geometry: Geometry::whole(),
             kernels: Kernels::default(),
             atlas: Arc::default(),
@@ -51,20 +67,39 @@ impl Uploads {
         }
     }
 
-    /// The light of the resources `light` and `light_area`.
-    fn light(&self) -> LightKind {
+    pub fn light(&self) -> LightKind {
         self.versions.light.light.now
     }
 
-    /// The lights of the resources `lights` and `light_areas`.
-    fn lights(&self) -> &[LightKind] {
+    pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
     }
 
-    /// Returns the version of a buffer.
+    /// The resource of a name; of a single light, the list.
+    pub fn find(&self, name: &str) -> Option<&'static Resource> {
+        let name = lights::list_of(name).unwrap_or(name);
+        self.resources.iter().find(|resource| resource.name == name)
+    }
+
+    /// Names of the resources that every provider has.
+    pub fn names(&self) -> impl Iterator<Item = String> {
+        let names = self.resources.iter().map(|resource| resource.name);
+        let names = names.filter(|name| lights::list_of(name).is_none());
+        names.map(str::to_owned)
+    }
+
+    pub fn unknown(&self, name: &str) -> Error {
+        Error::Unknown {
+            name: name.to_owned(),
+            known: self.names().collect(),
+        }
+    }
+
+    /// Returns the version of a resource, but for what the device adds to one.
     pub fn version(&self, name: &str) -> u64 {
-        let of_lights = lights::version(name, &self.versions);
-        of_lights.unwrap_or_else(|| self.versions.get(name))
+        let made_from = self.find(name).map(|resource| resource.made_from);
+        let made_from = made_from.unwrap_or(MadeFrom::Mesh);
+        self.versions.get(made_from, lights::number(name))
     }
 
     /// The buffer of that name with what is in it now.
@@ -77,10 +112,12 @@ impl Uploads {
             return Ok(buffer.clone());
         }
         let began = self.begin();
-        let how = self.upload_named(name, on)?;
+        let resource = self.find(name).ok_or_else(|| self.unknown(name))?;
+        let scene = Arc::clone(&self.scene);
+        let how = (resource.upload)(self, &scene.mesh, name, on)?;
         self.note(name, how, began);
         let buffer = self.buffers.get(name, version);
-        buffer.cloned().ok_or_else(|| unknown(name))
+        buffer.cloned().ok_or_else(|| self.unknown(name))
     }
 
     /// The time, and the bytes uploaded so far, at which a resource begins to be made.
@@ -91,8 +128,7 @@ impl Uploads {
     /// Notes what was made; of lights, which list they are of.
     pub fn note(&mut self, name: &str, how: How, began: (Instant, u64)) {
         let (time, uploaded) = (began.0.elapsed(), self.buffers.work.uploaded - began.1);
-        let listed = || NAMES.iter().copied().find(|own| *own == name);
-        let Some(name) = lights::list_of(name).or_else(listed) else {
+        let Some(&Resource { name, .. }) = self.find(name) else {
             return;
         };
         match self.built.iter_mut().find(|built| built.name == name) {
@@ -110,7 +146,7 @@ impl Uploads {
         }
     }
 
-    fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    pub fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
         &mut self,
         name: &str,
         items: &[T],
@@ -121,7 +157,7 @@ impl Uploads {
         Ok(How::Made)
     }
 
-    fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
+    pub fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
         // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
         // to bind, and so the smallest leaves are joined.
         let most = binding_limit(&on.device.limits()) / size_of::<BvhNode>() as u64;
@@ -151,7 +187,7 @@ impl Uploads {
     }
 
     /// Uploads the positions or normals that have changed, with a fourth coordinate.
-    fn upload_corners(
+    pub fn upload_corners(
         &mut self,
         name: &str,
         (items, w): (&[Vec3], f32),
@@ -223,7 +259,7 @@ impl Uploads {
     }
 
     /// Uploads the numbers of those triangles that have other corners than before.
-    fn upload_triangles<const N: usize>(
+    pub fn upload_triangles<const N: usize>(
         &mut self,
         name: &str,
         items: &[[u32; N]],
@@ -241,7 +277,7 @@ impl Uploads {
     }
 
     /// Uploads the items behind those that were there, of a list that only grows.
-    fn upload_appended<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    pub fn upload_appended<T: bytemuck::NoUninit + bytemuck::Zeroable>(
         &mut self,
         name: &str,
         items: &[T],
@@ -262,7 +298,7 @@ impl Uploads {
         on: On,
     ) -> Result<How, Error> {
         self.upload_items(nodes, &tree.nodes, on)?;
-        let version = self.versions.get(primitives);
+        let version = self.version(primitives);
         match tree.primitives {
             Some(items) => drop(self.upload_items(primitives, &items, on)?),
             None => self.buffers.still_hold(primitives, version),
@@ -270,12 +306,8 @@ impl Uploads {
         Ok(tree.how)
     }
 
-    fn light_uniform(&mut self, light: LightKind) -> LightUniform {
-        self.geometry.lay(light, &self.scene.mesh)
-    }
-
     /// The light, if it can be used; of the scene's lights the error names which one it is.
-    fn checked(&self, light: LightKind) -> Result<LightKind, Error> {
+    pub fn checked(&self, light: LightKind) -> Result<LightKind, Error> {
         let Err(reason) = light.check() else {
             return Ok(light);
         };
@@ -286,14 +318,14 @@ impl Uploads {
         Err(Error::Light(named.unwrap_or(reason)))
     }
 
-    fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
+    pub fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
         if self.light().directional().is_none() {
             return Err(Error::LightSpaceKind(self.light().word()));
         }
         if let Some(part) = self.geometry.a_host_part() {
             return Err(Error::OnDevice(LIGHT_SPACE_NODES, part));
         }
-        let light = self.light_uniform(self.light());
+        let light = self.geometry.lay(self.light(), &self.scene.mesh);
         let space = LightSpace {
             direction: light.to_light,
             centre: light.centre,
@@ -348,64 +380,28 @@ impl Uploads {
         })
     }
 
-    fn upload_named(&mut self, name: &str, on: On) -> Result<How, Error> {
-        let scene = Arc::clone(&self.scene);
-        let mesh = &scene.mesh;
-        match name {
-            POSITIONS => self.upload_corners(name, (&mesh.positions, 1.0), on),
-            NORMALS => self.upload_corners(name, (&mesh.normals, 0.0), on),
-            INDICES => self.upload_triangles(name, &mesh.triangles, on),
-            NORMAL_INDICES => self.upload_triangles(name, &mesh.normal_indices, on),
-            ADJACENCY => {
-                let opposite = self.geometry.adjacency(mesh, self.version(name));
-                self.upload_triangles(name, opposite.as_chunks::<3>().0, on)
-            }
-            MASKS => self.upload_items(name, &Arc::clone(&self.masks), on),
-            SHEETS => self.upload_items(name, Arc::clone(&self.sheets).words(), on),
-            UVS => self.upload_appended(name, &mesh.surfaces.uvs, on),
-            UV_INDICES => self.upload_triangles(name, &mesh.surfaces.uv_indices, on),
-            MATERIAL_INDICES => {
-                self.upload_triangles(name, mesh.surfaces.of.as_chunks::<1>().0, on)
-            }
-            MATERIALS | TEXELS => {
-                Arc::make_mut(&mut self.atlas).append(&mesh.surfaces)?;
-                let atlas = Arc::clone(&self.atlas);
-                if !self.geometry.is_in_parts() {
-                    // No other materials come, so that it is not worth its memory.
-                    self.atlas = Arc::default();
-                }
-                match name {
-                    MATERIALS => self.upload_appended(name, &atlas.records, on),
-                    _ => self.upload_appended(name, &atlas.texels, on),
-                }
-            }
-            CAMERA => self.upload_items(name, &[self.versions.eye.now.finite()?.camera], on),
-            UNPROJECTION => {
-                self.upload_items(name, &[self.versions.eye.now.finite()?.unprojection], on)
-            }
-            LIGHT => {
-                let light = self.checked(self.light())?;
-                let light = self.light_uniform(light);
-                self.upload_items(name, &[light], on)
-            }
-            LIGHT_AREA => {
-                let light = self.checked(self.light())?;
-                self.upload_items(name, &[LightAreaUniform::from(&light)], on)
-            }
-            BVH_NODES | BVH_PRIMITIVES => self.upload_hierarchy(on),
-            LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.upload_light_space(on),
-            _ => {
-                for &light in self.lights() {
-                    self.checked(light)?;
-                }
-                let lights = &self.versions.lights.now;
-                let lay = |light| self.geometry.lay(light, mesh);
-                let content = lights::content(name, lights, lay);
-                let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| unknown(name));
-                self.upload_items(name, &content.ok_or_else(missing)?, on)
-            }
+    /// Uploads `lights` or `light_areas`, or one of them.
+    pub fn upload_lights(&mut self, mesh: &Mesh, name: &str, on: On) -> Result<How, Error> {
+        for &light in self.lights() {
+            self.checked(light)?;
         }
+        let lights = &self.versions.lights.now;
+        let content = lights::content(name, lights, |light| self.geometry.lay(light, mesh));
+        let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| self.unknown(name));
+        self.upload_items(name, &content.ok_or_else(missing)?, on)
     }
+
+    /// Returns the mesh's materials.
+    pub fn atlas(&mut self) -> Result<Arc<Atlas>, Error> {
+        Arc::make_mut(&mut self.atlas).append(&self.scene.mesh.surfaces)?;
+        let atlas = Arc::clone(&self.atlas);
+        if !self.geometry.is_in_parts() {
+            // No other materials come, so that it is not worth its memory.
+            self.atlas = Arc::default();
+        }
+        Ok(atlas)
+    }
+
     /// Notes which triangles of a part that was put into the mesh are sheets.
     pub fn put_sheets(&mut self, part: &Mesh, first: usize) {
         let total = self.scene.mesh.triangles.len();
@@ -427,18 +423,5 @@ impl Uploads {
         if change.is_elsewhere || change.is_turned {
             self.versions.change_shape();
         }
-    }
-}
-/// Names of the resources that every provider has.
-pub(super) fn known() -> impl Iterator<Item = String> {
-    let names = NAMES.iter().copied();
-    let names = names.filter(|name| *name != EMBREE || cfg!(feature = "embree"));
-    names.map(str::to_owned)
-}
-
-pub(super) fn unknown(name: &str) -> Error {
-    Error::Unknown {
-        name: name.to_owned(),
-        known: known().collect(),
     }
 }

@@ -386,7 +386,7 @@ impl SceneProvider {
     /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::TooLarge`] if the device
     /// cannot bind the mesh with that room. The mesh then stays as it was.
     pub fn reserve(&mut self, room: Room, limits: &wgpu::Limits) -> Result<(), Error> {
-        self.uploads.geometry.limit = Some(binding_limit(limits));
+        self.uploads.geometry.space.limit = Some(binding_limit(limits));
         self.uploads
             .geometry
             .reserve(room, &mut self.uploads.scene)?;

@@ -4,13 +4,15 @@ use crate::{
     atlas::Atlas,
     buffers::{Buffers, Held, On, Patched, binding_limit},
     built::{Built, How},
+    changes::Change,
     error::Error,
     eye::Eye,
-    geometry::{Change, Geometry, nodes_to_walk},
+    geometry::Geometry,
     hierarchies::{Tree, all},
     host_buffers::{Bound, HostWrite, Kernels, Written},
     lights,
     names::*,
+    trees::nodes_to_walk,
 };
 use glam::{Vec3, Vec4};
 use skiagraph_graph::Provided;
@@ -163,7 +165,8 @@ impl Uploads {
         let most = binding_limit(&on.device.limits()) / size_of::<BvhNode>() as u64;
         let (version, held) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
         let mesh = &self.scene.mesh;
-        let fitted = self.geometry.bvh(mesh, most as usize, version, held);
+        let (trees, mut over) = self.geometry.trees(mesh);
+        let fitted = trees.bvh(&mut over, most as usize, version, held);
         let (tree, nodes) = (&fitted.tree, nodes_to_walk(&fitted.tree));
         let (buffers, changed) = (&mut self.buffers, &fitted.nodes);
         let patched = buffers.patch_list(BVH_NODES, nodes, changed, version, on)?;
@@ -338,8 +341,8 @@ impl Uploads {
             let space = (space, light.max_distance / 16.0);
             return self.upload_light_space_of_parts(space, most as usize, on);
         }
-        let mesh = &self.scene.mesh;
-        let tree = self.geometry.light_space(space, mesh, most as usize)?;
+        let (trees, mut over) = self.geometry.trees(&self.scene.mesh);
+        let tree = trees.light_space(&mut over, space, most as usize)?;
         self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
     }
 
@@ -350,9 +353,9 @@ impl Uploads {
         on: On,
     ) -> Result<How, Error> {
         let version = self.version(LIGHT_SPACE_NODES);
-        let (mesh, versions) = (&self.scene.mesh, [self.versions.shape, version]);
-        let geometry = &mut self.geometry;
-        let parted = geometry.light_space_of_parts(space, mesh, most, versions)?;
+        let versions = [self.versions.shape, version];
+        let (trees, mut over) = self.geometry.trees(&self.scene.mesh);
+        let parted = trees.light_space_of_parts(&mut over, space, most, versions)?;
         let buffers = &mut self.buffers;
         let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
         let is_held = names.map(|name| buffers.take_up(name, parted.since));

@@ -319,6 +319,16 @@ pub(crate) fn scoped<T>(
     }
 }
 
+/// The error of a panic while the host's encoder is written to.
+pub(crate) fn in_encoder(panicked: Panicked) -> ExecuteError {
+    let name = "the encoder".to_owned();
+    if panicked.message.contains("Cannot get ") {
+        let way_out = "make it by the executor's device";
+        return ExecuteError::OtherDevice { name, way_out };
+    }
+    ExecuteError::Panicked { name, panicked }
+}
+
 /// Submits the commands of the frame with this number, or a part of them.
 ///
 /// # Errors

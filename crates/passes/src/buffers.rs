@@ -4,11 +4,19 @@ use crate::{built::Work, error::Error, lights, names::*};
 use std::{collections::BTreeMap, ops::Range};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-/// Number of contents that are kept of a small resource: those of views and lights that take turns.
-const SMALL: usize = 16;
-
-/// Number of contents that are kept of a hierarchy in light space: those of lights that take turns.
-const LIGHT_SPACES: usize = 4;
+/// How buffers of a resource are made, and how many are kept.
+#[derive(Clone, Copy)]
+pub(crate) enum Held {
+    Storage,
+    /// Storage that acceleration structures are built of.
+    Traced,
+    /// A hierarchy in light space: those of lights that take turns are kept.
+    OfLight,
+    /// Those of views and lights that take turns are kept.
+    Uniform,
+    /// A list of lights, or one of them.
+    Lights,
+}
 
 /// Where to.
 #[derive(Clone, Copy)]
@@ -26,6 +34,7 @@ pub(crate) struct On<'a> {
 /// kept: views and lights that take turns find their own.
 #[derive(Clone, Default)]
 pub(crate) struct Buffers {
+    resources: BTreeMap<&'static str, Held>,
     /// The last one was made last.
     held: BTreeMap<String, Vec<(wgpu::Buffer, u64)>>,
     /// Version of the mesh's shape that the lights were laid over.
@@ -68,6 +77,43 @@ pub(crate) enum Patched {
 const GAP: usize = 4096;
 
 impl Buffers {
+    /// Creates the list for these resources, without any buffer.
+    pub fn new(resources: impl Iterator<Item = (&'static str, Held)>) -> Self {
+        Self {
+            resources: resources.collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Drops all buffers.
+    pub fn clear(&mut self) {
+        (self.held, self.shape, self.recorded) = Default::default();
+    }
+
+    fn held_as(&self, name: &str) -> Held {
+        let name = lights::list_of(name).unwrap_or(name);
+        self.resources.get(name).copied().unwrap_or(Held::Storage)
+    }
+
+    /// Makes a buffer as graphs and later contents need it.
+    fn create(&self, name: &str, size: u64, device: &wgpu::Device) -> wgpu::Buffer {
+        let features = device.features();
+        let usage = match self.held_as(name) {
+            Held::Uniform => wgpu::BufferUsages::UNIFORM,
+            Held::Lights => wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE,
+            Held::Traced if features.contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY) => {
+                wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::BLAS_INPUT
+            }
+            Held::Storage | Held::Traced | Held::OfLight => wgpu::BufferUsages::STORAGE,
+        };
+        device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(name),
+            size,
+            usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
     /// Drops what was laid over another shape of the mesh, but for hierarchies of parts, which the
     /// next ones are made from.
     pub fn lay_over(&mut self, shape: u64, is_parted: bool) {
@@ -130,7 +176,7 @@ impl Buffers {
         let content: &[u8] = bytemuck::cast_slice(items);
         let bytes = content.len() as u64;
         check_size(name, bytes, binding_limit(&on.device.limits()))?;
-        let buffer = create(name, bytes, on.device);
+        let buffer = self.create(name, bytes, on.device);
         // Nothing that was encoded reads it yet.
         on.queue.write_buffer(&buffer, 0, content);
         self.work.uploaded += bytes;
@@ -158,8 +204,13 @@ impl Buffers {
 
     /// Keeps a buffer as the last one of that name.
     fn hold(&mut self, name: &str, buffer: wgpu::Buffer, version: u64) {
+        let most = match self.held_as(name) {
+            Held::Storage | Held::Traced => 1,
+            Held::OfLight => 4,
+            Held::Uniform | Held::Lights => 16,
+        };
         let held = self.held.entry(name.to_owned()).or_default();
-        remember(held, (buffer, version), kept_of(name));
+        remember(held, (buffer, version), most);
     }
 
     /// Returns the buffer of that name that was made last, with the version of its content.
@@ -265,7 +316,7 @@ impl Buffers {
         on: On,
     ) {
         let stride = size_of::<T>();
-        let buffer = create(name, (count * stride) as u64, on.device);
+        let buffer = self.create(name, (count * stride) as u64, on.device);
         let encoder = self.record(name, on);
         encoder.copy_buffer_to_buffer(last, 0, &buffer, 0, last.size());
         let (content, usage) = (bytemuck::cast_slice(content), wgpu::BufferUsages::COPY_SRC);
@@ -304,7 +355,7 @@ impl Buffers {
         if patched != Patched::Nothing {
             return Some(last);
         }
-        let buffer = create(name, last.size(), on.device);
+        let buffer = self.create(name, last.size(), on.device);
         let encoder = self.record(name, on);
         encoder.copy_buffer_to_buffer(&last, 0, &buffer, 0, last.size());
         self.work.copied += last.size();
@@ -354,41 +405,6 @@ pub(crate) fn upload(
         contents,
         usage,
     })
-}
-
-/// Makes a buffer as graphs and later contents need it.
-fn create(name: &str, size: u64, device: &wgpu::Device) -> wgpu::Buffer {
-    let usage = usage_of(name, device);
-    device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(name),
-        size,
-        usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
-}
-
-/// Number of contents of a resource that are kept.
-fn kept_of(name: &str) -> usize {
-    match name {
-        CAMERA | UNPROJECTION | LIGHT | LIGHT_AREA => SMALL,
-        LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => LIGHT_SPACES,
-        _ if lights::list_of(name).is_some() => SMALL,
-        _ => 1,
-    }
-}
-
-fn usage_of(name: &str, device: &wgpu::Device) -> wgpu::BufferUsages {
-    let features = device.features();
-    match name {
-        CAMERA | UNPROJECTION | LIGHT | LIGHT_AREA => wgpu::BufferUsages::UNIFORM,
-        POSITIONS | INDICES if features.contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY) => {
-            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::BLAS_INPUT
-        }
-        _ if lights::list_of(name).is_some() => {
-            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE
-        }
-        _ => wgpu::BufferUsages::STORAGE,
-    }
 }
 
 /// The most bytes that a storage buffer can have and be bound whole.

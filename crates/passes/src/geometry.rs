@@ -3,37 +3,24 @@
 
 use crate::{
     adjacencies::Adjacencies,
-    buffers::{binding_limit, check_size},
-    built::{How, Work},
+    buffers::binding_limit,
+    built::Work,
+    changes::{Change, Cleared},
     error::Error,
-    hierarchies::{Fitted, Hierarchies, Parted, Tree, all},
+    hierarchies::all,
     host_buffers::{HostMesh, HostWrite},
-    names::{BVH_NODES, INDICES, NORMALS, POSITIONS, next_version},
+    names::{NORMALS, next_version},
     outlines::Outlines,
     part::{HostPart, Part, placed},
-    parts::{Free, PartId, Room},
-    piece::{Content, Outside, Piece, Solid},
+    parts::{PartId, Room},
+    piece::{Content, Outside, Piece},
+    space::Space,
+    trees::{Over, Trees},
     uniforms::LightUniform,
 };
 use glam::{DAffine3, Vec3};
-use skiagraph_scene::{
-    BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Movable, MoveError, MovedPart, PartPlace,
-    Scene, TwoLevelBvh,
-    bvh::{self, Moved},
-};
-use std::{collections::BTreeMap, ops::Range, sync::Arc};
-
-/// Number of ranges of cleared triangles that are kept apart.
-const CLEARED: usize = 256;
-
-/// Buffers that grow with a [`Room`], each with the bytes of one of its
-/// [numbers](Room::numbers): two nodes of the top level for a part.
-const GROWING: [(&str, u64); 4] = [
-    (BVH_NODES, 2 * size_of::<BvhNode>() as u64),
-    (POSITIONS, 16),
-    (NORMALS, 16),
-    (INDICES, 12),
-];
+use skiagraph_scene::{LightKind, Mesh, Movable, MoveError, MovedPart, PartPlace, Scene};
+use std::{ops::Range, sync::Arc};
 
 /// Pieces of a mesh: its parts, and all that is in none of them. A mesh without parts is one piece.
 #[derive(Clone, Default)]
@@ -47,7 +34,7 @@ pub(crate) struct Geometry {
     /// Numbers of pieces that were removed, for those that are added.
     gone: Vec<usize>,
     /// Triangles of parts that were removed, each with the number of that change.
-    cleared: Vec<(Range<usize>, u64)>,
+    cleared: Cleared,
     /// Number of the change that gave the mesh its items.
     begun: u64,
     /// Parts that the mesh began with; `None` for a mesh without parts.
@@ -56,53 +43,12 @@ pub(crate) struct Geometry {
     is_unplaced: bool,
     /// True if the mesh moves, so that trees are worth their memory.
     is_deformed: bool,
-    /// True if the mesh was deformed since its hierarchy was fitted, otherwise than by maps.
-    is_bent: bool,
-    /// Room of the mesh that no part has.
-    positions: Free,
-    normals: Free,
-    triangles: Free,
-    /// All room that was asked for.
-    room: Room,
-    /// The most bytes of a buffer that the device binds, once that is known.
-    pub limit: Option<u64>,
-    bvh: Option<Kept>,
-    hierarchies: Hierarchies,
+    pub space: Space,
+    trees: Trees,
     outlines: Outlines,
     adjacencies: Adjacencies,
     /// Work besides uploads.
     pub work: Work,
-}
-
-/// A hierarchy that is fitted when pieces move.
-#[derive(Clone)]
-struct Kept {
-    tree: Arc<TwoLevelBvh>,
-    /// Version of the shape that it is fitted to.
-    version: u64,
-}
-
-/// How the places of parts, or parts, have changed a mesh.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Change {
-    /// Corners have moved.
-    pub is_elsewhere: bool,
-    /// Triangles have other corners.
-    pub is_turned: bool,
-    /// Triangles have other materials.
-    pub is_painted: bool,
-    /// The mesh has more items.
-    pub is_grown: bool,
-}
-
-impl Change {
-    /// Corners have moved, and nothing else.
-    const MOVED: Self = Self {
-        is_elsewhere: true,
-        is_turned: false,
-        is_painted: false,
-        is_grown: false,
-    };
 }
 
 impl Geometry {
@@ -152,11 +98,10 @@ impl Geometry {
 
     /// Returns the geometry of another mesh, with the work that was done for this one.
     pub fn replaced_by(&self, other: Self) -> Self {
-        Self {
-            work: self.work,
-            limit: self.limit,
-            ..other
-        }
+        let work = self.work;
+        let mut other = Self { work, ..other };
+        other.space.limit = self.space.limit;
+        other
     }
 
     /// True for a mesh in parts.
@@ -294,7 +239,8 @@ impl Geometry {
         if mesh.positions == positions && mesh.normals == normals {
             return false;
         }
-        (self.is_deformed, self.is_bent) = (true, true);
+        self.is_deformed = true;
+        self.trees.bend();
         let version = next_version();
         for piece in &mut self.pieces {
             let [places, directions] = piece.ranges(mesh);
@@ -308,16 +254,6 @@ impl Geometry {
         true
     }
 
-    /// The numbers of the items that a mesh in parts has, in the order of [`GROWING`].
-    fn numbers(&self, mesh: &Mesh) -> [usize; 4] {
-        [
-            self.pieces.len() + self.room.parts,
-            mesh.positions.len(),
-            mesh.normals.len(),
-            mesh.triangles.len(),
-        ]
-    }
-
     /// Makes room for parts in the scene's mesh, and in the hierarchy over it.
     ///
     /// # Errors
@@ -326,32 +262,11 @@ impl Geometry {
         if self.first.is_none() {
             return Err(Error::NoParts);
         }
-        let numbers = self.numbers(&scene.mesh).into_iter().zip(room.numbers());
-        for ((there, more), (name, bytes)) in numbers.zip(GROWING) {
-            let bytes = bytes.saturating_mul(there.saturating_add(more) as u64);
-            check_size(name, bytes, self.limit.unwrap_or(u64::MAX))?;
-        }
-        let mesh = &mut Arc::make_mut(scene).mesh;
-        // Triangles that no part has yet have a corner, and a normal.
-        let least = usize::from(room.triangles > 0);
-        let positions = room.positions.max(least);
-        self.positions
-            .give_back(lengthened(&mut mesh.positions, positions, Vec3::ZERO));
-        let normals = room.normals.max(least);
-        self.normals
-            .give_back(lengthened(&mut mesh.normals, normals, Vec3::Y));
-        lengthened(&mut mesh.normal_indices, room.triangles, [0; 3]);
-        self.triangles
-            .give_back(lengthened(&mut mesh.triangles, room.triangles, [0; 3]));
-        mesh.surfaces.pad(mesh.triangles.len());
+        self.space.check(room, self.pieces.len(), &scene.mesh)?;
+        self.space.reserve(room, &mut Arc::make_mut(scene).mesh);
         self.begun = next_version();
-        self.room.parts += room.parts;
-        self.room.triangles += room.triangles;
         self.adjacencies.forget();
-        if let Some(kept) = &mut self.bvh {
-            let tree = Arc::make_mut(&mut kept.tree);
-            tree.reserve(room.parts, room.triangles);
-        }
+        self.trees.reserve(room);
         Ok(())
     }
 
@@ -429,10 +344,7 @@ impl Geometry {
             of: movable,
             host,
         }));
-        if let Some(kept) = &mut self.bvh {
-            let tree = Arc::make_mut(&mut kept.tree);
-            self.work.nodes += part.add_to(tree, piece) as u64;
-        }
+        self.work.nodes += self.trees.add(&part, piece) as u64;
         if piece < self.pieces.len() {
             self.pieces[piece] = part;
         } else {
@@ -454,26 +366,12 @@ impl Geometry {
     /// Takes room for a mesh; true if there was none, and the scene's mesh has grown by a half.
     fn place(&mut self, rest: &Mesh, scene: &mut Arc<Scene>) -> Result<(PartPlace, bool), Error> {
         let needed = Room::of(rest, 1);
-        let has_room = needed.positions <= self.positions.longest()
-            && needed.normals <= self.normals.longest()
-            && needed.triangles <= self.triangles.longest();
+        let has_room = self.space.has(needed);
         if !has_room {
-            let there = self.numbers(&scene.mesh);
-            let most = GROWING.map(|(_, bytes)| self.limit.map(|limit| (limit / bytes) as usize));
-            let needed = needed.numbers();
-            let more = std::array::from_fn(|at| {
-                let left = most[at].map_or(usize::MAX, |most| most.saturating_sub(there[at]));
-                needed[at].max((there[at] / 2).min(left))
-            });
-            self.reserve(Room::from_numbers(more), scene)?;
+            let more = self.space.more(needed, self.pieces.len(), &scene.mesh);
+            self.reserve(more, scene)?;
         }
-        let mut take = |free: fn(&mut Self) -> &mut Free, count: usize| free(self).take(count);
-        let at = PartPlace {
-            position: take(|it| &mut it.positions, needed.positions).unwrap_or_default(),
-            normal: take(|it| &mut it.normals, needed.normals).unwrap_or_default(),
-            triangle: take(|it| &mut it.triangles, needed.triangles).unwrap_or_default(),
-        };
-        Ok((at, !has_room))
+        Ok((self.space.take(needed), !has_room))
     }
 
     /// Removes a part from the scene's mesh: its triangles have no area any more, and its room is
@@ -492,19 +390,14 @@ impl Geometry {
         }
         // Those of a part that was cut out of a mesh may have others between them.
         if part.of.is_joined() {
-            let [positions, normals] = part.ranges();
-            self.positions.give_back(positions);
-            self.normals.give_back(normals);
-            self.triangles.give_back(part.triangles());
+            self.space.give_back(part.ranges(), part.triangles());
         }
         self.pieces[id.piece] = Piece::new(Content::Gone);
         self.maps[id.piece] = None;
         self.parts.remove(number);
         self.gone.push(id.piece);
-        self.clear(part.triangles());
-        if let Some(kept) = &mut self.bvh {
-            Arc::make_mut(&mut kept.tree).remove(id.piece);
-        }
+        self.cleared.clear(part.triangles());
+        self.trees.remove(id.piece);
         self.is_unplaced &= !self.has_places();
         let is_turned = true;
         Ok(Change {
@@ -545,10 +438,8 @@ impl Geometry {
     /// hosts' buffers of others are not read.
     pub fn move_to(&mut self, device: &wgpu::Device) {
         let most = binding_limit(&device.limits());
-        self.limit = self.limit.map(|_| most);
-        self.hierarchies = Hierarchies::default();
-        let fits = |kept: &mut Kept| size_of_val(&*kept.tree.nodes) as u64 <= most;
-        self.bvh = self.bvh.take_if(fits);
+        self.space.limit = self.space.limit.map(|_| most);
+        self.trees.move_to(most);
         for host in self.pieces.iter_mut().filter_map(Piece::host_mut) {
             host.is_elsewhere = !host.mesh.is_on(device);
         }
@@ -609,18 +500,6 @@ impl Geometry {
         writes.collect()
     }
 
-    /// Notes that triangles were cleared.
-    fn clear(&mut self, triangles: Range<usize>) {
-        if self.cleared.len() == CLEARED {
-            // Rather one long range than ever more.
-            let ranges = self.cleared.drain(..).map(|(range, _)| range);
-            let whole = ranges.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
-            self.cleared
-                .extend(whole.map(|range| (range, next_version())));
-        }
-        self.cleared.push((triangles, next_version()));
-    }
-
     /// True if the mesh was given its items after that version.
     pub fn is_begun_after(&self, version: u64) -> bool {
         version < self.begun
@@ -651,13 +530,7 @@ impl Geometry {
         }
         let turned = self.pieces.iter().filter(|piece| piece.turned > version);
         let turned = turned.map(|piece| piece.triangles(mesh));
-        turned.chain(self.cleared_since(version)).collect()
-    }
-
-    fn cleared_since(&self, version: u64) -> impl Iterator<Item = Range<usize>> {
-        let cleared = self.cleared.iter();
-        let cleared = cleared.filter(move |(_, number)| *number > version);
-        cleared.map(|(range, _)| range.clone())
+        turned.chain(self.cleared.since(version)).collect()
     }
 
     /// Returns the adjacency of the mesh. `version` is that of the winding.
@@ -666,7 +539,7 @@ impl Geometry {
         let turned = |since: u64| {
             let turned = self.pieces.iter().filter(|piece| piece.turned > since);
             let turned = turned.map(|piece| piece.primitives(mesh));
-            let cleared = self.cleared_since(since);
+            let cleared = self.cleared.since(since);
             // Without an area they have no neighbours; those of pieces come after. A range may hold
             // triangles of other parts.
             let is_clear = |id: &u32| mesh.triangles[*id as usize] == [0; 3];
@@ -682,222 +555,22 @@ impl Geometry {
         opposite
     }
 
-    /// Returns the hierarchy of the mesh, fitted to it. `version` is that of the shape now, `held`
-    /// that of the nodes and primitives on the device.
-    pub fn bvh(&mut self, mesh: &Mesh, most: usize, version: u64, held: Option<u64>) -> Fitted {
-        let Some(kept) = self.bvh.take() else {
-            return self.build_bvh(mesh, most, version);
+    /// The hierarchies, and the pieces that they are over.
+    pub fn trees<'a>(&'a mut self, mesh: &'a Mesh) -> (&'a mut Trees, Over<'a>) {
+        let over = Over {
+            mesh,
+            pieces: &mut self.pieces,
+            first: self.first.as_deref(),
+            room: self.space.room,
+            is_deformed: self.is_deformed,
+            work: &mut self.work,
         };
-        let moved = self.pieces.iter().enumerate();
-        let moved =
-            moved.filter_map(|(number, piece)| (piece.moved > kept.version).then_some(number));
-        let moved: Vec<usize> = moved.collect();
-        let how = if self.is_bent {
-            Moved::Freely
-        } else {
-            Moved::Affinely
-        };
-        let mut tree = kept.tree;
-        let fitted = Arc::make_mut(&mut tree);
-        for &piece in &moved {
-            if let Some(host) = self.pieces[piece].host() {
-                fitted.state_bounds(piece, host.placed);
-            }
-        }
-        let refit = fitted.refit(mesh, &moved, how);
-        for &piece in &refit.rebuilt {
-            self.pieces[piece].built = version;
-        }
-        let held = held.unwrap_or_default();
-        let since = |stamp: fn(&Piece) -> u64| {
-            let pieces = self.pieces.iter().enumerate();
-            let since = pieces.filter(move |(_, piece)| stamp(piece) > held);
-            since.map(|(piece, _)| piece)
-        };
-        let changed: Vec<usize> = since(Piece::changed).collect();
-        // The GPU fits the nodes of hosts' parts, once they are there.
-        let written = changed.iter().filter(|&&piece| {
-            let piece = &self.pieces[piece];
-            piece.host().is_none() || piece.built > held
-        });
-        let nodes = written.map(|&piece| tree.nodes_of(piece));
-        let nodes = nodes.chain(tree.top()).collect();
-        let primitives = since(|piece| piece.turned.max(piece.built));
-        let primitives = primitives.map(|piece| tree.primitives_of(piece)).collect();
-        let how = if refit.rebuilt.is_empty() {
-            How::Refitted
-        } else {
-            How::Made
-        };
-        self.is_bent = false;
-        self.work.nodes += refit.nodes as u64;
-        self.bvh = Some(Kept {
-            tree: Arc::clone(&tree),
-            version,
-        });
-        Fitted {
-            tree,
-            pieces: changed,
-            nodes,
-            primitives,
-            how,
-        }
+        (&mut self.trees, over)
     }
 
-    fn build_bvh(&mut self, mesh: &Mesh, most: usize, version: u64) -> Fitted {
-        self.is_bent = false;
-        let tree = match &self.first {
-            Some(first) => self.build_parts(mesh, first, most),
-            None => {
-                let triangles: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-                let whole = bvh::Piece {
-                    triangles: &triangles,
-                    copy_of: 0,
-                };
-                TwoLevelBvh::build(mesh, mesh, &[whole], most)
-            }
-        };
-        let tree = Arc::new(tree);
-        self.work.nodes += tree.nodes.len() as u64;
-        // Only of a mesh that moves it is worth its memory.
-        self.bvh = self.is_deformed.then(|| Kept {
-            tree: Arc::clone(&tree),
-            version,
-        });
-        Fitted {
-            pieces: (0..self.pieces.len()).collect(),
-            nodes: all(tree.nodes.len()),
-            primitives: all(tree.primitives.len()),
-            tree,
-            how: How::Made,
-        }
-    }
-
-    fn build_parts(&self, mesh: &Mesh, first: &Movable, most: usize) -> TwoLevelBvh {
-        let mut numbers = BTreeMap::new();
-        let mut added = Vec::new();
-        let mut begun = Vec::new();
-        for (number, piece) in self.pieces.iter().enumerate() {
-            let (triangles, copy_of) = match &piece.content {
-                Content::Part(part) if std::ptr::eq(&*part.of, first) => {
-                    let copy_of = first.copy_of(part.number);
-                    let copy_of = *numbers.entry(copy_of).or_insert(number);
-                    (first.triangles(part.number), copy_of)
-                }
-                Content::Outside(outside) => (&outside.triangles[..], number),
-                Content::Part(_) => {
-                    added.push(number);
-                    (&[][..], number)
-                }
-                Content::Gone | Content::Whole => (&[][..], number),
-            };
-            begun.push(bvh::Piece { triangles, copy_of });
-        }
-        let mut tree = TwoLevelBvh::build(mesh, &first.rest, &begun, most);
-        if self.room != Room::default() {
-            let left = most.saturating_sub(tree.nodes.len()) / 4;
-            let [parts, triangles] = [self.room.parts, self.room.triangles];
-            tree.reserve(parts.min(left), triangles.min(left));
-        }
-        for &piece in &added {
-            self.pieces[piece].add_to(&mut tree, piece);
-        }
-        tree.refit(mesh, &added, Moved::Affinely);
-        tree
-    }
-
-    /// Returns the hierarchy of a mesh without parts in the light space of `space`.
-    ///
-    /// # Errors
-    /// More triangles than its links can name.
-    pub fn light_space(
-        &mut self,
-        space: LightSpace,
-        mesh: &Mesh,
-        most: usize,
-    ) -> Result<Tree<LightSpaceNode>, Error> {
-        let keep = self.is_deformed;
-        let tree = self.hierarchies.light_space(space, mesh, most, keep)?;
-        self.work.nodes += tree.nodes.len() as u64;
-        Ok(tree)
-    }
-
-    /// Returns the hierarchy of a mesh in parts in the light space of `space`, of which only the
-    /// parts are fitted that have moved. A centre nearer than `near` to the last one changes
-    /// nothing. The versions are those of the shape and of the resource.
-    ///
-    /// # Errors
-    /// More triangles than its links can name.
-    pub fn light_space_of_parts(
-        &mut self,
-        (space, near): (LightSpace, f32),
-        mesh: &Mesh,
-        most: usize,
-        versions: [u64; 2],
-    ) -> Result<Parted, Error> {
-        let nodes = self.hierarchies.take(space.direction);
-        let since = nodes.as_ref().map(|nodes| nodes.shape);
-        let fitted = self.bvh(mesh, most, versions[0], since);
-        let target = (space, near);
-        let hierarchies = &mut self.hierarchies;
-        let parted = hierarchies.of_parts(nodes, target, &fitted, mesh, versions)?;
-        self.work.nodes += parted.fitted as u64;
-        Ok(parted)
-    }
-
-    /// Returns the solids of the mesh: all of its triangles but those that no part has. They are
-    /// `most` at most, and the numbers of their first triangles have 24 bits.
-    pub fn solids(&self, mesh: &Mesh, most: u32) -> Vec<Solid> {
-        let mut solids = Vec::new();
-        let (mut together, mut changed) = (0..0, 0);
-        for (number, piece) in self.pieces.iter().enumerate() {
-            let (triangles, of_piece) = (piece.triangles(mesh), piece.moved.max(piece.turned));
-            if self.is_solid(piece, mesh, most) {
-                let (piece, changed) = (Some(number), of_piece);
-                solids.push(Solid {
-                    piece,
-                    triangles,
-                    changed,
-                });
-            } else {
-                // Those of a piece that is gone may have been among these.
-                changed = changed.max(of_piece);
-                together.end = together.end.max(triangles.end);
-            }
-        }
-        solids.retain(|solid| !solid.triangles.is_empty());
-        let together = Solid {
-            piece: None,
-            triangles: together,
-            changed,
-        };
-        solids.extend((!together.triangles.is_empty()).then_some(together));
-        solids
-    }
-
-    /// True if a piece is a solid by itself.
-    fn is_solid(&self, piece: &Piece, mesh: &Mesh, most: u32) -> bool {
-        let triangles = piece.triangles(mesh);
-        let count = match &piece.content {
-            Content::Part(part) => part.of.triangles(part.number).len(),
-            Content::Outside(outside) => outside.triangles.len(),
-            Content::Whole => triangles.len(),
-            Content::Gone => return false,
-        };
-        let is_named = triangles.start < 1 << 24 && self.pieces.len() < most as usize;
-        count == triangles.len() && is_named
-    }
-
-    /// Returns the corners of the solid of those pieces that are none by themselves: those of other
-    /// triangles are all the same one, so that they have no area.
-    pub fn together(&self, mesh: &Mesh, solid: &Solid, most: u32) -> Vec<[u32; 3]> {
-        let mut corners = vec![[0; 3]; solid.triangles.len()];
-        let pieces = self.pieces.iter();
-        let pieces = pieces.filter(|piece| !self.is_solid(piece, mesh, most));
-        for primitive in pieces.flat_map(|piece| piece.primitives(mesh)) {
-            corners[primitive as usize] = mesh.triangles[primitive as usize];
-        }
-        corners
+    /// The pieces of the mesh.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
     }
 
     /// Returns the uniform of a light that is laid around the mesh. Of pieces that stand still, few
@@ -908,28 +581,5 @@ impl Geometry {
         let (uniform, laid) = self.outlines.lay(light, &moved, corners);
         self.work.laid += laid;
         uniform
-    }
-}
-
-/// Lengthens a list by so many items; the range of the new ones.
-fn lengthened<T: Clone>(list: &mut Vec<T>, by: usize, item: T) -> Range<usize> {
-    let before = list.len();
-    list.resize(before + by, item);
-    before..list.len()
-}
-
-/// Nodes that shaders walk: those of the tree, or of an empty one a leaf around a triangle without
-/// area, which no ray hits.
-pub(crate) fn nodes_to_walk(tree: &TwoLevelBvh) -> &[BvhNode] {
-    const EMPTY: &[BvhNode] = &[BvhNode {
-        min: [0.0; 3],
-        first: 0,
-        max: [0.0; 3],
-        count: 1,
-    }];
-    if tree.nodes.is_empty() {
-        EMPTY
-    } else {
-        &tree.nodes
     }
 }

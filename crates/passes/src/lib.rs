@@ -57,6 +57,7 @@ mod adjacencies;
 mod atlas;
 mod buffers;
 mod built;
+mod changes;
 #[cfg(feature = "embree")]
 mod embree;
 mod error;
@@ -74,7 +75,10 @@ mod piece;
 mod presets;
 mod provider;
 mod ray_query;
+mod solids;
+mod space;
 mod trace;
+mod trees;
 pub mod uniforms;
 mod view;
 

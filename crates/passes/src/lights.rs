@@ -2,7 +2,6 @@
 
 use crate::{
     error::Error,
-    names::Versions,
     uniforms::{LIGHT_KINDS, LightAreaUniform, LightUniform},
 };
 use skiagraph_graph::{Provided, ProvidedBinding, ProvidedKind};
@@ -35,15 +34,6 @@ pub(crate) fn names(count: usize) -> impl Iterator<Item = String> {
     [LIGHTS, LIGHT_AREAS].into_iter().flat_map(move |list| {
         let items = (0..count).map(move |number| format!("{list}.{number}"));
         std::iter::once(list.to_owned()).chain(items)
-    })
-}
-
-/// Returns the version of the resource behind a name; `None` if it is not one of these.
-pub(crate) fn version(name: &str, versions: &Versions) -> Option<u64> {
-    let (list, number) = parse(name)?;
-    Some(match list {
-        LIGHTS => versions.of_lights(number),
-        _ => versions.of_areas(number),
     })
 }
 
@@ -112,16 +102,20 @@ pub(crate) fn content(
 
 /// The list that a name is of, if it is one of these.
 pub(crate) fn list_of(name: &str) -> Option<&'static str> {
-    let (list, _) = parse(name)?;
-    let mut lists = [LIGHTS, LIGHT_AREAS].into_iter();
-    lists.find(|candidate| *candidate == list)
+    Some(parse(name)?.0)
+}
+
+/// The number of the light that a name is of; `None` for other names.
+pub(crate) fn number(name: &str) -> Option<usize> {
+    parse(name)?.1
 }
 
 /// The list of a name, and which of it.
-fn parse(name: &str) -> Option<(&str, Option<usize>)> {
+fn parse(name: &str) -> Option<(&'static str, Option<usize>)> {
     let (list, number) = match name.split_once('.') {
         Some((list, number)) => (list, Some(number.parse().ok()?)),
         None => (name, None),
     };
-    matches!(list, LIGHTS | LIGHT_AREAS).then_some((list, number))
+    let mut lists = [LIGHTS, LIGHT_AREAS].into_iter();
+    Some((lists.find(|own| *own == list)?, number))
 }

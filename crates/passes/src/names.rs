@@ -23,55 +23,38 @@ use crate::eye::Eye;
 use skiagraph_scene::LightKind;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Names, and the list of all of them.
-macro_rules! names {
-    ($($(#[$doc:meta])* $visible:vis $name:ident = $text:literal;)+) => {
-        $($(#[$doc])* $visible const $name: &str = $text;)+
-        pub(crate) const NAMES: &[&str] = &[$($name),+];
-    };
-}
-
-names! {
-    pub(crate) POSITIONS = "scene.positions";
-    pub(crate) INDICES = "scene.indices";
-    pub(crate) NORMALS = "scene.normals";
-    pub(crate) NORMAL_INDICES = "scene.normal_indices";
-    pub(crate) ADJACENCY = "scene.adjacency";
-    pub(crate) BVH_NODES = "scene.bvh_nodes";
-    pub(crate) BVH_PRIMITIVES = "scene.bvh_primitives";
-    pub(crate) LIGHT_SPACE_NODES = "scene.light_space_nodes";
-    pub(crate) LIGHT_SPACE_PRIMITIVES = "scene.light_space_primitives";
-    pub(crate) TLAS = "scene.tlas";
-    pub(crate) EMBREE = "scene.embree";
-    /// Name of the storage buffer of the triangles' alpha masks
-    /// ([`mask_words`](skiagraph_scene::packed_masks::mask_words)), which `shared/masks.wgsl`
-    /// reads. It has no items if no triangle of the scene is masked (cut out by the alpha of its
-    /// texture) or double-sided.
-    pub MASKS = "scene.masks";
-    /// Name of the storage buffer of the [`Sheets`](skiagraph_scene::Sheets), a bit per triangle,
-    /// which `shared/sheets.wgsl` reads: the triangles of which shadow maps draw both faces. It has
-    /// no items if the scene has none.
-    pub SHEETS = "scene.sheets";
-    pub(crate) UVS = "scene.uvs";
-    pub(crate) UV_INDICES = "scene.uv_indices";
-    pub(crate) MATERIALS = "scene.materials";
-    pub(crate) MATERIAL_INDICES = "scene.material_indices";
-    pub(crate) TEXELS = "scene.texels";
-    /// Name of the uniform buffer of the camera
-    /// ([`CameraUniform`](crate::uniforms::CameraUniform)), which `shared/camera.wgsl` reads.
-    pub CAMERA = "camera";
-    /// Name of the uniform buffer that holds the matrix from a depth buffer to positions
-    /// ([`UnprojectionUniform`](crate::uniforms::UnprojectionUniform)), which
-    /// `shared/unprojection.wgsl` reads.
-    pub UNPROJECTION = "unprojection";
-    /// Name of the uniform buffer of the light and its light space
-    /// ([`LightUniform`](crate::uniforms::LightUniform)), which `shared/light.wgsl` reads.
-    pub LIGHT = "light";
-    /// Name of the uniform buffer of the light's disk
-    /// ([`LightAreaUniform`](crate::uniforms::LightAreaUniform)), which `shared/light_area.wgsl`
-    /// reads.
-    pub LIGHT_AREA = "light_area";
-}
+pub(crate) const POSITIONS: &str = "scene.positions";
+pub(crate) const INDICES: &str = "scene.indices";
+pub(crate) const NORMALS: &str = "scene.normals";
+pub(crate) const BVH_NODES: &str = "scene.bvh_nodes";
+pub(crate) const BVH_PRIMITIVES: &str = "scene.bvh_primitives";
+pub(crate) const LIGHT_SPACE_NODES: &str = "scene.light_space_nodes";
+pub(crate) const LIGHT_SPACE_PRIMITIVES: &str = "scene.light_space_primitives";
+pub(crate) const TLAS: &str = "scene.tlas";
+pub(crate) const EMBREE: &str = "scene.embree";
+/// Name of the storage buffer of the triangles' alpha masks
+/// ([`mask_words`](skiagraph_scene::packed_masks::mask_words)), which `shared/masks.wgsl`
+/// reads. It has no items if no triangle of the scene is masked (cut out by the alpha of its
+/// texture) or double-sided.
+pub const MASKS: &str = "scene.masks";
+/// Name of the storage buffer of the [`Sheets`](skiagraph_scene::Sheets), a bit per triangle,
+/// which `shared/sheets.wgsl` reads: the triangles of which shadow maps draw both faces. It has
+/// no items if the scene has none.
+pub const SHEETS: &str = "scene.sheets";
+/// Name of the uniform buffer of the camera
+/// ([`CameraUniform`](crate::uniforms::CameraUniform)), which `shared/camera.wgsl` reads.
+pub const CAMERA: &str = "camera";
+/// Name of the uniform buffer that holds the matrix from a depth buffer to positions
+/// ([`UnprojectionUniform`](crate::uniforms::UnprojectionUniform)), which
+/// `shared/unprojection.wgsl` reads.
+pub const UNPROJECTION: &str = "unprojection";
+/// Name of the uniform buffer of the light and its light space
+/// ([`LightUniform`](crate::uniforms::LightUniform)), which `shared/light.wgsl` reads.
+pub const LIGHT: &str = "light";
+/// Name of the uniform buffer of the light's disk
+/// ([`LightAreaUniform`](crate::uniforms::LightAreaUniform)), which `shared/light_area.wgsl`
+/// reads.
+pub const LIGHT_AREA: &str = "light_area";
 
 /// Returns a number that no provider of this process has counted yet: equal versions mean equal
 /// content, across all providers.
@@ -147,6 +130,20 @@ impl Laid {
     fn lay(&mut self, shape: u64) {
         self.over.set([self.light.number, shape]);
     }
+}
+
+/// Things that resources are made from, each with a [version](Versions).
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum MadeFrom {
+    Eye,
+    Light,
+    LightOverShape,
+    /// All lights, or one of them, which the mesh has no part in.
+    Lights,
+    LightsOverShape,
+    Shape,
+    Winding,
+    Mesh,
 }
 
 /// Eye and lights that the provider is set to, and a version of everything that its resources are
@@ -230,45 +227,21 @@ impl Versions {
         self.lights_over.set([self.lights.number, self.shape]);
     }
 
-    /// Returns the version of the resource `name`.
-    pub fn get(&self, name: &str) -> u64 {
-        match name {
-            CAMERA | UNPROJECTION => self.eye.number,
-            LIGHT_AREA => self.light.light.number,
-            LIGHT | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => self.light.over.number,
-            POSITIONS | NORMALS | BVH_NODES | BVH_PRIMITIVES | TLAS | EMBREE => self.shape,
-            INDICES | NORMAL_INDICES | UV_INDICES | ADJACENCY | MASKS => self.winding,
-            _ => self.mesh,
+    /// Returns the version of a resource that is made from these, in a list of lights that of the
+    /// light of that number, or else of the list.
+    pub fn get(&self, made_from: MadeFrom, number: Option<usize>) -> u64 {
+        let laid = number.and_then(|number| self.each.get(number));
+        match made_from {
+            MadeFrom::Eye => self.eye.number,
+            MadeFrom::Light => self.light.light.number,
+            MadeFrom::LightOverShape => self.light.over.number,
+            MadeFrom::Lights => laid.map_or(self.lights.number, |laid| laid.light.number),
+            MadeFrom::LightsOverShape => {
+                laid.map_or(self.lights_over.number, |laid| laid.over.number)
+            }
+            MadeFrom::Shape => self.shape,
+            MadeFrom::Winding => self.winding,
+            MadeFrom::Mesh => self.mesh,
         }
     }
-
-    /// Returns the version of `lights`, or of the light of that number in it.
-    pub fn of_lights(&self, number: Option<usize>) -> u64 {
-        let version = self.lights_over.number;
-        let laid = number.and_then(|number| self.each.get(number));
-        laid.map_or(version, |laid| laid.over.number)
-    }
-
-    /// Returns the version of `light_areas`, or of the one of that number in it, which the mesh has
-    /// no part in.
-    pub fn of_areas(&self, number: Option<usize>) -> u64 {
-        let laid = number.and_then(|number| self.each.get(number));
-        laid.map_or(self.lights.number, |laid| laid.light.number)
-    }
-}
-
-/// Returns true if a resource is made from the positions of the mesh's corners.
-pub(crate) fn is_of_shape(name: &str) -> bool {
-    matches!(
-        name,
-        POSITIONS
-            | NORMALS
-            | BVH_NODES
-            | BVH_PRIMITIVES
-            | LIGHT
-            | LIGHT_SPACE_NODES
-            | LIGHT_SPACE_PRIMITIVES
-            | TLAS
-            | EMBREE
-    )
 }

@@ -20,18 +20,6 @@ pub(crate) struct Piece {
     pub built: u64,
 }
 
-/// Triangles that a tracer other than ours has in a structure of their own.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Solid {
-    /// The piece that they are; `None` for pieces whose triangles lie among those of others, which
-    /// are one solid together.
-    pub piece: Option<usize>,
-    /// The range of the mesh that holds them, and no others if they are a piece.
-    pub triangles: Range<usize>,
-    /// Number of the last change of their corners.
-    pub changed: u64,
-}
-
 /// Triangles of a piece.
 #[derive(Clone)]
 pub(crate) enum Content {

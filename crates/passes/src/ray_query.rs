@@ -8,7 +8,7 @@ use crate::{
     error::Error,
     geometry::Geometry,
     names::next_version,
-    piece::Solid,
+    solids::{Solid, joined_corners, solids},
 };
 use skiagraph_scene::Mesh;
 use std::{
@@ -116,9 +116,11 @@ impl Structures {
             return Ok((tlas, None));
         }
         let limits = source.device.limits();
-        let solids = source
-            .geometry
-            .solids(source.mesh, limits.max_tlas_instance_count);
+        let solids = solids(
+            source.geometry.pieces(),
+            source.mesh,
+            limits.max_tlas_instance_count,
+        );
         let mut versions = [source.shape, next_version()];
         let mut open = None;
         if let Some(top) = former {
@@ -224,7 +226,7 @@ impl Structures {
         let most = source.device.limits().max_tlas_instance_count;
         let together = new.iter().find(|(solid, _)| solid.piece.is_none());
         let together = together.map(|(solid, _)| {
-            let corners = source.geometry.together(source.mesh, solid, most);
+            let corners = joined_corners(source.geometry.pieces(), source.mesh, solid, most);
             let corners = bytemuck::cast_slice(corners.as_flattened());
             upload(
                 source.device,

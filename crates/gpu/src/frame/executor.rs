@@ -1,41 +1,22 @@
 //! Runs a plan on a device, frame by frame.
 
 use super::{
-    contents::Contents,
-    cpu::{CpuTurn, Staging},
-    fetch::Fetch,
-    growth::Unchanged,
     growth_readback::GrowthReadback,
-    host_changes::HostChanges,
-    in_flight::{FrameInFlight, FramesInFlight, names},
-    pass::GpuPass,
+    in_flight::names,
     prepare::{Prepared, Preparer},
-    replan::{ReplanReport, Reused, has_same_params},
+    replan::ReplanReport,
     report::{Frame, FrameFault, FrameReport},
-    state::{FrameDecision, State},
-    statistics::Counters,
-    timer::Timer,
-    uniform::FrameUniform,
+    runner::{Runner, list},
 };
 use crate::{
-    device::{Gpu, partial},
-    error::{ExecuteError, poll, submit, wait, with_table},
-    memory::{
-        import::{differs, is_on},
-        memory::{Memory, ResourceFactory, check_bound, check_relied_on},
-        physical::{Physical, PingPong},
-    },
+    device::Gpu,
+    error::{ExecuteError, poll, submit, wait},
+    memory::physical::Physical,
     pipelines::pipelines::Pipelines,
-    presence::Presence,
     provider::Provider,
 };
-use skiagraph_graph::{
-    Origin, Panicked, ParamValue, Plan, Resource, ResourceId, ResourceKind, caught,
-};
-use std::{
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceKind};
+use std::time::{Duration, Instant};
 
 /// Longest wait for another thread that polls the device to signal finished work.
 const CALLBACK: Duration = Duration::from_secs(10);
@@ -65,24 +46,7 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// that a [`Provider`] builds. A material's `.previous` is its content at the end of the frame
 /// before.
 pub struct Executor {
-    device: wgpu::Device,
-    presence: Presence,
-    queue: wgpu::Queue,
-    pipelines: Pipelines,
-    state: State,
-    /// Allocation that each resource with two of them uses in the frame that was encoded last.
-    ping_pong: PingPong,
-    decision: FrameDecision,
-    host_changes: HostChanges,
-    /// True if the provider tells each change of a content by a version, or there is none to tell.
-    knows_changes: bool,
-    /// Frames that were encoded.
-    frames: u32,
-    frames_in_flight: FramesInFlight,
-    /// Means by which items come back for work of the CPU.
-    staging: Staging,
-    /// The passes that the frame that was encoded last did not run.
-    skipped: Vec<Arc<str>>,
+    runner: Runner,
 }
 
 impl Executor {
@@ -128,45 +92,20 @@ impl Executor {
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
-        let device = pipelines.device();
-        let mut presence = Presence::new(device).map_err(|error| with_table(error, &plan))?;
-        presence.check_queue(queue)?;
-        presence.check_provider(provider)?;
-        check_backend(device, &plan)?;
-        let mut factory = ResourceFactory::new((device, queue), provider);
-        let state = State::new(plan, pipelines, &mut factory)?;
-        let frames_in_flight =
-            FramesInFlight::new(device).map_err(|error| with_table(error, &state.plan))?;
-        let mut executor = Self {
-            device: device.clone(),
-            presence,
-            queue: queue.clone(),
-            pipelines: pipelines.clone(),
-            ping_pong: state.ping_pong(true),
-            state,
-            decision: FrameDecision::default(),
-            host_changes: HostChanges::default(),
-            knows_changes: false,
-            frames: 0,
-            frames_in_flight,
-            staging: Staging::default(),
-            skipped: Vec::new(),
-        };
-        executor.state.bind_what_can_be(device)?;
-        executor.note_changes(provider);
-        Ok(executor)
+        let runner = Runner::new(pipelines, queue, plan, provider)?;
+        Ok(Self { runner })
     }
 
     /// Returns the plan that the executor runs now, after the last change of viewport, param or
     /// graph.
     pub fn plan(&self) -> &Plan {
-        &self.state.plan
+        &self.runner.state.plan
     }
 
     /// Returns the shader modules and pipelines of the executor, which others can
     /// [share](Self::with_pipelines).
     pub fn pipelines(&self) -> &Pipelines {
-        &self.pipelines
+        &self.runner.pipelines
     }
 
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
@@ -198,13 +137,13 @@ impl Executor {
         encoder: &mut wgpu::CommandEncoder,
         frame: &Frame<'_>,
     ) -> Result<u32, ExecuteError> {
-        if let Some(pass) = self.state.on_cpu() {
+        if let Some(pass) = self.runner.state.on_cpu() {
             return Err(ExecuteError::OnCpu {
                 pass: pass.name.value.clone(),
                 place: pass.name.span.to_string(),
             });
         }
-        self.encode_with(encoder, frame, None)
+        self.runner.encode_with(encoder, frame, None)
     }
 
     /// Encodes a frame as [`encode`](Self::encode) does, and submits it. Where a pass works on the
@@ -226,148 +165,11 @@ impl Executor {
     ) -> Result<u32, ExecuteError> {
         let label = Some("frame");
         let begun = wgpu::CommandEncoderDescriptor { label };
-        let mut encoder = self.device.create_command_encoder(&begun);
-        let index = self.encode_with(&mut encoder, frame, Some(gives_up))?;
-        submit((&self.device, &self.queue), encoder, index).map(|()| index)
-    }
-
-    fn encode_with(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        frame: &Frame<'_>,
-        gives_up: Option<&dyn Fn() -> bool>,
-    ) -> Result<u32, ExecuteError> {
-        self.presence.check()?;
-        if self.frames_in_flight.is_pending() {
-            self.settle()?;
-        }
-        self.grow_by_itself()?;
-        let is_measured = frame.timing || frame.statistics;
-        let may_rest = !frame.all && !is_measured && self.knows_changes;
-        self.state.decide(frame.all, may_rest, &mut self.decision);
-        let decision = &self.decision;
-        self.state
-            .bind(&decision.runs, &decision.ping_pong, &self.device)?;
-        let mut frame_in_flight = self.frames_in_flight.begin();
-        if let Err(error) = self.prepare(&mut frame_in_flight, frame) {
-            self.frames_in_flight.recycle(frame_in_flight);
-            return Err(with_table(error, self.plan()));
-        }
-        // From here on nothing can fail but work of the CPU, if the encoder is of the device. wgpu
-        // does not tell that, and panics where an instance has no thing of a number.
-        let recorded = caught(|| self.record(&mut frame_in_flight, encoder, gives_up));
-        let recorded = recorded.unwrap_or_else(|panicked| Err(in_encoder(panicked)));
-        if let Err(error) = recorded {
-            // Its queries are not resolved, and what it has written stays.
-            frame_in_flight.timer = None;
-            let before = &frame_in_flight.before;
-            self.state.forget_frame(&self.decision, before);
-            self.frames_in_flight.recycle(frame_in_flight);
-            return Err(error);
-        }
-        let index = frame_in_flight.index;
-        frame_in_flight.changed = self.host_changes.changed();
-        self.host_changes.clear();
-        self.skipped.clone_from(&frame_in_flight.skipped);
-        self.frames_in_flight.submit(frame_in_flight, encoder);
-        std::mem::swap(&mut self.ping_pong, &mut self.decision.ping_pong);
-        self.frames = self.frames.wrapping_add(1);
-        Ok(index)
-    }
-
-    /// Gets ready the uniform, readbacks and timers that a frame needs besides its passes.
-    fn prepare(
-        &mut self,
-        frame_in_flight: &mut FrameInFlight,
-        frame: &Frame<'_>,
-    ) -> Result<(), ExecuteError> {
-        let (state, device) = (&self.state, &self.device);
-        frame_in_flight.index = self.frames;
-        if state.uniform.is_some() {
-            let values = (self.frames, frame.seconds, self.host_changes.changed());
-            FrameUniform::write(&mut frame_in_flight.uniform, values, device)?;
-        }
-        for name in frame.read {
-            let source = (&state.plan, &state.memory, &self.decision.ping_pong);
-            let staging = &mut self.frames_in_flight.staging;
-            let fetch = Fetch::new(name, &state.readables, source, staging, device)?;
-            frame_in_flight.fetches.push(fetch);
-        }
-        if frame.timing && frame_in_flight.timer.is_none() {
-            frame_in_flight.timer = Some(Timer::new(device, &self.queue)?);
-        }
-        frame_in_flight.is_timed = frame.timing;
-        if frame.statistics {
-            frame_in_flight.counters = Counters::new(&state.plan, device)?;
-        }
-        let rests = self.decision.rests;
-        self.frames_in_flight.number(frame_in_flight, rests, device)
-    }
-
-    /// Encodes a frame that everything is ready for.
-    fn record(
-        &mut self,
-        frame_in_flight: &mut FrameInFlight,
-        encoder: &mut wgpu::CommandEncoder,
-        gives_up: Option<&dyn Fn() -> bool>,
-    ) -> Result<(), ExecuteError> {
-        let state = &mut self.state;
-        let decision = &self.decision;
-        let ping_pong = &decision.ping_pong;
-        let number = frame_in_flight.number;
-        frame_in_flight.before.clone_from(&state.contents);
-        if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
-            && let Ok(uniform) = state.memory.buffer(id, ping_pong)
-        {
-            copy.copy(uniform, encoder);
-        }
-        state.copy_grown(encoder);
-        let memory = &state.memory;
-        let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
-        state.contents.first_copies(number, &mut copy_host);
-        let mut cpu = gives_up.map(|gives_up| CpuTurn {
-            device: &self.device,
-            queue: &self.queue,
-            staging: &mut self.staging,
-            gives_up,
-            worked: None,
-            frame: frame_in_flight.index,
-            has_submitted: false,
-        });
-        let encoded = state.encode(decision, frame_in_flight, encoder, cpu.as_mut());
-        if encoded.is_ok() || cpu.is_some_and(|cpu| cpu.has_submitted) {
-            frame_in_flight.grown.append(&mut state.grown);
-        }
-        encoded?;
-        let is_timed = frame_in_flight.is_timed;
-        if let Some(timer) = frame_in_flight.timer.as_mut().filter(|_| is_timed) {
-            timer.resolve(encoder);
-        }
-        if let Some(counters) = &frame_in_flight.counters {
-            counters.resolve(encoder);
-        }
-        for fetch in &frame_in_flight.fetches {
-            fetch.copy(encoder);
-        }
-        if !decision.rests {
-            let (mut is_counted, change) = (true, state.idle.changes());
-            for readback in &mut state.growth_readbacks {
-                let (plan, memory) = (&state.plan, &state.memory);
-                is_counted &= readback.copy(change, plan, memory, ping_pong, encoder);
-            }
-            // Else a resource that has no room could stay so.
-            frame_in_flight.changes = is_counted.then_some(change);
-        }
-        let (plan, passes) = (&state.plan, &state.passes);
-        let before = (number, &frame_in_flight.before, ping_pong);
-        if !decision.rests {
-            state.contents.ran(plan, passes, &decision.runs, before);
-        }
-        let memory = &state.memory;
-        let mut copy_host = |copy| State::copy_host(memory, copy, encoder);
-        let pending = self.frames_in_flight.oldest_pending();
-        state.contents.copies(number, pending, &mut copy_host);
-        Ok(())
+        let mut encoder = self.runner.device.create_command_encoder(&begun);
+        let index = self
+            .runner
+            .encode_with(&mut encoder, frame, Some(gives_up))?;
+        submit((&self.runner.device, &self.runner.queue), encoder, index).map(|()| index)
     }
 
     /// Returns the report of the oldest frame that requested times, statistics or readbacks (fields
@@ -379,12 +181,7 @@ impl Executor {
     /// If the device was lost, or a readback or the times of the frame failed. The failed frame
     /// brings no report.
     pub fn poll(&mut self) -> Result<Option<FrameReport>, ExecuteError> {
-        self.presence.check()?;
-        if self.under_way() == 0 {
-            return Ok(None);
-        }
-        self.settle()?;
-        self.frames_in_flight.report(&self.device, &self.presence)
+        self.runner.poll()
     }
 
     /// Returns the frames that did not show what they should, in the order in which that was found,
@@ -400,43 +197,11 @@ impl Executor {
     /// # Errors
     /// If the device was lost.
     pub fn take_faults(&mut self) -> Result<Vec<FrameFault>, ExecuteError> {
-        self.presence.check()?;
-        if self.frames_in_flight.is_pending() {
-            self.settle()?;
+        self.runner.presence.check()?;
+        if self.runner.frames_in_flight.is_pending() {
+            self.runner.settle()?;
         }
-        Ok(std::mem::take(&mut self.frames_in_flight.faults))
-    }
-
-    /// Finds out which frames have run, and takes back what was noted for those that are lost.
-    fn settle(&mut self) -> Result<(), ExecuteError> {
-        poll(&self.device, wgpu::PollType::Poll)?;
-        let (frames, state) = (&mut self.frames_in_flight, &mut self.state);
-        let setback = frames.settle();
-        if let Some(changes) = setback.settled {
-            state.idle.settle(changes);
-        }
-        if setback.is_lost || setback.forgets {
-            state.idle.note_change();
-            let from_last = frames.under_way.iter_mut().rev();
-            for lost in from_last.filter(|frame| frame.is_lost()) {
-                self.host_changes.tell_again(lost.changed);
-                state.grown.splice(..0, lost.grown.drain(..));
-                if Some(lost.number) == setback.rewind {
-                    state.contents.rewind(&state.plan, &lost.before);
-                }
-            }
-            if setback.forgets {
-                let under_way = frames.under_way.iter_mut();
-                let followed = under_way.filter(|frame| frame.is_followed);
-                let followed =
-                    followed.map(|frame| (frame.number, frame.is_lost(), &mut frame.before));
-                state.contents.forget(&mut followed.collect::<Vec<_>>());
-                self.host_changes.note_new_memory();
-            }
-            self.ping_pong = state.ping_pong(false);
-        }
-        self.frames_in_flight.sweep();
-        Ok(())
+        Ok(std::mem::take(&mut self.runner.frames_in_flight.faults))
     }
 
     /// Returns the number of encoded frames that requested times, statistics or readbacks (fields
@@ -444,7 +209,7 @@ impl Executor {
     /// request in every frame but does not call [`poll`](Self::poll). Frames that are known to be
     /// lost do not count.
     pub fn under_way(&self) -> usize {
-        self.frames_in_flight.asked()
+        self.runner.frames_in_flight.asked()
     }
 
     /// Returns the report that [`poll`](Self::poll) would; if there is none yet, first waits until
@@ -471,21 +236,25 @@ impl Executor {
         timeout: Option<Duration>,
     ) -> Result<FrameReport, ExecuteError> {
         let began = Instant::now();
-        let waited_for = self.frames_in_flight.oldest_asked();
+        let waited_for = self.runner.frames_in_flight.oldest_asked();
         // One that is done is not kept waiting by those behind it.
         if let Some(report) = self.poll()? {
             return Ok(report);
         }
-        if !wait(&self.device, timeout)? {
+        if !wait(&self.runner.device, timeout)? {
             return Err(self.unfinished(began));
         }
         // A device that was destroyed is waited for without complaint, but has no query buffers to
         // take times from.
-        self.presence.check()?;
+        self.runner.presence.check()?;
         let waited = Instant::now();
         loop {
-            self.settle()?;
-            if let Some(report) = self.frames_in_flight.report(&self.device, &self.presence)? {
+            self.runner.settle()?;
+            if let Some(report) = self
+                .runner
+                .frames_in_flight
+                .report(&self.runner.device, &self.runner.presence)?
+            {
                 return Ok(report);
             }
             if self.under_way() == 0 {
@@ -493,8 +262,8 @@ impl Executor {
                     return Err(ExecuteError::NotRun { frame });
                 }
                 return Ok(FrameReport {
-                    index: self.frames.wrapping_sub(1),
-                    skipped: names(&self.skipped),
+                    index: self.runner.frames.wrapping_sub(1),
+                    skipped: names(&self.runner.skipped),
                     ..FrameReport::default()
                 });
             }
@@ -508,16 +277,24 @@ impl Executor {
             std::thread::sleep(Duration::from_micros(50));
         }
         // The profiler never gives up a frame whose timestamps cannot be mapped.
-        self.frames_in_flight.give_up();
-        let report = self.frames_in_flight.report(&self.device, &self.presence)?;
+        self.runner.frames_in_flight.give_up();
+        let report = self
+            .runner
+            .frames_in_flight
+            .report(&self.runner.device, &self.runner.presence)?;
         let frame = waited_for.unwrap_or_default();
         report.ok_or(ExecuteError::NotRun { frame })
     }
 
     /// Returns the error of a frame that has not finished, with the passes of the last frame.
     fn unfinished(&self, began: Instant) -> ExecuteError {
-        let passes = self.state.passes.iter().map(|pass| &*pass.name);
-        let ran = passes.filter(|name| self.skipped.iter().all(|skipped| **skipped != **name));
+        let passes = self.runner.state.passes.iter().map(|pass| &*pass.name);
+        let ran = passes.filter(|name| {
+            self.runner
+                .skipped
+                .iter()
+                .all(|skipped| **skipped != **name)
+        });
         ExecuteError::Unfinished {
             after: began.elapsed(),
             passes: list(&ran.collect::<Vec<_>>()),
@@ -540,7 +317,7 @@ impl Executor {
         name: &str,
         texture: &wgpu::Texture,
     ) -> Result<(), ExecuteError> {
-        self.import(name, Physical::Texture(texture.clone()))
+        self.runner.import(name, Physical::Texture(texture.clone()))
     }
 
     /// Sets the buffer of the import `name`, which
@@ -551,7 +328,7 @@ impl Executor {
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
     pub fn import_buffer(&mut self, name: &str, buffer: &wgpu::Buffer) -> Result<(), ExecuteError> {
-        self.import(name, Physical::Buffer(buffer.clone()))
+        self.runner.import(name, Physical::Buffer(buffer.clone()))
     }
 
     /// Sets the sampler of the import `name`, which
@@ -566,42 +343,7 @@ impl Executor {
         name: &str,
         sampler: &wgpu::Sampler,
     ) -> Result<(), ExecuteError> {
-        self.import(name, Physical::Sampler(sampler.clone()))
-    }
-
-    fn import(&mut self, name: &str, physical: Physical) -> Result<(), ExecuteError> {
-        let imports = self.plan().imports();
-        let Some(described) = imports.get(name) else {
-            let names: Vec<&str> = imports.keys().map(String::as_str).collect();
-            return Err(ExecuteError::NoSuchImport {
-                name: name.to_owned(),
-                known: list(&names),
-            });
-        };
-        if let Some(why) = differs(&physical, described) {
-            return Err(ExecuteError::Import {
-                name: name.to_owned(),
-                why,
-            });
-        }
-        let is_own = is_on(&self.device, &physical);
-        let way_out = "hand over one that was made on the executor's device";
-        self.presence
-            .check_own(is_own, format!("the import `{name}`"), way_out)?;
-        // One that no live pass uses waits for a plan in which one does.
-        let Some(id) = self.state.live(name) else {
-            self.state.memory.spare(name, physical);
-            return Ok(());
-        };
-        // Most hosts hand over the same texture in every frame.
-        if self.state.memory.host(id) != Some(&physical) {
-            self.presence.check()?;
-        }
-        self.state.touch(id);
-        if self.state.memory.import(id, physical) {
-            self.state.unbind(id);
-        }
-        Ok(())
+        self.runner.import(name, Physical::Sampler(sampler.clone()))
     }
 
     /// Marks the content of the import or provided resource `name` as changed, after the host has
@@ -617,11 +359,11 @@ impl Executor {
     pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
         let of_host = |resource: &Resource| resource.origin == Origin::Host;
         if !self.plan().imports().contains_key(name) {
-            self.host_changes.touch(name);
+            self.runner.host_changes.touch(name);
         }
-        let live = self.state.live(name);
+        let live = self.runner.state.live(name);
         if let Some(id) = live.filter(|id| of_host(self.plan().resource(*id))) {
-            self.state.touch(id);
+            self.runner.state.touch(id);
         } else if !self.plan().offers(name) {
             let used = self.plan().used().filter(|used| of_host(used));
             let used: Vec<&str> = used.map(|resource| resource.name.as_str()).collect();
@@ -648,90 +390,7 @@ impl Executor {
     /// as they are. The way out is another plan: [`Plan::with`], with the provider set, and
     /// [`replace_graph`](Self::replace_graph).
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
-        self.presence.check()?;
-        self.presence.check_provider(provider)?;
-        // If it fails half way, some resources are this provider's.
-        self.knows_changes &= provider.has_versions();
-        let mut built = Vec::new();
-        let refreshed = self.refresh_live(provider, &mut built);
-        let refreshed = refreshed.and(self.submit_built(provider, &built));
-        if refreshed.is_ok() {
-            self.note_changes(provider);
-        } else {
-            self.host_changes.touch_all();
-        }
-        refreshed.map_err(|error| with_table(error, self.plan()))
-    }
-
-    /// Notes which provided resources have changed; called after live passes have the new ones.
-    fn note_changes(&mut self, provider: &dyn Provider) {
-        let knows = provider.has_versions() || self.state.memory.provided().is_empty();
-        if knows && !self.knows_changes {
-            // There may have been others before.
-            self.state.idle.note_change();
-        }
-        self.knows_changes = knows;
-        match self.state.uniform {
-            Some(_) => self.host_changes.compare(provider),
-            None => self.host_changes.forget(),
-        }
-    }
-
-    /// Has the provider submit what it has recorded; without it those resources are not there.
-    fn submit_built(
-        &mut self,
-        provider: &mut dyn Provider,
-        built: &[ResourceId],
-    ) -> Result<(), ExecuteError> {
-        if built.is_empty() {
-            return Ok(());
-        }
-        let mut factory = ResourceFactory::new((&self.device, &self.queue), provider);
-        let submitted = factory.submit_built();
-        if let Err(why) = &submitted {
-            for &id in built {
-                self.state.memory.forget(id, why);
-                self.state.unbind(id);
-            }
-        }
-        submitted
-    }
-
-    /// Refreshes the resources of live passes and lists them in `built`, that which fails, too.
-    fn refresh_live(
-        &mut self,
-        provider: &mut dyn Provider,
-        built: &mut Vec<ResourceId>,
-    ) -> Result<(), ExecuteError> {
-        check_relied_on(&self.state.plan, provider)?;
-        let has_versions = provider.has_versions();
-        for (id, version) in self.state.memory.provided().clone() {
-            let state = &mut self.state;
-            let resource = state.plan.resource(id);
-            // Another description is another version.
-            let is_described = has_versions || check_bound(resource, provider)?;
-            if is_described && Ok(provider.version(&resource.name)) == version {
-                continue;
-            }
-            let before = state.memory.host(id).cloned();
-            let mut factory = ResourceFactory::new((&self.device, &self.queue), provider);
-            built.push(id);
-            state.memory.refresh(id, &state.plan, None, &mut factory)?;
-            state.touch(id);
-            let now = state.memory.host(id);
-            if now.is_some() {
-                self.host_changes.touch(&state.plan.resource(id).name);
-            }
-            if now == before.as_ref() {
-                continue;
-            }
-            if Memory::is_alike(now, before.as_ref()) {
-                state.rebind(id)
-            } else {
-                state.unbind(id)
-            }
-        }
-        Ok(())
+        self.runner.refresh(provider)
     }
 
     /// Returns a view of the output or capture `name` (see [`Executor`]) with the content of the
@@ -750,7 +409,11 @@ impl Executor {
             _ if target.part.layers.len() == 1 => wgpu::TextureViewDimension::D2,
             _ => wgpu::TextureViewDimension::D2Array,
         };
-        let view = self.state.memory.view(target, dimension, &self.ping_pong);
+        let view = self
+            .runner
+            .state
+            .memory
+            .view(target, dimension, &self.runner.ping_pong);
         view.ok()
     }
 
@@ -760,7 +423,11 @@ impl Executor {
     /// not set. Fetch it anew when [`output_view`](Self::output_view) says so, and only read it.
     pub fn output_buffer(&self, name: &str) -> Option<wgpu::Buffer> {
         let target = self.plan().readable_target(name)?;
-        let buffer = self.state.memory.buffer(target.id, &self.ping_pong);
+        let buffer = self
+            .runner
+            .state
+            .memory
+            .buffer(target.id, &self.runner.ping_pong);
         buffer.ok().cloned()
     }
 
@@ -806,34 +473,11 @@ impl Executor {
         value: ParamValue,
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
-        if !self.plan().is_in_uniforms(name, &value) {
-            let plan = self.plan().with_param(name, value)?;
-            return self.replace_graph(plan, provider);
+        if self.plan().is_in_uniforms(name, &value) {
+            return self.runner.set_in_uniforms(name, value, provider);
         }
-        self.presence.check()?;
-        self.refresh(provider)?;
-        let state = &mut self.state;
-        let before = state.plan.param(name).cloned();
-        let changed = state.plan.set_in_uniforms(name, value);
-        let params = changed.iter().map(|&at| {
-            let pass = state.plan.pass(state.plan.schedule().passes[at]);
-            GpuPass::params_of(pass, &self.device)
-        });
-        let params = match params.collect::<Result<Vec<_>, _>>() {
-            Ok(params) => params,
-            Err(error) => {
-                if let Some(before) = before {
-                    state.plan.set_in_uniforms(name, before);
-                }
-                return Err(with_table(error, &state.plan));
-            }
-        };
-        let mut report = ReplanReport::default();
-        for (at, params) in changed.into_iter().zip(params) {
-            state.set_params(at, params);
-            report.uploads.push(state.passes[at].name.to_string());
-        }
-        Ok(report)
+        let plan = self.plan().with_param(name, value)?;
+        self.replace_graph(plan, provider)
     }
 
     /// Replaces the plan by another, of the same graph or of a different one. It keeps the
@@ -850,102 +494,16 @@ impl Executor {
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<ReplanReport, ExecuteError> {
-        let report = self.put_in(plan, provider)?;
-        self.note_changes(provider);
+        let report = self.runner.put_in(plan, provider)?;
+        self.runner.note_changes(provider);
         Ok(report)
-    }
-
-    /// Replaces the plan as [`replace_graph`](Self::replace_graph) does, but leaves the flags of
-    /// the uniform `frame` alone.
-    fn put_in(
-        &mut self,
-        plan: Plan,
-        provider: &mut dyn Provider,
-    ) -> Result<ReplanReport, ExecuteError> {
-        self.presence.check()?;
-        self.presence.check_provider(provider)?;
-        check_backend(&self.device, &plan)?;
-        let mut factory = ResourceFactory::new((&self.device, &self.queue), provider);
-        let before = (&self.state.plan, &self.state.memory);
-        let memory = Memory::new(&plan, Some(before), &mut factory);
-        let memory = memory.map_err(|error| with_table(error, &plan))?;
-        let reused = Reused::new(&self.state, &plan, &memory);
-        let made = reused.passes(&self.pipelines, &self.device);
-        let passes = made.map_err(|error| with_table(error, &plan))?;
-        let mut report = ReplanReport {
-            pipelines: reused.made_pipelines(),
-            resources: reused.made_resources(),
-            ..ReplanReport::default()
-        };
-        let contents = reused.contents(&passes, &self.state.contents);
-        let frames = self.frames_in_flight.under_way.iter();
-        let befores = frames.map(|frame| match frame.is_followed {
-            true => reused.contents(&passes, &frame.before),
-            false => Contents::default(),
-        });
-        let befores: Vec<Contents> = befores.collect();
-        let has_new_memory = reused.has_new_memory();
-        let bound: Vec<Option<usize>> = (0..passes.len()).map(|at| reused.bound(at)).collect();
-        let positions = reused.positions;
-        let mut state = State::of(plan, memory, passes, contents, &self.device)?;
-        // A pass whose resources are all the same is bound already.
-        let rebind = |from: &mut State, to: &mut State, back: bool| {
-            for (new, old) in bound.iter().enumerate() {
-                match old {
-                    Some(old) if back => to.passes[*old].rebind_as(&mut from.passes[new]),
-                    Some(old) => to.passes[new].rebind_as(&mut from.passes[*old]),
-                    None => {}
-                }
-            }
-        };
-        rebind(&mut self.state, &mut state, false);
-        if let Err(error) = state.bind_what_can_be(&self.device) {
-            rebind(&mut state, &mut self.state, true);
-            return Err(error);
-        }
-        let mut before = std::mem::replace(&mut self.state, state);
-        GrowthReadback::take_over(
-            &mut self.state.growth_readbacks,
-            std::mem::take(&mut before.growth_readbacks),
-        );
-        for (frame, before) in self.frames_in_flight.under_way.iter_mut().zip(befores) {
-            frame.before = before;
-            frame.changes = None;
-        }
-        // Content due for a buffer that has grown again is copied on from there.
-        self.state.grown.splice(..0, before.grown);
-        if has_new_memory {
-            self.host_changes.note_new_memory();
-        }
-        self.ping_pong = self.state.ping_pong(false);
-        self.frames_in_flight.staging.clear();
-        self.staging = Staging::default();
-        report.uploads = self.note_params(&before.plan, &positions);
-        Ok(report)
-    }
-
-    /// Marks the passes whose params differ from the former plan's as changed, and returns their
-    /// names.
-    fn note_params(&mut self, before: &Plan, positions: &[Option<usize>]) -> Vec<String> {
-        let mut uploads = Vec::new();
-        for (at, (pass, position)) in self.state.plan.live().zip(positions).enumerate() {
-            let Some(position) = *position else {
-                continue;
-            };
-            let old = before.pass(before.schedule().passes[position]);
-            if !has_same_params(old, pass) {
-                self.state.contents.stale[at] = true;
-                uploads.push(pass.name.value.clone());
-            }
-        }
-        uploads
     }
 
     /// Returns a [`Preparer`], which can create the pipelines of the next plan on another thread
     /// ([`Preparer::prepare`]) while this executor draws.
     pub fn preparer(&self) -> Preparer {
         Preparer {
-            pipelines: self.pipelines.clone(),
+            pipelines: self.runner.pipelines.clone(),
         }
     }
 
@@ -987,105 +545,20 @@ impl Executor {
         &mut self,
         provider: &mut dyn Provider,
     ) -> Result<Option<ReplanReport>, ExecuteError> {
-        self.presence.check()?;
-        let mut readbacks = self.state.growth_readbacks.iter();
+        self.runner.presence.check()?;
+        let mut readbacks = self.runner.state.growth_readbacks.iter();
         if !readbacks.any(GrowthReadback::is_asked) {
             return Ok(None);
         }
-        poll(&self.device, wgpu::PollType::Poll)?;
-        let Some(plan) = self.larger() else {
+        poll(&self.runner.device, wgpu::PollType::Poll)?;
+        let Some(plan) = self.runner.larger() else {
             return Ok(None);
         };
-        let report = self.grow_to(plan, provider)?;
+        let report = self.runner.grow_to(plan, provider)?;
         if report.is_some() {
-            self.note_changes(provider);
+            self.runner.note_changes(provider);
         }
         Ok(report)
-    }
-
-    /// Grows as [`grow`](Self::grow) does, with the provided resources that the executor has.
-    fn grow_by_itself(&mut self) -> Result<(), ExecuteError> {
-        let Some(plan) = self.larger() else {
-            return Ok(());
-        };
-        let before = self.plan();
-        let held = self.state.memory.provided().iter();
-        let named = held.map(|(id, version)| (before.resource(*id).name.clone(), version.clone()));
-        let mut unchanged = Unchanged {
-            plan: before.clone(),
-            versions: named.collect(),
-        };
-        self.grow_to(plan, &mut unchanged).map(drop)
-    }
-
-    /// Returns the plan with room for all items and layers that finished frames have asked for;
-    /// `None` if everything had room.
-    fn larger(&mut self) -> Option<Result<Plan, ExecuteError>> {
-        let growth_readbacks = self.state.growth_readbacks.iter_mut();
-        let wanted = growth_readbacks.filter_map(|readback| {
-            let wanted = readback.wanted()?;
-            Some((readback.name.clone(), wanted))
-        });
-        let wanted: Vec<(String, u64)> = wanted.collect();
-        if wanted.is_empty() {
-            return None;
-        }
-        let mut grown = self.plan().grown().clone();
-        grown.extend(wanted);
-        let larger = self.plan().with(|request| request.grown = grown);
-        // An error is the host's limit for memory.
-        Some(larger.map_err(ExecuteError::from))
-    }
-
-    fn grow_to(
-        &mut self,
-        plan: Result<Plan, ExecuteError>,
-        provider: &mut dyn Provider,
-    ) -> Result<Option<ReplanReport>, ExecuteError> {
-        match plan.and_then(|plan| self.put_in(plan, provider)) {
-            Err(
-                ExecuteError::Plan(_)
-                | ExecuteError::OutOfMemory { .. }
-                | ExecuteError::Resource { .. }
-                | ExecuteError::Gpu { .. },
-            ) => {
-                self.state.growth_readbacks.clear();
-                Ok(None)
-            }
-            // It is to be counted again.
-            Err(error) => {
-                self.state.idle.note_change();
-                Err(error)
-            }
-            Ok(report) => Ok(Some(report)),
-        }
-    }
-}
-
-/// The error of a panic while the host's encoder is written to.
-fn in_encoder(panicked: Panicked) -> ExecuteError {
-    let name = "the encoder".to_owned();
-    if panicked.message.contains("Cannot get ") {
-        let way_out = "make it by the executor's device";
-        return ExecuteError::OtherDevice { name, way_out };
-    }
-    ExecuteError::Panicked { name, panicked }
-}
-
-/// Refuses a plan whose graph is not proven on the device's backend.
-pub(super) fn check_backend(device: &wgpu::Device, plan: &Plan) -> Result<(), ExecuteError> {
-    if let Some(backend) = partial(device.adapter_info().backend) {
-        plan.check_backend(&backend)?;
-    }
-    Ok(())
-}
-
-/// Joins names for a message.
-pub(super) fn list(names: &[&str]) -> String {
-    if names.is_empty() {
-        "none".to_owned()
-    } else {
-        names.join(", ")
     }
 }
 

@@ -17,6 +17,7 @@ mod prepare;
 mod read_buffer;
 mod replan;
 mod report;
+mod runner;
 mod stamp;
 mod state;
 mod statistics;

@@ -4,6 +4,7 @@
 //! The number of repetitions depends on params and sizes, so this is done anew for every plan.
 
 pub(crate) mod build;
+mod environment;
 pub(crate) mod flat;
 mod growth;
 pub(crate) mod include;
@@ -12,6 +13,7 @@ mod materials;
 pub(crate) mod merge;
 pub(crate) mod params;
 mod parts;
+mod resolve;
 pub(crate) mod scopes;
 pub(crate) mod state;
 pub(crate) mod symbols;

@@ -1,10 +1,15 @@
 //! States of materials whose sizes, and of values whose results, are found on demand.
 
-use super::scopes::ScopeId;
+use super::scopes::{ScopeId, Scopes, Symbol};
 use crate::{
     diagnostics::reports::{ErrorGuaranteed, Reported},
     document::{materials::Material, typed::Document},
-    language::{name::Name, syntax::Expr, value::Value},
+    language::{
+        name::Name,
+        syntax::{Expr, Leaf},
+        value::Value,
+    },
+    resource::ResourceId,
     source::span::Located,
 };
 use std::sync::Arc;
@@ -32,6 +37,31 @@ pub(super) struct Declared {
 impl Declared {
     pub fn material(&self) -> &Material {
         &self.document.materials[self.number]
+    }
+
+    /// Returns the materials that the size depends on.
+    pub fn parts(&self, scopes: &Scopes) -> Vec<ResourceId> {
+        let mut parts = Vec::new();
+        self.material().visit(&mut |leaf| {
+            let Leaf::Material(reference) = leaf else {
+                return;
+            };
+            let mut names = reference.segments.iter().map(|segment| &segment.name.value);
+            let first = names.next();
+            let Some(first) = first.and_then(|name| scopes.find(self.scope, name)) else {
+                return;
+            };
+            let mut meanings = vec![first];
+            for name in names {
+                let inner = meanings.iter().flat_map(|symbol| symbol.named(name));
+                meanings = inner.collect();
+            }
+            parts.extend(meanings.iter().filter_map(|symbol| match symbol {
+                Symbol::Target(target) => Some(target.id),
+                _ => None,
+            }));
+        });
+        parts
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::{
     growth::Sizing,
-    materials, parts,
-    scopes::{Instance, Position, ScopeId, Scopes, Symbol, ValueId},
+    materials,
+    scopes::{Instance, Position, ScopeId, Scopes, ValueId},
     state::{Declared, DeclaredValue, State, ValueState},
 };
 use crate::{
@@ -12,14 +12,11 @@ use crate::{
         diagnostic::Diagnostic,
         reports::{ErrorGuaranteed, Reported, Reports},
     },
-    errors::{evaluation::EvaluationError, instantiate::InterfaceError},
-    expressions::{
-        eval::{self, Environment},
-        parser,
-    },
+    errors::evaluation::EvaluationError,
+    expressions::{eval, parser},
     language::{
-        name::{Name, wgsl_identifier},
-        syntax::{Attribute, Expr, Leaf, Reference, Segment, Selection},
+        name::wgsl_identifier,
+        syntax::{Expr, Leaf, Reference},
         value::Value,
     },
     provided_kind::ProvidedKind,
@@ -32,7 +29,6 @@ use crate::{
 use std::{
     cell::RefCell,
     collections::{BTreeMap, BTreeSet, HashMap},
-    ops::Range,
     sync::Arc,
 };
 
@@ -112,14 +108,14 @@ impl<'a> SymbolTable<'a> {
     }
 
     /// Asks the provider for a description, and notes the answer.
-    fn ask(&self, name: &str) -> Option<Provided> {
+    pub(super) fn ask(&self, name: &str) -> Option<Provided> {
         let described = self.request.provider.describe(name);
         self.asked.borrow_mut().insert(name.to_owned(), described);
         described
     }
 
     /// Notes the description of a resource, or of the one that it is the last frame's copy of.
-    fn note_asked(&self, resource: &Resource, provided: Provided) {
+    pub(super) fn note_asked(&self, resource: &Resource, provided: Provided) {
         let name = match resource.origin {
             Origin::Previous(base) => &self.get(base).name,
             _ => &resource.name,
@@ -411,7 +407,7 @@ impl<'a> SymbolTable<'a> {
 
     /// Returns last frame's version of a resource, added on first use. The error is a word for a
     /// resource that has no such version.
-    fn previous(&mut self, base: ResourceId) -> Result<ResourceId, String> {
+    pub(super) fn previous(&mut self, base: ResourceId) -> Result<ResourceId, String> {
         if let Some(id) = self.previous.get(&base) {
             return Ok(*id);
         }
@@ -506,26 +502,7 @@ impl<'a> SymbolTable<'a> {
         let State::Declared(declared) = &self.states[id.0] else {
             return Vec::new();
         };
-        let mut parts = Vec::new();
-        declared.material().visit(&mut |leaf| {
-            let Leaf::Material(reference) = leaf else {
-                return;
-            };
-            let mut names = reference.segments.iter().map(|segment| &segment.name.value);
-            let first = names.next();
-            let Some(first) = first.and_then(|name| self.scopes.find(declared.scope, name)) else {
-                return;
-            };
-            let mut meanings = vec![first];
-            for name in names {
-                let inner = meanings.iter().flat_map(|symbol| symbol.named(name));
-                meanings = inner.collect();
-            }
-            parts.extend(meanings.iter().filter_map(|symbol| match symbol {
-                Symbol::Target(target) => Some(target.id),
-                _ => None,
-            }));
-        });
+        let mut parts = declared.parts(&self.scopes);
         parts.retain(|part| matches!(self.states[part.index()], State::Declared(_)));
         parts
     }
@@ -563,11 +540,11 @@ impl<'a> SymbolTable<'a> {
 
 /// Environment that evaluates expressions and resolves references at a position of a document.
 pub(crate) struct At<'w, 'a> {
-    symbols: &'w mut SymbolTable<'a>,
+    pub(super) symbols: &'w mut SymbolTable<'a>,
     /// Position in a document at which the expressions and references stand.
     pub position: Position,
     /// Shader of the pass, for an expression of a pass.
-    shader: Option<Reported<Arc<Shader>>>,
+    pub(super) shader: Option<Reported<Arc<Shader>>>,
 }
 
 impl<'a> At<'_, 'a> {
@@ -611,330 +588,6 @@ impl<'a> At<'_, 'a> {
 
     /// Returns the resource, or part of it, that a reference at this position means.
     pub fn resolve(&mut self, reference: &Reference) -> Reported<Target> {
-        let mut reference = reference;
-        while let Some(otherwise) = &reference.otherwise {
-            let (condition, other) = &**otherwise;
-            if eval::boolean(condition, self)? {
-                break;
-            }
-            reference = other;
-        }
-        let (mut target, selection) = self.named(reference)?;
-        self.symbols.resolve_size(target.id)?;
-        // A part of an input is a part of what is bound to it; a whole one is known only now.
-        if target.part == SubresourceRange::WHOLE {
-            target = self.symbols.whole(target.id);
-        }
-        // Mips first: of a 3D texture they have fewer slices.
-        if let Some(mips) = &reference.mips {
-            let have = parts::mips(&target, self.symbols.get(target.id), reference);
-            let have = self.symbols.reports.check(have)?;
-            let range = self.range(mips, have, reference, &target)?;
-            let resource = self.symbols.get(target.id);
-            let selected = parts::select_mips(&mut target, range, resource, reference);
-            self.symbols.reports.check(selected)?;
-        }
-        if let Some(selection) = selection {
-            let resource = self.symbols.get(target.id);
-            let have = parts::layers(&target, resource, reference);
-            let have = self.symbols.reports.check(have)?;
-            let range = self.range(selection, have, reference, &target)?;
-            let start = target.part.layers.start;
-            target.part.layers = start + range.start..start + range.end;
-        }
-        if reference.previous {
-            let kept = self.symbols.kept(target.id);
-            let id = self.symbols.previous(target.id);
-            target.id = id.map_err(|what| {
-                let name = reference.located();
-                self.report(InterfaceError::NoPrevious { name, what, kept })
-            })?;
-        }
-        Ok(target)
-    }
-
-    /// Resolves the names of a reference. Returns their meanings, and the selection behind the last
-    /// name.
-    fn named<'r>(&mut self, reference: &'r Reference) -> Reported<(Target, Option<&'r Selection>)> {
-        let first = &reference.segments[0];
-        let scope = self.position.scope;
-        let symbol = self.symbols.scopes.find(scope, &first.name.value);
-        let Some(mut symbol) = symbol.cloned() else {
-            return self.of_scene(reference);
-        };
-        let mut walked = first.name.value.to_string();
-        let mut segments = reference.segments.iter().peekable();
-        while let Some(segment) = segments.next() {
-            let names = match symbol {
-                Symbol::Invalid(reported) => return Err(reported),
-                Symbol::Value(_) => {
-                    let name = Located::new(walked, segment.name.span.clone());
-                    return Err(self.report(InterfaceError::IsValue(name)));
-                }
-                Symbol::Target(target) => {
-                    return match segments.peek() {
-                        None => Ok((target, segment.selection.as_ref())),
-                        Some(next) => {
-                            let error = InterfaceError::NotOfMaterial(walked, next.name.text());
-                            Err(self.report(error))
-                        }
-                    };
-                }
-                Symbol::Namespace(names) => names,
-                Symbol::Repeated(list) => {
-                    let index = self.repetition(segment, list.len())?;
-                    list.into_iter().nth(index).unwrap_or_default()
-                }
-            };
-            let Some(next) = segments.peek() else {
-                let name = Located::new(walked, segment.name.span.clone());
-                return Err(self.report(InterfaceError::Namespace(name)));
-            };
-            let Some(member) = names.get(&next.name.value) else {
-                let names = names.keys().map(|name| name.to_string());
-                let names = self.symbols.reports.known(names);
-                return Err(self.report(InterfaceError::Private(walked, next.name.text(), names)));
-            };
-            walked = format!("{walked}.{}", next.name.value);
-            symbol = member.clone();
-        }
-        Err(self.unknown(reference))
-    }
-
-    /// Returns the index of the repetition that a segment selects.
-    fn repetition(&mut self, segment: &Segment, count: usize) -> Reported<usize> {
-        let name = &segment.name;
-        let Some(Selection::One(expr)) = &segment.selection else {
-            return Err(self.report(InterfaceError::Namespace(name.text())));
-        };
-        let index = eval::count(expr, self)?;
-        let index = usize::try_from(index).ok().filter(|index| *index < count);
-        index.ok_or_else(|| {
-            let part = format!("{}[{}]", name.value, expr.text());
-            let part = Located::new(part, expr.span.clone());
-            let what = format!("it is repeated {count} times, counted from 0");
-            self.report(InterfaceError::Range(part, what, None))
-        })
-    }
-
-    /// Resolves a reference to a name of the scene.
-    fn of_scene<'r>(
-        &mut self,
-        reference: &'r Reference,
-    ) -> Reported<(Target, Option<&'r Selection>)> {
-        let path = reference.path();
-        let (last, leading) = match reference.segments.split_last() {
-            Some((last, leading)) => (last.selection.as_ref(), leading),
-            None => (None, &[][..]),
-        };
-        let is_plain = leading.iter().all(|segment| segment.selection.is_none());
-        if let (Some(Selection::One(number)), true) = (last, is_plain)
-            && let Some(of_list) = self.of_list(&path, number, reference)
-        {
-            return of_list.map(|target| (target, None));
-        }
-        let target = self.symbols.find_scene(&path, self.position.scope);
-        match target.filter(|_| is_plain) {
-            Some(target) => Ok((target?, last)),
-            None => Err(self.unknown(reference)),
-        }
-    }
-
-    /// Finds an item of a provided list whose items have names of their own, such as `lights[1]`,
-    /// because each may have another kind. `None` if the list is not of this sort, or an own
-    /// material stands in its place.
-    fn of_list(
-        &mut self,
-        list: &str,
-        number: &Expr,
-        reference: &Reference,
-    ) -> Option<Reported<Target>> {
-        let instance = self.symbols.scopes.instance_of(self.position.scope);
-        if self.symbols.scopes.scene(instance, list).is_some() {
-            return None;
-        }
-        let provider = self.symbols.request.provider;
-        provider.describe(&format!("{list}.0"))?;
-        let count = provider.describe(list)?.items?;
-        let number = match eval::count(number, self) {
-            Ok(number) => number,
-            Err(reported) => return Some(Err(reported)),
-        };
-        let target = self.find_scene(&format!("{list}.{number}"));
-        Some(target.unwrap_or_else(|| {
-            let what = format!("there are {count} of them, counted from 0; this is [{number}]");
-            Err(self.report(InterfaceError::Range(reference.located(), what, None)))
-        }))
-    }
-
-    /// Reports a reference to an unknown name.
-    fn unknown(&mut self, reference: &Reference) -> ErrorGuaranteed {
-        let instance = self.symbols.scopes.document(self.position.scope);
-        if let Some(reported) = instance.incomplete {
-            return reported;
-        }
-        let names = self.symbols.known(self.position.scope);
-        let materials = self.symbols.reports.known(names);
-        self.report(InterfaceError::Unknown {
-            name: reference.located_path(),
-            document: instance.document.file.name.to_string(),
-            materials,
-        })
-    }
-
-    /// Evaluates a selection to a range of layers, items or mips; `have` is the word for them and
-    /// their number.
-    fn range(
-        &mut self,
-        selection: &Selection,
-        have: (&str, u64),
-        reference: &Reference,
-        target: &Target,
-    ) -> Reported<Range<u32>> {
-        let selected = match selection {
-            Selection::One(one) => {
-                let first = eval::count(one, self)?;
-                (first..first.saturating_add(1), &one.span)
-            }
-            Selection::Range(ends) => {
-                let [first, end] = &**ends;
-                let range = eval::count(first, self)?..eval::count(end, self)?;
-                (range, &end.span)
-            }
-        };
-        let resource = self.symbols.get(target.id);
-        let narrowed = parts::narrow(selected, have, reference, resource);
-        self.symbols.reports.check(narrowed)
-    }
-}
-
-impl Sizing for At<'_, '_> {
-    fn resource(&mut self, reference: &Reference) -> Reported<(Target, &Resource)> {
-        let target = self.resolve(reference)?;
-        let resource = self.symbols.get(target.id);
-        Ok((target, resource))
-    }
-}
-
-impl Environment for At<'_, '_> {
-    fn viewport(&self) -> [u32; 2] {
-        self.symbols.request.viewport
-    }
-
-    fn has(&self, feature: wgt::Features) -> bool {
-        self.symbols.request.features.contains(feature)
-    }
-
-    fn provided_items(&self, name: &str) -> Option<u64> {
-        self.symbols.ask(name)?.items
-    }
-
-    fn is_provided(&self, name: &str) -> bool {
-        self.symbols.ask(name).is_some()
-    }
-
-    fn param(&mut self, name: &str, span: &Span) -> Reported<Value> {
-        let instance = self.symbols.scopes.document(self.position.scope);
-        if let Some(value) = instance.params.value(name, &mut self.symbols.reports) {
-            return value;
-        }
-        if let Some(id) = self.symbols.scopes.find_value(self.position.scope, name) {
-            return self.symbols.value(id);
-        }
-        if let Some(reported) = instance.document.invalid_params {
-            return Err(reported);
-        }
-        let scope = self.position.scope;
-        let is_material = |name: &str| {
-            let own = self.symbols.scopes.find(scope, name);
-            own.is_some_and(|symbol| matches!(symbol, Symbol::Target(_)))
-                || self.symbols.request.provider.describe(name).is_some()
-        };
-        let values = instance.document.values.iter();
-        let names = instance.params.names();
-        let names = names.chain(values.map(|(name, _)| name.as_str()));
-        let names = self.symbols.reports.known(names);
-        let error = EvaluationError::param(name, span, is_material, names);
-        Err(self.report(error))
-    }
-
-    fn word_or_param(&mut self, name: &Name) -> Option<Value> {
-        let instance = self.symbols.scopes.document(self.position.scope);
-        if let Some(value) = instance.params.value(name, &mut self.symbols.reports) {
-            return value.ok();
-        }
-        let id = self.symbols.scopes.find_value(self.position.scope, name)?;
-        self.symbols.value(id).ok()
-    }
-
-    fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
-        let index = self.symbols.scopes.index(self.position, entry);
-        let missing = || EvaluationError::NoIndex(span.clone(), entry.cloned());
-        index.ok_or_else(|| self.report(missing()))
-    }
-
-    fn attribute(
-        &mut self,
-        material: &Reference,
-        attribute: Attribute,
-        span: &Span,
-    ) -> Reported<Value> {
-        let target = self.symbols.resolve(material, self.position)?;
-        let resource = self.symbols.get(target.id);
-        if let ResourceKind::Provided(provided) = resource.kind {
-            self.symbols.note_asked(resource, provided);
-        }
-        if let Some(value) = parts::attribute(resource, &target, attribute) {
-            return Ok(value);
-        }
-        if attribute == Attribute::Kind
-            && let Some(kind) = self
-                .symbols
-                .provided_kind(&material.path(), self.position.scope)
-        {
-            return Ok(Value::kind(kind));
-        }
-        let resource = self.symbols.get(target.id);
-        let error = match (attribute, &resource.kind) {
-            (Attribute::Count, ResourceKind::Buffer(_) | ResourceKind::Provided(_)) => {
-                parts::uncounted(resource, material)
-            }
-            _ => {
-                let owner = format!("`{}`, {},", resource.name, resource.kind.describe());
-                EvaluationError::NoAttribute(span.clone(), owner)
-            }
-        };
-        let counts = matches!(error, EvaluationError::NoCount(_));
-        let reported = self.report(error);
-        if counts {
-            // Its shaders would miss the same number.
-            self.symbols.mark_invalid(target.id, reported);
-        }
-        Err(reported)
-    }
-
-    fn constant(&mut self, name: &str, span: &Span) -> Reported<Value> {
-        let shader = match &self.shader {
-            Some(shader) => shader.as_ref().map_err(|reported| *reported)?,
-            None => return Err(self.report(EvaluationError::NoShader(span.clone()))),
-        };
-        if let Some(value) = shader.constant(name) {
-            return Ok(Value::Scalar(value));
-        }
-        let constants = self.symbols.reports.known(shader.constants());
-        Err(self.report(EvaluationError::NoConstant {
-            span: span.clone(),
-            file: shader.source.file.name.to_string(),
-            name: name.to_owned(),
-            constants,
-        }))
-    }
-
-    fn kind(&mut self, name: &str) -> Option<ProvidedKind> {
-        self.symbols.provided_kind(name, self.position.scope)
-    }
-
-    fn reports(&mut self) -> &mut Reports {
-        &mut self.symbols.reports
+        Ok(self.resource(reference)?.0)
     }
 }

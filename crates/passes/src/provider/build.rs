@@ -1,0 +1,128 @@
+//! The resources of a scene as plans and executors ask for them.
+
+use super::SceneProvider;
+use crate::{buffers::On, built::How, error::Error, lights, names::*, ray_query::Source};
+#[cfg(feature = "embree")]
+use skiagraph_gpu::CpuWork;
+use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
+use skiagraph_graph::{Describe, Provided};
+#[cfg(feature = "embree")]
+use std::sync::Arc;
+
+impl Describe for SceneProvider {
+    fn names(&self) -> Vec<String> {
+        let lights = lights::names(self.lights().len());
+        self.uploads.names().chain(lights).collect()
+    }
+
+    fn describe(&self, name: &str) -> Option<Provided> {
+        let resource = self.uploads.find(name)?;
+        (resource.describe)(&self.uploads, name)
+    }
+}
+
+impl Provider for SceneProvider {
+    fn version(&self, name: &str) -> u64 {
+        if name == TLAS {
+            return self.structures.version(self.uploads.versions.shape);
+        }
+        self.uploads.version(name)
+    }
+
+    fn has_versions(&self) -> bool {
+        true
+    }
+
+    fn device(&self) -> Option<&DeviceIdentity> {
+        self.device.as_ref()
+    }
+
+    fn missing(&self, name: &str) -> Option<String> {
+        let made_from = self.uploads.find(name)?.made_from;
+        let is_free = matches!(
+            made_from,
+            MadeFrom::Eye | MadeFrom::Light | MadeFrom::Winding | MadeFrom::Mesh
+        );
+        let is_placed = !is_free && self.describe(name).is_some();
+        (self.uploads.geometry.is_unplaced() && is_placed).then(|| {
+            "the parts of the mesh have no places yet: call `SceneProvider::set_transforms`, then \
+             `Executor::refresh`"
+                .to_owned()
+        })
+    }
+
+    fn build(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Buffer, ProviderError> {
+        let checked = self.check_device(device);
+        let buffer = checked.and_then(|()| self.uploads.buffer(name, On { device, queue }));
+        buffer.map_err(ProviderError::from_error)
+    }
+
+    fn submit_built(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<(), ProviderError> {
+        let submitted = self.uploads.buffers.submit(On { device, queue });
+        submitted.map_err(ProviderError::from_error)
+    }
+
+    fn build_acceleration_structure(
+        &mut self,
+        name: &str,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+    ) -> Result<wgpu::Tlas, ProviderError> {
+        let why = |error: Error| ProviderError::from_error(error);
+        if name != TLAS {
+            return Err(why(self.uploads.unknown(name)));
+        }
+        self.check_device(device).map_err(why)?;
+        let on = On { device, queue };
+        let vertices = self.uploads.buffer(POSITIONS, on).map_err(why)?;
+        let indices = self.uploads.buffer(INDICES, on).map_err(why)?;
+        // It is built of what they hold.
+        self.submit_built(device, queue)?;
+        let began = self.uploads.begin();
+        let tlas = self.structures.get(Source {
+            mesh: &self.uploads.scene.mesh,
+            geometry: &self.uploads.geometry,
+            buffers: [&vertices, &indices],
+            shape: self.uploads.versions.shape,
+            device,
+            queue,
+        });
+        let (tlas, triangles) = tlas.map_err(why)?;
+        if let Some(triangles) = triangles {
+            self.uploads.geometry.work.triangles += triangles as u64;
+            self.uploads.note(TLAS, How::Made, began);
+        }
+        Ok(tlas)
+    }
+
+    #[cfg(feature = "embree")]
+    fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
+        let why = |error: Error| ProviderError::from_error(error);
+        if name != EMBREE {
+            return Err(why(self.uploads.unknown(name)));
+        }
+        let version = self.uploads.version(EMBREE);
+        if let Some((embree, held)) = &self.embree
+            && *held == version
+        {
+            return Ok(embree.clone());
+        }
+        if let Some(part) = self.uploads.geometry.a_host_part() {
+            return Err(why(Error::OnDevice(EMBREE, part)));
+        }
+        let began = self.uploads.begin();
+        let embree = Arc::new(crate::embree::Embree::build(&self.uploads.scene).map_err(why)?);
+        self.embree = Some((embree.clone(), version));
+        self.uploads.note(EMBREE, How::Made, began);
+        Ok(embree)
+    }
+}

@@ -1,0 +1,430 @@
+//! The scene, and the buffers that it is uploaded to.
+
+use crate::{
+    atlas::Atlas,
+    buffers::{Buffers, Held, On, Patched, binding_limit},
+    built::{Built, How},
+    changes::Change,
+    error::Error,
+    eye::Eye,
+    geometry::Geometry,
+    hierarchies::{Tree, all},
+    host_buffers::{Bound, HostWrite, Kernels, Written},
+    lights,
+    names::*,
+    trees::nodes_to_walk,
+};
+use glam::{Vec3, Vec4};
+use skiagraph_graph::Provided;
+use skiagraph_scene::{
+    BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets, packed_masks::mask_words,
+};
+use std::{ops::Range, sync::Arc, time::Instant};
+
+/// A resource of scenes.
+pub(super) struct Resource {
+    pub name: &'static str,
+    pub made_from: MadeFrom,
+    pub held: Held,
+    /// Describes it to plans; `None` for a light that the scene does not have.
+    pub describe: fn(&Uploads, &str) -> Option<Provided>,
+    /// Uploads it, of the scene's mesh.
+    pub upload: fn(&mut Uploads, &Mesh, &str, On) -> Result<How, Error>,
+}
+
+/// A scene under a camera and lights, and what is uploaded of it.
+#[derive(Clone)]
+pub(super) struct Uploads {
+    resources: &'static [Resource],
+    pub scene: Arc<Scene>,
+    pub versions: Versions,
+    /// Words of [`MASKS`] and [`SHEETS`], made at once: plans ask how many there are.
+    pub masks: Arc<Vec<u32>>,
+    pub sheets: Arc<Sheets>,
+    pub buffers: Buffers,
+    pub geometry: Geometry,
+    pub kernels: Kernels,
+    /// Materials of the mesh, once they were asked for.
+    pub atlas: Arc<Atlas>,
+    pub built: Vec<Built>,
+}
+
+impl Uploads {
+    pub fn new(scene: Arc<Scene>, resources: &'static [Resource]) -> Self {
+        let lights = lights::from_scene(&scene);
+        let held = resources
+            .iter()
+            .map(|resource| (resource.name, resource.held));
+        Self {
+            versions: Versions::new(Eye::default(), scene.light(), lights),
+            masks: mask_words(&scene.mesh).into(),
+            sheets: Sheets::new(&scene.mesh).into(),
+            scene,
+            buffers: Buffers::new(held),
+            resources,
+            geometry: Geometry::whole(),
+            kernels: Kernels::default(),
+            atlas: Arc::default(),
+            built: Vec::new(),
+        }
+    }
+
+    pub fn light(&self) -> LightKind {
+        self.versions.light.light.now
+    }
+
+    pub fn lights(&self) -> &[LightKind] {
+        &self.versions.lights.now
+    }
+
+    /// The resource of a name; of a single light, the list.
+    pub fn find(&self, name: &str) -> Option<&'static Resource> {
+        let name = lights::list_of(name).unwrap_or(name);
+        self.resources.iter().find(|resource| resource.name == name)
+    }
+
+    /// Names of the resources that every provider has.
+    pub fn names(&self) -> impl Iterator<Item = String> {
+        let names = self.resources.iter().map(|resource| resource.name);
+        let names = names.filter(|name| lights::list_of(name).is_none());
+        names.map(str::to_owned)
+    }
+
+    pub fn unknown(&self, name: &str) -> Error {
+        Error::Unknown {
+            name: name.to_owned(),
+            known: self.names().collect(),
+        }
+    }
+
+    /// Returns the version of a resource, but for what the device adds to one.
+    pub fn version(&self, name: &str) -> u64 {
+        let made_from = self.find(name).map(|resource| resource.made_from);
+        let made_from = made_from.unwrap_or(MadeFrom::Mesh);
+        self.versions.get(made_from, lights::number(name))
+    }
+
+    /// The buffer of that name with what is in it now.
+    pub fn buffer(&mut self, name: &str, on: On) -> Result<wgpu::Buffer, Error> {
+        let is_parted = self.geometry.is_in_parts();
+        self.buffers.lay_over(self.versions.shape, is_parted);
+        self.buffers.keeps_gaps = self.geometry.a_host_part().is_some();
+        let version = self.version(name);
+        if let Some(buffer) = self.buffers.get(name, version) {
+            return Ok(buffer.clone());
+        }
+        let began = self.begin();
+        let resource = self.find(name).ok_or_else(|| self.unknown(name))?;
+        let scene = Arc::clone(&self.scene);
+        let how = (resource.upload)(self, &scene.mesh, name, on)?;
+        self.note(name, how, began);
+        let buffer = self.buffers.get(name, version);
+        buffer.cloned().ok_or_else(|| self.unknown(name))
+    }
+
+    /// The time, and the bytes uploaded so far, at which a resource begins to be made.
+    pub fn begin(&self) -> (Instant, u64) {
+        (Instant::now(), self.buffers.work.uploaded)
+    }
+
+    /// Notes what was made; of lights, which list they are of.
+    pub fn note(&mut self, name: &str, how: How, began: (Instant, u64)) {
+        let (time, uploaded) = (began.0.elapsed(), self.buffers.work.uploaded - began.1);
+        let Some(&Resource { name, .. }) = self.find(name) else {
+            return;
+        };
+        match self.built.iter_mut().find(|built| built.name == name) {
+            Some(built) => {
+                (built.how, built.time, built.uploaded) = (how, time, uploaded);
+                built.times += 1;
+            }
+            None => self.built.push(Built {
+                name,
+                how,
+                time,
+                uploaded,
+                times: 1,
+            }),
+        }
+    }
+
+    pub fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        on: On,
+    ) -> Result<How, Error> {
+        let version = self.version(name);
+        self.buffers.make(name, items, version, on)?;
+        Ok(How::Made)
+    }
+
+    pub fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
+        // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
+        // to bind, and so the smallest leaves are joined.
+        let most = binding_limit(&on.device.limits()) / size_of::<BvhNode>() as u64;
+        let (version, held) = (self.version(BVH_NODES), self.buffers.version(BVH_NODES));
+        let mesh = &self.scene.mesh;
+        let (trees, mut over) = self.geometry.trees(mesh);
+        let fitted = trees.bvh(&mut over, most as usize, version, held);
+        let (tree, nodes) = (&fitted.tree, nodes_to_walk(&fitted.tree));
+        let (buffers, changed) = (&mut self.buffers, &fitted.nodes);
+        let patched = buffers.patch_list(BVH_NODES, nodes, changed, version, on)?;
+        let (primitives, changed) = (&tree.primitives, &fitted.primitives);
+        buffers.patch_list(BVH_PRIMITIVES, primitives, changed, version, on)?;
+        let writes = match patched {
+            Patched::All => self.geometry.host_writes(None),
+            _ => self.geometry.host_writes(held),
+        };
+        let with_nodes = |(piece, write): (usize, HostWrite)| {
+            let levels = write.mesh.levels(tree, piece, on.device);
+            let first = tree.nodes_of(piece).start;
+            HostWrite {
+                nodes: Some((first, levels)),
+                ..write
+            }
+        };
+        let writes: Vec<HostWrite> = writes.into_iter().map(with_nodes).collect();
+        self.write_host_parts(BVH_NODES, patched, writes, on)?;
+        Ok(fitted.how)
+    }
+
+    /// Uploads the positions or normals that have changed, with a fourth coordinate.
+    pub fn upload_corners(
+        &mut self,
+        name: &str,
+        (items, w): (&[Vec3], f32),
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, held) = (self.version(name), self.buffers.version(name));
+        let (held, mesh) = (held.unwrap_or_default(), &self.scene.mesh);
+        let list = (name, items.len());
+        let changed = self.geometry.moved_since(held, list, mesh);
+        let append = |range: Range<usize>, to: &mut Vec<Vec4>| {
+            to.extend(items[range].iter().map(|item| item.extend(w)));
+        };
+        let changed = (items.len(), &changed[..]);
+        let patched = self.buffers.patch(name, changed, append, version, on)?;
+        let since = (patched != Patched::All).then_some(held);
+        let writes = self.geometry.host_writes(since).into_iter();
+        let writes = writes.map(|(_, write)| write).collect();
+        self.write_host_parts(name, patched, writes, on)?;
+        Ok(How::Made)
+    }
+
+    /// Has the GPU write parts of hosts' buffers into the buffer of that name, which was patched.
+    fn write_host_parts(
+        &mut self,
+        name: &str,
+        patched: Patched,
+        writes: Vec<HostWrite>,
+        on: On,
+    ) -> Result<(), Error> {
+        if writes.is_empty() {
+            return Ok(());
+        }
+        let Some(buffer) = self.buffers.renew(name, patched, on) else {
+            return Ok(());
+        };
+        match self.bind_host_parts((name, &buffer), HostWrite::sorted(writes), on) {
+            Ok(bound) => {
+                let uploaded = bound.record(self.buffers.record(name, on));
+                self.buffers.work.uploaded += uploaded;
+                Ok(())
+            }
+            Err(error) => {
+                // It has not what its version says.
+                self.buffers.forget(name);
+                Err(error)
+            }
+        }
+    }
+
+    fn bind_host_parts(
+        &mut self,
+        (name, buffer): (&str, &wgpu::Buffer),
+        writes: Vec<HostWrite>,
+        on: On,
+    ) -> Result<Bound, Error> {
+        self.geometry.check_host_parts()?;
+        if name == POSITIONS {
+            let written = Written::positions(buffer);
+            return self.kernels.bind(&written, &writes, on.device);
+        }
+        let [positions, indices] = [self.buffer(POSITIONS, on)?, self.buffer(INDICES, on)?];
+        if name == NORMALS {
+            let written = Written::normals(buffer, [&positions, &indices]);
+            return self.kernels.bind(&written, &writes, on.device);
+        }
+        let primitives = self.buffer(BVH_PRIMITIVES, on)?;
+        let written = Written::nodes(buffer, [&positions, &indices, &primitives]);
+        self.kernels.bind(&written, &writes, on.device)
+    }
+
+    /// Uploads the numbers of those triangles that have other corners than before.
+    pub fn upload_triangles<const N: usize>(
+        &mut self,
+        name: &str,
+        items: &[[u32; N]],
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, held) = (self.version(name), self.buffers.version(name));
+        let mesh = &self.scene.mesh;
+        let held = held.unwrap_or_default();
+        let turned = self.geometry.triangles_since(held, mesh);
+        let turned = turned.iter().map(|range| N * range.start..N * range.end);
+        let (items, changed) = (items.as_flattened(), turned.collect::<Vec<_>>());
+        self.buffers
+            .patch_list(name, items, &changed, version, on)?;
+        Ok(How::Made)
+    }
+
+    /// Uploads the items behind those that were there, of a list that only grows.
+    pub fn upload_appended<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+        &mut self,
+        name: &str,
+        items: &[T],
+        on: On,
+    ) -> Result<How, Error> {
+        let (version, held) = (self.version(name), self.buffers.version(name));
+        if held.is_none_or(|held| self.geometry.is_begun_after(held)) {
+            return self.upload_items(name, items, on);
+        }
+        self.buffers.extend(name, items, version, on)?;
+        Ok(How::Made)
+    }
+
+    fn upload_tree<N: bytemuck::Pod>(
+        &mut self,
+        [nodes, primitives]: [&str; 2],
+        tree: Tree<N>,
+        on: On,
+    ) -> Result<How, Error> {
+        self.upload_items(nodes, &tree.nodes, on)?;
+        let version = self.version(primitives);
+        match tree.primitives {
+            Some(items) => drop(self.upload_items(primitives, &items, on)?),
+            None => self.buffers.still_hold(primitives, version),
+        }
+        Ok(tree.how)
+    }
+
+    /// The light, if it can be used; of the scene's lights the error names which one it is.
+    pub fn checked(&self, light: LightKind) -> Result<LightKind, Error> {
+        let Err(reason) = light.check() else {
+            return Ok(light);
+        };
+        let mut lights = self.scene.lights.iter();
+        // Numbers that are none equal nothing, but their mistakes do.
+        let named = lights.find(|light| light.kind.check().as_ref() == Err(&reason));
+        let named = named.and_then(|light| light.check().err());
+        Err(Error::Light(named.unwrap_or(reason)))
+    }
+
+    pub fn upload_light_space(&mut self, on: On) -> Result<How, Error> {
+        if self.light().directional().is_none() {
+            return Err(Error::LightSpaceKind(self.light().word()));
+        }
+        if let Some(part) = self.geometry.a_host_part() {
+            return Err(Error::OnDevice(LIGHT_SPACE_NODES, part));
+        }
+        let light = self.geometry.lay(self.light(), &self.scene.mesh);
+        let space = LightSpace {
+            direction: light.to_light,
+            centre: light.centre,
+        };
+        // As in the other hierarchy, leaves are joined where there are too many nodes to bind; the
+        // last item is the centre.
+        let most = binding_limit(&on.device.limits()) / size_of::<LightSpaceNode>() as u64 - 1;
+        if self.geometry.is_in_parts() {
+            // An eighth of the scene's size nearer or farther, boxes are as tight.
+            let space = (space, light.max_distance / 16.0);
+            return self.upload_light_space_of_parts(space, most as usize, on);
+        }
+        let (trees, mut over) = self.geometry.trees(&self.scene.mesh);
+        let tree = trees.light_space(&mut over, space, most as usize)?;
+        self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
+    }
+
+    fn upload_light_space_of_parts(
+        &mut self,
+        space: (LightSpace, f32),
+        most: usize,
+        on: On,
+    ) -> Result<How, Error> {
+        let version = self.version(LIGHT_SPACE_NODES);
+        let versions = [self.versions.shape, version];
+        let (trees, mut over) = self.geometry.trees(&self.scene.mesh);
+        let parted = trees.light_space_of_parts(&mut over, space, most, versions)?;
+        let buffers = &mut self.buffers;
+        let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
+        let is_held = names.map(|name| buffers.take_up(name, parted.since));
+        let [nodes, primitives] = parted.changed;
+        let nodes = if is_held[0] {
+            nodes
+        } else {
+            all(parted.nodes.len())
+        };
+        buffers.patch_list(names[0], &parted.nodes, &nodes, version, on)?;
+        let items = &parted.tree.primitives;
+        let primitives = if is_held[1] {
+            primitives
+        } else {
+            all(items.len())
+        };
+        buffers.patch_list(names[1], items, &primitives, version, on)?;
+        for name in names {
+            buffers.leave(name, parted.since, version);
+        }
+        Ok(if parted.since == 0 {
+            How::Made
+        } else {
+            How::Refitted
+        })
+    }
+
+    /// Uploads `lights` or `light_areas`, or one of them.
+    pub fn upload_lights(&mut self, mesh: &Mesh, name: &str, on: On) -> Result<How, Error> {
+        for &light in self.lights() {
+            self.checked(light)?;
+        }
+        let lights = &self.versions.lights.now;
+        let content = lights::content(name, lights, |light| self.geometry.lay(light, mesh));
+        let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| self.unknown(name));
+        self.upload_items(name, &content.ok_or_else(missing)?, on)
+    }
+
+    /// Returns the mesh's materials.
+    pub fn atlas(&mut self) -> Result<Arc<Atlas>, Error> {
+        Arc::make_mut(&mut self.atlas).append(&self.scene.mesh.surfaces)?;
+        let atlas = Arc::clone(&self.atlas);
+        if !self.geometry.is_in_parts() {
+            // No other materials come, so that it is not worth its memory.
+            self.atlas = Arc::default();
+        }
+        Ok(atlas)
+    }
+
+    /// Notes which triangles of a part that was put into the mesh are sheets.
+    pub fn put_sheets(&mut self, part: &Mesh, first: usize) {
+        let total = self.scene.mesh.triangles.len();
+        Arc::make_mut(&mut self.sheets).put(part, first, total);
+    }
+
+    pub fn note_change(&mut self, change: Change) {
+        if change.is_grown {
+            self.versions.change_mesh();
+        }
+        if change.is_turned || change.is_painted {
+            // Texture coordinates come in the order of corners.
+            self.masks = mask_words(&self.scene.mesh).into();
+            self.versions.change_winding();
+        }
+        if change.is_painted {
+            self.versions.change_surfaces();
+        }
+        if change.is_elsewhere || change.is_turned {
+            self.versions.change_shape();
+        }
+    }
+}

@@ -317,7 +317,7 @@ mod tests {
         results.runs.insert(2, path);
         let failures = gate(3.0).failures(&results);
         let on_path =
-            "`nsm 1024` at 512x256: wrong 9.0000 % on frame 2 of `walk` is more than 3.0000 %";
+            "`nsm 1024` at 512x256: wrong 9.0000 % on frame 1 of `walk` is more than 3.0000 %";
         assert_eq!(failures, [on_path]);
     }
 }

@@ -249,9 +249,8 @@ pub fn path_costs(run: &Run) -> Vec<String> {
     let slowest = sequence.and_then(Sequence::slowest).map(|(index, cost)| {
         let clock = cost.gpu_ms.map_or("wall", |_| "GPU and CPU");
         format!(
-            "{}: slowest frame {}, {} ms ({clock})",
+            "{}: slowest frame {index}, {} ms ({clock})",
             run.method_label(),
-            index + 1,
             ms(cost.ms())
         )
     });

@@ -269,7 +269,7 @@ impl<'a> Row<'a> {
                 continue;
             };
             for (index, frame) in path.frames.iter().enumerate() {
-                let place = format!("frame {} of `{}`", index + 1, run.view);
+                let place = format!("frame {index} of `{}`", run.view);
                 add(of_frame(measured, index, frame)?, Some(place));
             }
         }

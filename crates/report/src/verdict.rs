@@ -294,7 +294,17 @@ fn conditioned(condition: Condition, sentences: Vec<String>, methods: &[Contende
     let judged = whole(facing_light.saturating_sub(band));
     let mut sentences: Vec<String> = sentences
         .into_iter()
-        .map(|sentence| format!("Of the {judged} that can be judged: {sentence}"))
+        .map(|sentence| {
+            // Behind a condition another one stands.
+            let is_conditioned = ["While ", "Whatever ", "Along "];
+            let is_conditioned = is_conditioned.iter().any(|word| sentence.starts_with(word));
+            let (joint, sentence) = if is_conditioned {
+                (", ", lower(&sentence))
+            } else {
+                (": ", sentence)
+            };
+            format!("Of the {judged} that can be judged{joint}{sentence}")
+        })
         .collect();
     let mut ranked: Vec<&Contender> = methods.iter().collect();
     ranked.sort_by_key(|method| method.wrong.in_band);

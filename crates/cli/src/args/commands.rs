@@ -87,7 +87,8 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
           value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
     pub reference_samples: u32,
-    /// Recommend no method whose frame takes longer with every pass run: `3ms`, `800us`.
+    /// Recommend no method whose frame takes longer, GPU and CPU together, on any view or in any
+    /// frame of a path; for each kind of movement by itself: `3ms`, `800us`.
     #[arg(long, value_name = "TIME", value_parser = milliseconds)]
     pub under: Option<f64>,
     /// Recommend no method that is wrong on so large a share of the pixels that face the light, or
@@ -103,7 +104,9 @@ pub struct CompareArgs {
     pub tune: bool,
     /// End with exit code 4 if a figure of a method is greater on any view or in any frame of a
     /// path: `nsm: wrong > 0.1%`, `missing > 5%` (of the shadow), `false > 5%` (of the light),
-    /// `rmse > 0.05`, `flip > 0.02`, `frame > 3ms`, `memory > 64MiB`. May be repeated.
+    /// `rmse > 0.05`, `flip > 0.02`, `frame > 3ms`, of frames before which that has moved `camera`,
+    /// `light`, `some_meshes`, `all_meshes` or `nothing`, `p95 > 4ms` (or `p50`, `p99`, `worst`),
+    /// `memory > 64MiB`. May be repeated.
     #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
     pub fail_if: Vec<Gate>,
     /// Compare each method on each view with older results: a results.json or its folder. End with

@@ -327,13 +327,6 @@ fn measure(
     measured: &mut Measured,
 ) -> Result<(), CliError> {
     let folder = &target.folder;
-    if let Some(name) = &target.name {
-        let number = measured.folders.len() + 1;
-        note(&format!(
-            "{name}, scene {number} of {}",
-            args.scene.scenes.len()
-        ));
-    }
     let mut series = Series::new(comparison, session, Some((folder, kept(args))))?;
     let file = folder.join("results.json");
     let written = |file: &Path| file.metadata().and_then(|file| file.modified()).ok();
@@ -348,6 +341,14 @@ fn measure(
         let kept = if is_some { some } else { none };
         Err(CliError::Interrupted { kept })
     });
+    // Behind the above, so that an end after it tells what is kept of this scene.
+    if let Some(name) = &target.name {
+        let number = measured.folders.len() + 1;
+        note(&format!(
+            "{name}, scene {number} of {}",
+            args.scene.scenes.len()
+        ));
+    }
     write_graphs(comparison, folder, session)?;
     let outcome = run(args, comparison, &mut series);
     let results = finish(args, target, series, outcome, measured)?;

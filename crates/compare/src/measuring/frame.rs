@@ -97,14 +97,27 @@ pub fn run(
     frame: &Frame,
 ) -> Result<(FrameReport, Duration), ExecuteError> {
     let began = Instant::now();
+    submit(session, executor, frame)?;
+    let report = wait(session, executor)?;
+    Ok((report, began.elapsed()))
+}
+
+/// Encodes and submits a frame, which [`wait`] waits for.
+///
+/// # Errors
+/// Those of [`run`].
+pub(crate) fn submit(
+    session: Session,
+    executor: &mut Executor,
+    frame: &Frame,
+) -> Result<(), ExecuteError> {
+    let began = Instant::now();
     let gives_up = || is_over(session, began);
     let submitted = executor.submit(frame, &gives_up);
     if let Err(ExecuteError::Unfinished { .. }) = submitted {
         abandon(session);
     }
-    submitted?;
-    let report = wait(session, executor)?;
-    Ok((report, began.elapsed()))
+    submitted.map(drop)
 }
 
 /// Frames after which buffers are as large as they get: each brings the count of the one before.
@@ -173,7 +186,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Waits for a submitted frame, but no longer than the GPU's timeout, and not after Ctrl-C. The
 /// device of a frame that is given up is of no more use.
-fn wait(session: Session, executor: &mut Executor) -> Result<FrameReport, ExecuteError> {
+pub(crate) fn wait(session: Session, executor: &mut Executor) -> Result<FrameReport, ExecuteError> {
     let began = Instant::now();
     loop {
         let passes = match executor.finish_within(Some(POLL_INTERVAL)) {

@@ -20,7 +20,8 @@ use crate::error::CompareError;
 use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::view_or_path::ViewOrPath;
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{CameraPath, Mesh, Scene};
+use skiagraph_scene::{Mesh, Movable, Scene};
+use std::sync::Arc;
 
 /// The frames of a still view or camera path in order: the camera of each frame, and its mesh if
 /// parts of the mesh move.
@@ -30,6 +31,8 @@ pub struct FrameSequence {
     /// Mesh of each frame, parallel to `poses`, all with the same triangles; `None` if no part of
     /// the mesh moves.
     pub meshes: Option<Vec<Mesh>>,
+    /// The mesh cut into the parts that move; `None` if no part does.
+    parts: Option<Arc<Movable>>,
     /// Frames per second of the path's clock, which says when each is; not how fast they are drawn.
     frames_per_second: f64,
 }
@@ -49,29 +52,40 @@ impl FrameSequence {
         jitter: Option<u32>,
         count: Option<u32>,
     ) -> Result<Self, CompareError> {
-        let (views, meshes, frames_per_second) = match view {
+        let path = match view {
             ViewOrPath::Still(view) => {
-                (vec![view.clone(); count.unwrap_or(1) as usize], None, 30.0)
+                let views = vec![view.clone(); count.unwrap_or(1) as usize];
+                return Ok(Self {
+                    poses: CameraPose::numbered(views, jitter),
+                    meshes: None,
+                    parts: None,
+                    frames_per_second: 30.0,
+                });
             }
-            ViewOrPath::Path(path) => {
-                let count = path.frames().min(count.unwrap_or(u32::MAX));
-                let views = (0..count).map(|frame| path.view(frame)).collect();
-                let meshes = meshes(path, &scene.mesh, count).map_err(CompareError::Input)?;
-                (views, meshes, path.frames_per_second)
-            }
+            ViewOrPath::Path(path) => path,
+        };
+        let count = path.frames().min(count.unwrap_or(u32::MAX));
+        let views = (0..count).map(|frame| path.view(frame)).collect();
+        let parts = path.movable(&scene.mesh).map_err(CompareError::Input)?;
+        let shapes = |parts: &Movable| {
+            let shapes = (0..count).map(|frame| path.shape(parts, frame));
+            shapes
+                .collect::<Result<_, _>>()
+                .map_err(CompareError::Input)
         };
         Ok(Self {
             poses: CameraPose::numbered(views, jitter),
-            meshes,
-            frames_per_second,
+            meshes: parts.as_ref().map(shapes).transpose()?,
+            parts: parts.map(Arc::new),
+            frames_per_second: path.frames_per_second,
         })
     }
 
-    /// Sets the mesh of the first frame in a provider of scene resources, triangles and normals
-    /// included, before [`show`](Self::show). Does nothing if no part of the mesh moves.
+    /// Sets the mesh in a provider of scene resources, in parts of which each that moves is a piece
+    /// of its own, before [`show`](Self::show). Does nothing if no part of the mesh moves.
     pub fn begin(&self, provider: &mut SceneProvider) {
-        if let Some(first) = self.meshes.iter().flatten().next() {
-            provider.set_mesh(first.clone());
+        if let Some(parts) = &self.parts {
+            provider.set_parts(parts.clone());
         }
     }
 
@@ -110,15 +124,4 @@ impl FrameSequence {
     pub fn seconds(&self, frame: usize) -> f32 {
         (frame as f64 / self.frames_per_second) as f32
     }
-}
-
-/// Builds the meshes of the first frames of a path; `None` where nothing moves.
-fn meshes(path: &CameraPath, mesh: &Mesh, frames: u32) -> Result<Option<Vec<Mesh>>, String> {
-    let movable = path.movable(mesh)?;
-    let shapes = movable.map(|movable| {
-        (0..frames)
-            .map(|frame| path.shape(&movable, frame))
-            .collect()
-    });
-    shapes.transpose()
 }

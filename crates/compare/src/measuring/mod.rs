@@ -53,4 +53,3 @@ mod trial;
 mod truth_folder;
 pub mod tune;
 pub mod view_or_path;
-mod walk;

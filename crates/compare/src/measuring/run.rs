@@ -7,25 +7,32 @@ use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::diagnostics::{Diagnostics, diagnose};
-use crate::measuring::frame::Contents;
+use crate::measuring::frame::{self, Contents};
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
-use crate::measuring::sequence::{Account, cost};
+use crate::measuring::sequence::{Account, cost, ms};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Times, Turn};
+use crate::measuring::timing::{
+    self, Kind, Takes, TimedKinds, Times, Turn, made_since, timed_frame,
+};
 use crate::measuring::view_or_path::ViewOrPath;
-use crate::measuring::{date, frame, guarantee, hint};
+use crate::measuring::{date, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
 use crate::records::regimes::RegimeTimes;
 use crate::records::results::{AreaReference, Images, Measured, Run};
+use crate::records::samples::{TimedFrame, Upkeep};
+use crate::records::sequence::Remade;
 use crate::records::statistics::FrameTimes;
 use crate::records::turns::Turns;
 use crate::sink::{Session, Step};
-use skiagraph_gpu::{ExecuteError, Executor, Provider};
+use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider};
 use skiagraph_graph::Plan;
-use skiagraph_passes::SceneProvider;
+use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{GroundTruth, Statistics};
-use std::cell::RefCell;
+use std::{
+    cell::RefCell,
+    time::{Duration, Instant},
+};
 
 /// Data that all methods share when they are measured on one view or path in one viewport.
 pub struct MeasureContext<'a> {
@@ -168,6 +175,74 @@ impl MeasureContext<'_> {
             measured,
             pictures: pictures.map(RefCell::take).unwrap_or_default(),
         })
+    }
+
+    /// Runs a method over a camera path and judges each frame; passes whose inputs have not changed
+    /// are skipped. Before the path begins, its first frame is drawn for the protocol's warm-up
+    /// frames, unless the method has `remembered` it already. Returns the times of the frames.
+    ///
+    /// # Errors
+    /// A method that the device refuses; an early end; a lost device; outputs whose size, format or
+    /// values a shadow method must not have.
+    fn follow(
+        &self,
+        (method, remembered): (&Method, bool),
+        executor: &mut Executor,
+        provider: &mut SceneProvider,
+        (account, step): (&mut Account, &Step),
+    ) -> Result<Vec<TimedFrame>, Stop> {
+        let (warmup, layer) = (self.protocol.warmup, self.layer(executor.plan()));
+        let request = Frame::new().with_all(true);
+        for _ in 0..if remembered { 0 } else { warmup } {
+            frame::run(self.session, executor, &request)?;
+        }
+        let mut times = Vec::new();
+        for index in 0..self.path.frames.poses.len() {
+            let (contents, timed, remade) = self.frame(method, executor, provider, index)?;
+            let (outputs, judgement) = self.judgement(method, index, layer, contents)?;
+            account.add(self.path, index, outputs, judgement)?;
+            if let Some(frame) = account.frames.last_mut() {
+                frame.cost = cost(&timed, self.timestamps);
+                (frame.skipped, frame.remade) = (timed.skipped.clone(), remade);
+            }
+            times.push(timed);
+            step.set_done(u64::from(warmup) + index as u64 + 1);
+        }
+        Ok(times)
+    }
+
+    /// Runs a frame of a path; returns its outputs, its times, and the resources that were made for
+    /// it.
+    fn frame(
+        &self,
+        method: &Method,
+        executor: &mut Executor,
+        provider: &mut SceneProvider,
+        index: usize,
+    ) -> Result<(Contents, TimedFrame, Vec<Remade>), Stop> {
+        let (session, frames) = (self.session, self.path.frames);
+        session.check_stopped()?;
+        frames.show(index, executor.plan().viewport(), provider)?;
+        let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
+        let began = Instant::now();
+        executor.refresh(provider)?;
+        let upkeep = Upkeep {
+            time: began.elapsed(),
+            uploaded: provider.work().uploaded - uploaded,
+        };
+        let remade = made_since(&built, provider.built()).map(remade).collect();
+        let read = method.preset.judged();
+        let request = Frame::new()
+            .with_timing(true)
+            .with_read(&read)
+            .with_seconds(frames.seconds(index));
+        let (mut report, wall) = frame::run(session, executor, &request)?;
+        // As a host does it: between frames, by the counts that have arrived.
+        executor.grow(provider)?;
+        let contents = frame::contents(std::mem::take(&mut report.readbacks));
+        let mut timed = timed_frame(report, Duration::ZERO, wall)?;
+        timed.upkeep = Some(upkeep);
+        Ok((contents, timed, remade))
     }
 
     /// Judges what a method shows in the frame with the index `index`.
@@ -353,6 +428,19 @@ impl MeasureContext<'_> {
             unavailable: None,
             ..planned.clone()
         }
+    }
+}
+
+/// The record of a resource that was made for a frame.
+fn remade(built: &Built) -> Remade {
+    Remade {
+        name: built.name.to_owned(),
+        how: match built.how {
+            How::Made => "made",
+            How::Refitted => "refitted",
+        }
+        .to_owned(),
+        ms: ms(built.time),
     }
 }
 

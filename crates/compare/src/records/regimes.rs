@@ -30,7 +30,7 @@ pub enum Regime {
     Camera,
     /// The light has moved, by far less than a texel of a shadow map. The camera has not.
     Light,
-    /// The parts that the scene's path moves, or else a twentieth of the parts, have moved.
+    /// The parts that the path moves have moved.
     SomeMeshes,
     /// All parts of the mesh have moved.
     AllMeshes,

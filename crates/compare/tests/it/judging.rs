@@ -43,7 +43,7 @@ fn every_run_is_measured_judged_and_pictured() {
     comparison.viewports = vec![[64, 64], [96, 48]];
     comparison.protocol.pictures = true;
     let (_, results) = keep(&comparison, out, Kept::Others).unwrap();
-    assert_eq!(results["schema"], 1);
+    assert_eq!(results["schema"], 2);
     assert_eq!(results["scene"]["name"], "park");
     let runs = results["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 6, "rt once and nsm twice, on two viewports");
@@ -106,11 +106,26 @@ fn fits_together(run: &Value) {
             ["certain_right", "certain_wrong", "uncertain"].map(|word| count(&split[word]));
         assert_eq!(counts.iter().sum::<u64>(), count(&pixels[class]), "{split}");
     }
+    let regimes = run["regimes"].as_array().unwrap();
+    let names: Vec<&Value> = regimes.iter().map(|times| &times["regime"]).collect();
+    assert_eq!(names, ["nothing", "camera", "light"], "no mesh moves");
+    let [rest, camera, light] = [0, 1, 2].map(|index| &regimes[index]);
+    assert_eq!(
+        (&rest["uploaded_bytes"], &rest["frame"]["gpu_ms"]["p95"]),
+        (&0.into(), &0.0.into())
+    );
+    let passes = run["passes"].as_array().unwrap().len();
+    assert_eq!(rest["skipped"].as_array().unwrap().len(), passes);
+    assert!(count(&camera["uploaded_bytes"]) > 0 && count(&light["uploaded_bytes"]) > 0);
+    // Its map depends on the light, not on the camera.
     match run["preset"].as_str() {
-        // Its map depends on the light, not on the camera, which is all that moves.
-        Some("nsm") => assert_eq!(run["cached"]["skipped"][1], "create_shadow_map.draw[0]"),
-        _ => assert_eq!(run["cached"], Value::Null),
+        Some("nsm") => assert_eq!(camera["skipped"][1], "create_shadow_map.draw[0]"),
+        _ => assert_eq!(camera["skipped"], Value::Null),
     }
+    assert!(
+        !light["skipped"].to_string().contains("create_shadow_map"),
+        "{light}"
+    );
     assert!(run["frame"]["wall_ms"]["median"].as_f64().unwrap() > 0.0);
     assert!(!run["passes"].as_array().unwrap().is_empty());
 }

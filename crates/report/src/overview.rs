@@ -3,7 +3,7 @@
 
 use crate::matrices::by_summary;
 use crate::summary::{Row, by_wall};
-use crate::summary_table::Summary;
+use crate::summary_table::{SOFTWARE, Summary};
 use crate::table::{or_dash, terminal};
 use crate::verdict::{Verdict, is_conditioned};
 use itertools::Itertools;
@@ -108,16 +108,21 @@ impl<'a> Overview<'a> {
         self.viewports().into_iter().map(matrix).collect()
     }
 
-    /// Returns sentences: how the scenes are sorted, the verdict on each scene, the methods that
-    /// are exact on all scenes, and the methods that the verdicts recommend.
+    /// Returns sentences: that the adapter is software, where it is; how the scenes are sorted, the
+    /// verdict on each scene, the methods that are exact on all scenes, and the methods that the
+    /// verdicts recommend.
     pub fn sentences(&self) -> Vec<String> {
         let verdict = |column: &Column| {
             let name = self.name(column);
             let sentences = column.verdict.sentences.iter();
+            let sentences = sentences.filter(|sentence| *sentence != SOFTWARE);
             let sentences = sentences.map(|sentence| format!("{name}: {sentence}"));
             sentences.collect::<Vec<_>>()
         };
-        let mut sentences = vec![ORDER.to_owned()];
+        let mut verdicts = self.columns.iter().map(|column| &column.verdict.sentences);
+        let is_software = verdicts.any(|sentences| sentences.iter().any(|one| one == SOFTWARE));
+        let first = is_software.then_some(SOFTWARE).into_iter();
+        let mut sentences: Vec<String> = first.chain([ORDER]).map(str::to_owned).collect();
         sentences.extend(self.columns.iter().flat_map(verdict));
         sentences.push(self.exact_on_all());
         sentences.extend(self.taken());

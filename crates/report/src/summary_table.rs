@@ -55,6 +55,9 @@ const WARNING: &str = "warning: ";
 /// rounding decides.
 pub const WRONG: &str = "wrong outside band";
 
+/// First sentence of a verdict on times of an adapter that runs on the CPU.
+pub const SOFTWARE: &str = "The adapter is software: its times say nothing about a GPU.";
+
 /// Text in the cell of a row that could not run.
 pub const NOT_THERE: &str = "n/a";
 
@@ -83,7 +86,11 @@ impl<'a> Summary<'a> {
 
     /// Returns the verdict on the rows: the method to take, within the budgets of the results.
     pub fn verdict(&self) -> Verdict {
-        verdict(&self.rows, &self.results.budgets)
+        let mut verdict = verdict(&self.rows, &self.results.budgets);
+        if self.results.adapter.device_type == "Cpu" && !verdict.sentences.is_empty() {
+            verdict.sentences.insert(0, SOFTWARE.into());
+        }
+        verdict
     }
 
     /// True if a row was measured an hour or more before the newest one. Such a row takes no part

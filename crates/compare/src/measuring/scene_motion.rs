@@ -12,6 +12,12 @@ use skiagraph_scene::{LightKind, Mesh};
 /// same, but more than `f32` rounds away.
 const STEP: f64 = 1e-4;
 
+/// The length of the step with the number `count`: no two in a row are alike, as a provider keeps
+/// the buffers of a camera or light that comes again.
+fn length(count: usize) -> f64 {
+    STEP * (1.0 + (count % 64) as f64 / 64.0)
+}
+
 /// Returns the regimes of the frames of a view or path: meshes move if parts of them do there.
 pub fn regimes(frames: &FrameSequence) -> &'static [Regime] {
     match &frames.meshes {
@@ -20,13 +26,13 @@ pub fn regimes(frames: &FrameSequence) -> &'static [Regime] {
     }
 }
 
-/// Moves what moves in a regime, in a provider that shows the frame with the index `index`. `index`
-/// has to be shown again before the next step.
+/// Moves what moves in a regime, in a provider that shows the frame with the index `index`. The
+/// frame has to be shown again before the same moves again. `count` numbers the steps.
 ///
 /// # Errors
 /// A light or positions that cannot be used.
 pub fn step(
-    regime: Regime,
+    (regime, count): (Regime, usize),
     (frames, index): (&FrameSequence, usize),
     viewport: [u32; 2],
     provider: &mut SceneProvider,
@@ -36,13 +42,14 @@ pub fn step(
         Regime::Camera => {
             let mut camera = frames.poses[index].camera(viewport);
             let distance = camera.near.max(camera.eye.length());
-            camera.eye += camera.right * (STEP * distance);
+            camera.eye += camera.right * (length(count) * distance);
             provider.set_camera(&camera);
             None
         }
         Regime::Light => {
-            let lights: Vec<LightKind> = provider.lights().iter().map(moved_light).collect();
-            let light = moved_light(&provider.light());
+            let moved = |light: &LightKind| moved_light(light, length(count));
+            let lights: Vec<LightKind> = provider.lights().iter().map(moved).collect();
+            let light = moved(&provider.light());
             let set = provider.set_lights(&lights);
             set.map_err(|error| CompareError::Input(format!("a moved light: {error}")))?;
             provider.set_light(light);
@@ -63,19 +70,19 @@ pub fn step(
 }
 
 /// A light that is turned or shifted by a step.
-fn moved_light(light: &LightKind) -> LightKind {
+fn moved_light(light: &LightKind, step: f64) -> LightKind {
     match *light {
         LightKind::Directional(mut light) => {
             let across = light.direction.any_orthogonal_vector().normalize_or_zero();
-            light.direction += across * (STEP * light.direction.length());
+            light.direction += across * (step * light.direction.length());
             light.into()
         }
         LightKind::Spot(mut light) => {
-            light.position.x += STEP * (1.0 + light.position.length());
+            light.position.x += step * (1.0 + light.position.length());
             light.into()
         }
         LightKind::Point(mut light) => {
-            light.position.x += STEP * (1.0 + light.position.length());
+            light.position.x += step * (1.0 + light.position.length());
             light.into()
         }
     }

@@ -148,8 +148,8 @@ impl<'t, 'e> Takes<'t, 'e> {
                     .show(turn.frame, self.viewport, &mut self.provider)?;
             }
             Kind::Moved(regime) => {
-                let shown = (self.frames, turn.frame);
-                scene_motion::step(regime, shown, self.viewport, &mut self.provider)?;
+                let (step, shown) = ((regime, self.turns), (self.frames, turn.frame));
+                scene_motion::step(step, shown, self.viewport, &mut self.provider)?;
             }
         }
         let count = self.takes.len();

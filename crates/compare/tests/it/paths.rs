@@ -81,7 +81,11 @@ fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
             };
             let [rest, camera, light, some, whole] = [0, 1, 2, 3, 4].map(upkeep);
             assert_eq!(rest.1, 0, "{}", run["preset"]);
-            assert!(camera.1 > 0 && light.1 > 0);
+            assert!(
+                camera.1 > 0 && light.1 > 0,
+                "{path} {} {camera:?} {light:?}",
+                run["preset"]
+            );
             assert!(
                 some.1 > camera.1 && whole.1 > 2 * some.1,
                 "{some:?} {whole:?}"

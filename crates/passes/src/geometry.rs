@@ -244,9 +244,15 @@ impl Geometry {
         let version = next_version();
         for piece in &mut self.pieces {
             let [places, directions] = piece.ranges(mesh);
-            if mesh.positions[places.clone()] != positions[places.clone()]
-                || mesh.normals[directions.clone()] != normals[directions]
-            {
+            let is_elsewhere = match &piece.content {
+                // Its range holds those of parts, too.
+                Content::Outside(outside) => outside.is_elsewhere(mesh, positions, normals),
+                _ => {
+                    mesh.positions[places.clone()] != positions[places.clone()]
+                        || mesh.normals[directions.clone()] != normals[directions]
+                }
+            };
+            if is_elsewhere {
                 piece.moved = version;
                 self.work.moved += places.len() as u64;
             }

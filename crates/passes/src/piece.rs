@@ -147,6 +147,18 @@ impl Piece {
 }
 
 impl Outside {
+    /// True if a corner of its triangles would have another place or normal than in `mesh`.
+    pub fn is_elsewhere(&self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> bool {
+        let mut corners = self.corners.iter().map(|&corner| corner as usize);
+        let triangles = self
+            .triangles
+            .iter()
+            .map(|&id| mesh.normal_indices[id as usize]);
+        let mut directions = triangles.flatten().map(|normal| normal as usize);
+        corners.any(|at| mesh.positions[at] != positions[at])
+            || directions.any(|at| mesh.normals[at] != normals[at])
+    }
+
     /// The range that holds its triangles.
     pub fn range(&self) -> Range<usize> {
         let ends = self.triangles.first().zip(self.triangles.last());

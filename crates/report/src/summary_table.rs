@@ -230,7 +230,7 @@ impl<'a> Summary<'a> {
                 label += " (tuned)";
             }
             if !row.is_whole() {
-                label += " (1 frame)";
+                label += " (cut short)";
             }
             if self.is_old(row) {
                 label += &format!(" (of {})", row.session());

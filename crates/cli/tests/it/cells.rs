@@ -367,3 +367,54 @@ fn cells_of_two_machines_that_disagree_are_not_joined() {
         "two/truth/",
     ]);
 }
+
+/// A comparison that is killed at any moment loses no cell that was judged, and `--resume` ends
+/// with the same counts as one that was never killed.
+#[test]
+fn twenty_kills_lose_no_cell_that_was_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "compare nsm pcf rt light_buffer --scene park --view all --size 24x24 \
+                --map-size 16 --frames 2 --warmup 0 --regime-frames 1 --images none";
+    let runs_in = |out: &str| -> Vec<Value> {
+        let file = folder.path().join(out).join("results.json");
+        let text = fs::read_to_string(file).unwrap_or_else(|_| r#"{"runs": []}"#.into());
+        let results: Value = serde_json::from_str(&text).expect("no file is torn");
+        results["runs"].as_array().unwrap().clone()
+    };
+    let (seed, mut random, mut kept) = (57u64, 57u64, 0);
+    for kill in 0..20 {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
+            .args(format!("{line} --out killed --resume").split_whitespace())
+            .current_dir(folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        thread::sleep(Duration::from_millis(200 + (random >> 33) % 900));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let runs = runs_in("killed").len();
+        assert!(
+            runs >= kept,
+            "seed {seed}, kill {kill}: {runs} of {kept} runs"
+        );
+        kept = runs;
+    }
+    assert!(kept > 0, "no run was judged before a kill");
+    skiagraph(folder.path(), &format!("{line} --out killed --resume"));
+    skiagraph(folder.path(), &format!("{line} --out whole"));
+    let answers = |out: &str| -> Vec<Value> {
+        let runs = runs_in(out).into_iter();
+        let answers = runs.map(|run| {
+            assert!(run["turns"].is_object(), "{run}");
+            ANSWERS.iter().map(|name| run[*name].clone()).collect()
+        });
+        let mut answers: Vec<Value> = answers.collect();
+        answers.sort_by_key(Value::to_string);
+        answers
+    };
+    assert_eq!(answers("killed"), answers("whole"));
+}

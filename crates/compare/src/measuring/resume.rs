@@ -88,13 +88,13 @@ pub(crate) fn earlier(
     opened.others = rest;
     let total = runs.len();
     let is_tuned = planned.iter().any(|run| run.tuned.is_some());
+    let is_same = |planned: &Run, run: &Run| {
+        planned.is_in_place_of(run)
+            && (&planned.params, &planned.fingerprint) == (&run.params, &run.fingerprint)
+    };
     let take = |planned: &Run| {
-        let is_same = |run: &Run| {
-            planned.is_in_place_of(run)
-                && run.is_whole()
-                && (&planned.params, &planned.fingerprint) == (&run.params, &run.fingerprint)
-        };
-        let index = runs.iter().position(|run| resumes && is_same(run))?;
+        let is_kept = |run: &Run| resumes && run.is_whole() && is_same(planned, run);
+        let index = runs.iter().position(is_kept)?;
         let mut kept = runs.swap_remove(index);
         if let Some(measured) = kept.measured.as_mut().filter(|_| is_tuned) {
             measured.hint = None;
@@ -118,7 +118,13 @@ pub(crate) fn earlier(
             runs.len()
         ));
     }
-    opened.dropped = runs;
+    // Runs that were judged and not timed stay until they are measured again.
+    let is_judged = |run: &Run| {
+        resumes && !run.is_whole() && planned.iter().any(|planned| is_same(planned, run))
+    };
+    let (judged, changed): (Vec<Run>, Vec<Run>) = runs.into_iter().partition(is_judged);
+    opened.others.extend(judged);
+    opened.dropped = changed;
     Ok((opened, kept))
 }
 

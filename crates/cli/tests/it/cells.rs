@@ -371,6 +371,7 @@ fn cells_of_two_machines_that_disagree_are_not_joined() {
 /// A comparison that is killed at any moment loses no cell that was judged, and `--resume` ends
 /// with the same counts as one that was never killed.
 #[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
 fn twenty_kills_lose_no_cell_that_was_judged() {
     let folder = tempfile::tempdir().unwrap();
     let line = "compare nsm pcf rt light_buffer --scene park --view all --size 24x24 \
@@ -381,8 +382,11 @@ fn twenty_kills_lose_no_cell_that_was_judged() {
         let results: Value = serde_json::from_str(&text).expect("no file is torn");
         results["runs"].as_array().unwrap().clone()
     };
+    let file = folder.path().join("killed/results.json");
+    let written = || file.metadata().and_then(|file| file.modified()).ok();
     let (seed, mut random, mut kept) = (57u64, 57u64, 0);
     for kill in 0..20 {
+        let before = written();
         let mut child = Command::new(env!("CARGO_BIN_EXE_skiagraph"))
             .args(format!("{line} --out killed --resume").split_whitespace())
             .current_dir(folder.path())
@@ -390,11 +394,16 @@ fn twenty_kills_lose_no_cell_that_was_judged() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
+        // Until a run is written, and some time after that.
+        while written() == before && child.try_wait().unwrap().is_none() {
+            thread::sleep(Duration::from_millis(5));
+        }
         random = random
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1);
-        thread::sleep(Duration::from_millis(200 + (random >> 33) % 900));
-        child.kill().unwrap();
+        thread::sleep(Duration::from_millis((random >> 33) % 700));
+        // One that has ended by itself is no fault.
+        let _ = child.kill();
         child.wait().unwrap();
         let runs = runs_in("killed").len();
         assert!(

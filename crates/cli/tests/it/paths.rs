@@ -79,6 +79,6 @@ fn figures_lines_and_pictures_say_of_which_path_and_frame_they_are() {
         assert!(is_named, "{line}");
     }
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    assert!(page.contains("walk: nsm 32 as it is: slowest frame"));
+    assert!(page.contains("walk: nsm 32: slowest frame"));
     assert!(page.contains("\"label\":null,\"frame\":"), "the reference");
 }

@@ -12,7 +12,7 @@ fn figures(comparison: Comparison, frames: [u32; 3]) -> Value {
     let run = &mut runs[0];
     let mut frames = run["sequence"]["frames"].take();
     for frame in frames.as_array_mut().into_iter().flatten() {
-        for time in ["gpu_ms", "wall_ms", "every_pass", "remade"] {
+        for time in ["gpu_ms", "cpu_ms", "wall_ms", "remade"] {
             frame.as_object_mut().unwrap().remove(time);
         }
     }

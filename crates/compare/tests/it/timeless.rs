@@ -11,7 +11,7 @@ pub fn timeless(mut value: Value) -> Value {
                 for of_the_hour in ["began", "date", "machine", "session", "turns"] {
                     fields.remove(of_the_hour);
                 }
-                for frames in ["gpu_frames", "wall_frames"] {
+                for frames in ["gpu_frames", "cpu_frames", "wall_frames"] {
                     fields.remove(frames);
                 }
                 fields.remove("commands");

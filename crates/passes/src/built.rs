@@ -1,5 +1,9 @@
 //! Resources made for a graph, how, and in what time.
 
+use crate::{
+    lights,
+    names::{BVH_NODES, BVH_PRIMITIVES, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES},
+};
 use std::time::Duration;
 
 /// Record of how a [`SceneProvider`](crate::SceneProvider) has built one resource: the kind and
@@ -18,6 +22,23 @@ pub struct Built {
     pub uploaded: u64,
     /// Number of times that the provider has built or refitted the resource so far.
     pub times: u32,
+}
+
+/// The two buffers of a hierarchy, which one build makes.
+const TOGETHER: [[&str; 2]; 2] = [
+    [BVH_NODES, BVH_PRIMITIVES],
+    [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES],
+];
+
+impl Built {
+    /// True if the build has also made the resource that plans call `name`
+    /// ([`Plan::provided`](skiagraph_graph::Plan::provided)): a single light is made with its list,
+    /// and the two buffers of a hierarchy together.
+    pub fn makes(&self, name: &str) -> bool {
+        let name = lights::list_of(name).unwrap_or(name);
+        let is_one_of = |pair: &[&str; 2]| pair.contains(&name) && pair.contains(&self.name);
+        name == self.name || TOGETHER.iter().any(is_one_of)
+    }
 }
 
 /// Kind of work that builds a resource of a [`SceneProvider`](crate::SceneProvider).

@@ -60,7 +60,16 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let Some(main) = verdicts.last() else {
         return Verdict::default();
     };
-    let mut sentences = main.counted(&verdicts, budgets);
+    let doubtful = main.full.iter().find_map(|method| method.condition);
+    let judged = doubtful.map(|condition| condition.judged());
+    let under = |condition: &str, sentence: &str| match (&judged, condition) {
+        (None, "") => sentence.to_owned(),
+        (None, condition) => format!("{condition}: {}", lower(sentence)),
+        (Some(judged), "") => format!("{judged}: {}", lower(sentence)),
+        (Some(judged), _) => format!("{judged}, {}: {}", lower(condition), lower(sentence)),
+    };
+    let counted = main.counted(&verdicts, budgets).into_iter();
+    let mut sentences: Vec<String> = counted.map(|sentence| under("", &sentence)).collect();
     let groups = grouped(&verdicts);
     for group in &groups {
         let Some(single) = group.last() else {
@@ -72,16 +81,11 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
             (1, _) => "Whatever moves".to_owned(),
             _ => condition(group),
         };
-        let mut own = single.sentences.iter();
-        let first = own.next().map(|sentence| match &*condition {
-            "" => sentence.clone(),
-            condition => format!("{condition}: {}", lower(sentence)),
-        });
-        sentences.extend(first.into_iter().chain(own.cloned()));
+        let conditions = std::iter::once(&*condition).chain(std::iter::repeat(""));
+        let own = conditions.zip(&single.sentences);
+        sentences.extend(own.map(|(condition, sentence)| under(condition, sentence)));
     }
-    if let Some(condition) = main.full.iter().find_map(|method| method.condition) {
-        sentences = conditioned(condition, sentences, &main.full);
-    }
+    sentences.extend(doubtful.map(|condition| condition.doubt(&main.full)));
     let beyond = main.full.iter().filter_map(|method| method.beyond(budgets));
     sentences.extend(beyond);
     sentences.extend(tuning::sentences(rows));
@@ -285,40 +289,35 @@ impl Condition {
         let share = band as f64 / facing_light.max(1) as f64;
         (share > MAX_BAND).then_some(Self { band, facing_light })
     }
-}
 
-/// The sentences with the pixels that they hold of, and how much methods differ on the others.
-fn conditioned(condition: Condition, sentences: Vec<String>, methods: &[Contender]) -> Vec<String> {
-    let Condition { band, facing_light } = condition;
-    let whole = |count: u64| format!("{:.0} %", 100.0 * count as f64 / facing_light as f64);
-    let judged = whole(facing_light.saturating_sub(band));
-    let mut sentences: Vec<String> = sentences
-        .into_iter()
-        .map(|sentence| {
-            // Behind a condition another one stands.
-            let is_conditioned = ["While ", "Whatever ", "Along "];
-            let is_conditioned = is_conditioned.iter().any(|word| sentence.starts_with(word));
-            let (joint, sentence) = if is_conditioned {
-                (", ", lower(&sentence))
-            } else {
-                (": ", sentence)
-            };
-            format!("Of the {judged} that can be judged{joint}{sentence}")
-        })
-        .collect();
-    let mut ranked: Vec<&Contender> = methods.iter().collect();
-    ranked.sort_by_key(|method| method.wrong.in_band);
-    let share =
-        |method: &&Contender| format!("`{}` {}", method.label, percent(method.wrong.in_band, band));
-    let (least, most) = (ranked.first(), ranked.last().filter(|_| ranked.len() > 1));
-    let shares: Vec<String> = least.into_iter().chain(most).map(share).collect();
-    sentences.push(format!(
-        "On the other {} the right answer hangs on rounding: no method is right or wrong there. \
-         From the reference's choice differ {}.",
-        whole(band),
-        shares.join(" (the least) and ") + if shares.len() > 1 { " (the most)" } else { "" }
-    ));
-    sentences
+    /// A number of pixels as a share of those that face the light.
+    fn share(self, count: u64) -> String {
+        format!("{:.0} %", 100.0 * count as f64 / self.facing_light as f64)
+    }
+
+    /// The pixels that sentences hold of.
+    fn judged(self) -> String {
+        let judged = self.share(self.facing_light.saturating_sub(self.band));
+        format!("Of the {judged} that can be judged")
+    }
+
+    /// How much methods differ on the other pixels.
+    fn doubt(self, methods: &[Contender]) -> String {
+        let mut ranked: Vec<&Contender> = methods.iter().collect();
+        ranked.sort_by_key(|method| method.wrong.in_band);
+        let share = |method: &&Contender| {
+            let share = percent(method.wrong.in_band, self.band);
+            format!("`{}` {share}", method.label)
+        };
+        let (least, most) = (ranked.first(), ranked.last().filter(|_| ranked.len() > 1));
+        let shares: Vec<String> = least.into_iter().chain(most).map(share).collect();
+        format!(
+            "On the other {} the right answer hangs on rounding: no method is right or wrong \
+             there. From the reference's choice differ {}.",
+            self.share(self.band),
+            shares.join(" (the least) and ") + if shares.len() > 1 { " (the most)" } else { "" }
+        )
+    }
 }
 
 /// A row, with what decides.
@@ -1226,7 +1225,7 @@ mod tests {
         assert_eq!(
             sentences,
             [
-                "Of the 42 % that can be judged: Take `hybrid_pcf` (30.0 ms a frame). It is right \
+                "Of the 42 % that can be judged: take `hybrid_pcf` (30.0 ms a frame). It is right \
                  on all of these. `nsm` is 3.3 times as fast and wrong on 0.121 % of these.",
                 "On the other 58 % the right answer hangs on rounding: no method is right or wrong \
                  there. From the reference's choice differ `hybrid_pcf` 2.073 % (the least) and \

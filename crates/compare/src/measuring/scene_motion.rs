@@ -20,10 +20,18 @@ fn length(count: usize) -> f64 {
 
 /// Returns the regimes of the frames of a view or path: meshes move if parts of them do there.
 pub fn regimes(frames: &FrameSequence) -> &'static [Regime] {
-    match &frames.meshes {
+    match elsewhere(frames, 0) {
         Some(_) => &Regime::ALL,
         None => &Regime::ALL[..3],
     }
+}
+
+/// The next mesh, from the frame with the index `index` on and then from the first, whose parts are
+/// elsewhere than in that frame.
+fn elsewhere(frames: &FrameSequence, index: usize) -> Option<&Mesh> {
+    let meshes = frames.meshes.as_deref()?;
+    let mut behind = meshes[index + 1..].iter().chain(&meshes[..index]);
+    behind.find(|mesh| mesh.positions != meshes[index].positions)
 }
 
 /// Moves what moves in a regime, in a provider that shows the frame with the index `index`. The
@@ -56,9 +64,8 @@ pub fn step(
             None
         }
         Regime::SomeMeshes => {
-            let meshes = frames.meshes.as_deref().unwrap_or_default();
-            let beside = meshes.get(index + 1).or(meshes.get(index.wrapping_sub(1)));
-            beside.map(|mesh| (mesh.positions.clone(), mesh.normals.clone()))
+            let mesh = elsewhere(frames, index);
+            mesh.map(|mesh| (mesh.positions.clone(), mesh.normals.clone()))
         }
         Regime::AllMeshes => Some(shifted(&provider.scene().mesh)),
     };

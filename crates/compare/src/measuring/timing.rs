@@ -195,7 +195,10 @@ impl<'t, 'e> Takes<'t, 'e> {
         let refresh = Instant::now();
         executor.refresh(provider)?;
         let mut refresh = refresh.elapsed();
-        let own: Vec<Built> = made_since(&built, provider.built()).copied().collect();
+        // Resources that no pass reads, made for others that one does, stay this method's own.
+        let read = executor.plan().provided();
+        let own = made_since(&built, provider.built()).filter(|built| is_read(built, &read));
+        let own: Vec<Built> = own.copied().collect();
         let request = Frame::new().with_seconds(self.frames.seconds(turn.frame));
         // A frame with timing is never left out.
         let is_rest = turn.kind == Kind::Moved(Regime::Nothing);
@@ -240,11 +243,16 @@ impl Take<'_> {
         let Some(upkeep) = frame.and_then(|frame| frame.upkeep.as_mut()) else {
             return;
         };
-        for built in made.iter().filter(|built| reads(&read, built.name)) {
+        for built in made.iter().filter(|built| is_read(built, &read)) {
             upkeep.time += built.time;
             upkeep.uploaded += built.uploaded;
         }
     }
+}
+
+/// True if a build has made one of the resources that a plan reads.
+fn is_read(built: &Built, read: &[&str]) -> bool {
+    read.iter().any(|name| built.makes(name))
 }
 
 /// Runs a frame without timing. If no pass ran, returns a frame without times, and the time that
@@ -267,18 +275,6 @@ fn rest(
         skipped: report.skipped.clone(),
     };
     Ok((report.skipped.len() == passes).then(|| (frame(), cpu)))
-}
-
-/// True if one of the resources `read` is made with the one that is called `made`: a single light
-/// is made with all, and the two buffers of a hierarchy together.
-fn reads(read: &[&str], made: &str) -> bool {
-    let stem = |name: &str| {
-        let name = name.split('[').next().unwrap_or(name).to_owned();
-        name.trim_end_matches("_nodes")
-            .trim_end_matches("_primitives")
-            .to_owned()
-    };
-    read.iter().any(|name| stem(name) == stem(made))
 }
 
 /// Returns the resources that were made between two moments.

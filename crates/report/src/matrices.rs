@@ -4,6 +4,7 @@
 use crate::summary::{Row, by_wall};
 use crate::summary_table::{Summary, summaries};
 use crate::table::{or_dash, terminal};
+use crate::verdict::main_choice;
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::results::{Results, Run};
@@ -53,7 +54,10 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
         let cell = |summary: &Summary, row: &Row| {
             let wrong = row.wrong();
             let share = percent(wrong.outside_band, wrong.facing_light);
-            let time = or_dash(row.frame_ms(None, by_wall(&summary.rows)), ms);
+            let time = or_dash(
+                row.frame_ms(main_choice(&summary.rows), by_wall(&summary.rows)),
+                ms,
+            );
             format!("{share}, {time} ms, {}", bytes(row.bytes()))
         };
         tables.push((viewport, by_summary(&lights, cell)));

@@ -5,7 +5,7 @@ use crate::matrices::by_summary;
 use crate::summary::{Row, by_wall};
 use crate::summary_table::{SOFTWARE, Summary};
 use crate::table::{or_dash, terminal};
-use crate::verdict::{Verdict, is_conditioned};
+use crate::verdict::{Verdict, is_conditioned, main_choice};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::results::Results;
@@ -247,7 +247,10 @@ fn cell(summary: &Summary, row: &Row) -> String {
         percent(wrong.outside_band, wrong.facing_light)
     };
     let star = if is_exact(summary, row) { " *" } else { "" };
-    let time = or_dash(row.frame_ms(None, by_wall(&summary.rows)), ms);
+    let time = or_dash(
+        row.frame_ms(main_choice(&summary.rows), by_wall(&summary.rows)),
+        ms,
+    );
     format!("{error}{star}\n{time} ms")
 }
 

@@ -25,9 +25,9 @@ const LARGE: f64 = 0.25;
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
     /// Index of the row that is fastest among the [exact](Row::is_exact) ones within the budgets,
-    /// for each choice of frames. There is none if [shares of light](skiagraph_compare#terms) under
-    /// a light with an extent are compared, or if there is a budget of wrong pixels and a row
-    /// within the budgets that is not exact is faster.
+    /// for each choice of frames. There is none if nothing moves and it costs next to nothing; if
+    /// [shares of light](skiagraph_compare#terms) under a light with an extent are compared; or if
+    /// there is a budget of wrong pixels and a row within the budgets that is not exact is faster.
     pub fastest_exact: BTreeMap<When, usize>,
     /// Indices of the recommended rows, or if none is right enough of the least wrong ones: the
     /// fastest, then those whose times cannot be told apart from it. Times are of the path's own
@@ -113,6 +113,12 @@ pub fn choices(rows: &[Row]) -> Vec<When> {
         choices.push(None);
     }
     choices
+}
+
+/// Returns the choice of frames whose times stand for a method where there is room for one: those
+/// before which most has moved, or a path's own.
+pub fn main_choice(rows: &[Row]) -> When {
+    choices(rows).last().copied().flatten()
 }
 
 /// The verdict for one choice of frames.
@@ -468,10 +474,14 @@ impl<'a> Contender<'a> {
         format!("{} ms a frame", ms(self.frame))
     }
 
+    /// True if nothing moves and it costs next to nothing.
+    fn is_resting(&self) -> bool {
+        self.when == Some(Regime::Nothing) && self.frame < AT_REST_MS
+    }
+
     fn is_told_apart(&self, other: &Self) -> bool {
-        let is_rest = self.when == Some(Regime::Nothing);
-        let are_small = is_rest && self.frame.max(other.frame) < AT_REST_MS;
-        !are_small && self.row.is_told_apart(other.row, self.when, self.by_wall)
+        let are_resting = self.is_resting() && other.is_resting();
+        !are_resting && self.row.is_told_apart(other.row, self.when, self.by_wall)
     }
 
     /// How many times as fast as another method it is, with the interval.
@@ -517,7 +527,7 @@ fn hard<'a>(methods: &[Contender]) -> Single<'a> {
         least(rivals, |method| method.frame)
     };
     Single {
-        fastest_exact: Some(best.index),
+        fastest_exact: (!best.is_resting()).then_some(best.index),
         first: with_level(best, &exact, |_| true),
         is_taken: true,
         runner_up: faster.or_else(next).map(|method| method.index),

@@ -4,7 +4,7 @@
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
 use crate::summary::Row;
-use crate::verdict::MAX_BAND;
+use crate::verdict::{MAX_BAND, main_choice};
 use skiagraph_chart::xml;
 use skiagraph_compare::records::results::{Measured, Run};
 use skiagraph_compare::records::sequence::SequenceFrame;
@@ -45,7 +45,9 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
             let frame = frame_in_words(Some(frame));
             return Some(format!("<b>{sign}{label}</b>{frame}: {figures}"));
         }
-        let time = row.frame_ms(None, table.by_wall).map_or("–".into(), ms);
+        let time = row
+            .frame_ms(main_choice(&table.summary.rows), table.by_wall)
+            .map_or("–".into(), ms);
         let error = error(table, row);
         let suffix = if row.views() > 1 && !table.summary.is_soft() && !is_right(row) {
             let share = percent(measured.wrong_outside_band(), run.pixels.facing_light);

@@ -193,10 +193,10 @@ mod tests {
         let captions = html.split("<figcaption>").skip(1);
         let captions: Vec<&str> = captions.collect();
         assert!(
-            captions[1].contains("rt</b>: no wrong pixel, 3.00 ms"),
+            captions[1].contains("rt</b>: no wrong pixel, 1.50 ms"),
             "{html}"
         );
-        let wrong = "nsm 1024</b>: 0.497 % wrong, 3.00 ms; blue lights a shadow, red shadows light";
+        let wrong = "nsm 1024</b>: 0.497 % wrong, 1.50 ms; blue lights a shadow, red shadows light";
         assert!(captions[2].contains(wrong), "{html}");
 
         let mut right = two_with_pictures();

@@ -12,6 +12,7 @@
 
 pub mod baseline_text;
 pub mod charts;
+mod contender;
 pub mod gate;
 pub mod graded;
 pub mod html;

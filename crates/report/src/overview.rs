@@ -1,11 +1,12 @@
 //! The overview of several scenes: a table of methods and scenes, the verdict on each scene, and
 //! what holds of all of them. Nothing is averaged over scenes or lights.
 
+use crate::contender::is_conditioned;
 use crate::matrices::by_summary;
 use crate::summary::{Row, by_wall};
 use crate::summary_table::{SOFTWARE, Summary};
 use crate::table::{or_dash, terminal};
-use crate::verdict::{Verdict, is_conditioned, main_choice};
+use crate::verdict::{Verdict, main_choice};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::results::Results;

@@ -1,10 +1,11 @@
 //! Writes the first screen: pictures of the reference, of the method to take, and of the errors of
 //! the alternative, beside each other. The page's script inserts the picture files.
 
+use crate::contender::MAX_BAND;
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
 use crate::summary::Row;
-use crate::verdict::{MAX_BAND, main_choice};
+use crate::verdict::main_choice;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::results::{Measured, Run};
 use skiagraph_compare::records::sequence::SequenceFrame;

@@ -2,8 +2,12 @@
 
 use crate::table::terminal;
 use itertools::Itertools;
-use skiagraph_compare::records::results_baseline::{CellChange, Change, Changes, Figures};
+use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::results_baseline::{
+    CellChange, Change, Changes, Figures, TimeChange,
+};
 use skiagraph_compare::records::table::Table;
+use skiagraph_compare::records::turns::Ratio;
 use skiagraph_compare::wording::{ms, plural, size, thousands};
 
 /// The most cells of which the table also shows those that are the same.
@@ -38,7 +42,7 @@ pub fn text(changes: &Changes) -> String {
         lines.push(format!("{cells} of the baseline not in this comparison"));
     }
     lines.extend(changes.notes.iter().cloned());
-    let has_times = cells.iter().any(|cell| cell.ratio.is_some());
+    let has_times = cells.iter().any(|cell| !cell.times.is_empty());
     if has_times {
         let text = "Slower or faster: by 3 % and more, and the interval (99.9 %) of the ratio of \
                     new to old frames does not hold 1.";
@@ -52,34 +56,52 @@ pub fn text(changes: &Changes) -> String {
 pub fn failures(changes: &Changes) -> Vec<String> {
     let worse = changes.with(Change::Worse).into_iter();
     let line = |cell: &CellChange| {
-        let [wrong, rmse, time, _] = figures(cell);
         let place = format!("`{}` on {}", cell.method, place(cell));
-        let figures = match cell.errors {
-            _ if cell.now.is_none() => return format!("{place} cannot run any more"),
-            Change::Worse if cell.times() == Change::Worse => {
-                format!("wrong {wrong}, RMSE {rmse}, {time} ms")
-            }
-            Change::Worse => format!("wrong {wrong}, RMSE {rmse}"),
-            _ => format!("{time} ms"),
-        };
-        format!("{place} is {}: {figures}", words(cell))
+        if cell.now.is_none() {
+            return format!("{place} cannot run any more");
+        }
+        let [wrong, rmse] = errors(cell);
+        let errors = format!("more wrong: wrong {wrong}, RMSE {rmse}");
+        let errors = (cell.errors == Change::Worse).then_some(errors);
+        let slower = cell.times.iter();
+        let slower = slower.filter(|times| times.change() == Change::Worse);
+        let slower = slower.map(|times| {
+            let condition = times.regime.map_or("", Regime::condition);
+            let words = format!("slower {condition}");
+            let (words, then, now) = (words.trim_end(), ms(times.then), ms(times.now));
+            format!("{words}: {then} → {now} ms")
+        });
+        let figures = errors.into_iter().chain(slower);
+        format!("{place} is {}", figures.format("; "))
     };
     worse.map(line).collect()
 }
 
-/// A row for each cell; its view and size only stand in it if there are several.
+/// A row for each cell, and one for each regime whose times have changed; the cell's view and size
+/// only stand in it if there are several.
 fn table(cells: &[&CellChange]) -> String {
     let are_several = !cells.iter().map(|cell| place(cell)).all_equal();
     let mut heads = vec!["method", "verdict", "wrong", "RMSE", "frame ms", "ratio"];
     if are_several {
         heads.insert(1, "on");
     }
-    let rows = cells.iter().map(|cell| {
-        let mut named = vec![cell.method.clone(), words(cell)];
-        if are_several {
-            named.insert(1, place(cell));
-        }
-        named.into_iter().chain(figures(cell)).collect()
+    let rows = cells.iter().flat_map(|cell| {
+        let (whole, regimes) = cell.times.split_at(cell.times.len().min(1));
+        let row = |verdict: String, errors: [String; 2], times: Option<&TimeChange>| {
+            let mut row = vec![cell.method.clone(), verdict];
+            if are_several {
+                row.insert(1, place(cell));
+            }
+            row.extend(errors);
+            row.extend(times.map_or(["–", "–"].map(str::to_owned), figures));
+            row
+        };
+        let first = row(words(cell, whole), errors(cell), whole.first());
+        let changed = regimes.iter().filter_map(|times| {
+            let nothing = ["", ""].map(str::to_owned);
+            Some(row(time_words(times)?, nothing, Some(times)))
+        });
+        [first].into_iter().chain(changed).collect::<Vec<_>>()
     });
     terminal(&Table::new(heads.clone(), heads.len() - 4, rows))
 }
@@ -89,28 +111,37 @@ fn place(cell: &CellChange) -> String {
     format!("{} {}", cell.view, size(cell.viewport))
 }
 
-/// The change of a cell in words.
-fn words(cell: &CellChange) -> String {
+/// The changes of a cell's errors and of some of its times in words.
+fn words(cell: &CellChange, times: &[TimeChange]) -> String {
     let errors = match cell.errors {
-        _ if cell.now.is_none() => "cannot run any more",
-        Change::Worse => "more wrong",
-        Change::Better => "less wrong",
-        Change::Same => "",
+        _ if cell.now.is_none() => Some("cannot run any more".to_owned()),
+        Change::Worse => Some("more wrong".to_owned()),
+        Change::Better => Some("less wrong".to_owned()),
+        Change::Same => None,
     };
-    let times = match cell.times() {
-        Change::Worse => "slower",
-        Change::Better => "faster",
-        Change::Same => "",
-    };
-    match [errors, times] {
-        ["", ""] => "same".into(),
-        [one, ""] | ["", one] => one.into(),
-        [errors, times] => format!("{errors}, {times}"),
+    let times = times.iter().filter_map(time_words);
+    match errors.into_iter().chain(times).join(", ") {
+        words if words.is_empty() => "same".into(),
+        words => words,
     }
 }
 
-/// Wrong pixels, RMSE and time then and now, and the ratio of times with its interval.
-fn figures(cell: &CellChange) -> [String; 4] {
+/// The change of times in words: `slower`, of a regime `slower (light)`; `None` if they are the
+/// same.
+fn time_words(times: &TimeChange) -> Option<String> {
+    let word = match times.change() {
+        Change::Worse => "slower",
+        Change::Better => "faster",
+        Change::Same => return None,
+    };
+    Some(match times.regime {
+        Some(regime) => format!("{word} ({})", regime.word()),
+        None => word.into(),
+    })
+}
+
+/// Wrong pixels and RMSE then and now.
+fn errors(cell: &CellChange) -> [String; 2] {
     let pair = |text: fn(&Figures) -> String| {
         let now = cell.now.as_ref().map_or("–".into(), text);
         match text(&cell.then) {
@@ -118,27 +149,40 @@ fn figures(cell: &CellChange) -> [String; 4] {
             then => format!("{then} → {now}"),
         }
     };
-    let ratio = cell.ratio.map_or("–".into(), |ratio| {
-        format!("{:.2} ({:.2}–{:.2})", ratio.median, ratio.low, ratio.high)
-    });
     [
         pair(|figures| thousands(figures.wrong)),
         pair(|figures| format!("{:.5}", figures.rmse)),
-        pair(|figures| ms(figures.ms)),
-        ratio,
     ]
+}
+
+/// A time then and now, and the ratio with its interval.
+fn figures(times: &TimeChange) -> [String; 2] {
+    let Ratio { low, median, high } = times.ratio;
+    let ratio = format!("{median:.2} ({low:.2}–{high:.2})");
+    [format!("{} → {}", ms(times.then), ms(times.now)), ratio]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use skiagraph_compare::records::turns::Ratio;
+
+    fn times(regime: Option<Regime>, median: f64) -> TimeChange {
+        TimeChange {
+            regime,
+            then: 1.5,
+            now: 1.5 * median,
+            ratio: Ratio {
+                low: median - 0.02,
+                median,
+                high: median + 0.02,
+            },
+        }
+    }
 
     fn cell(method: &str) -> CellChange {
         let then = Figures {
             wrong: 497,
             rmse: 0.0705,
-            ms: 1.5,
         };
         CellChange {
             method: method.into(),
@@ -147,31 +191,22 @@ mod tests {
             then,
             now: Some(then),
             errors: Change::Same,
-            ratio: Some(Ratio {
-                low: 0.98,
-                median: 1.0,
-                high: 1.02,
-            }),
+            times: vec![times(None, 1.0), times(Some(Regime::Light), 1.0)],
         }
     }
 
     fn changes() -> Changes {
         let mut slower = cell("nsm 1024");
-        slower.now.as_mut().unwrap().ms = 3.0;
-        slower.ratio = Some(Ratio {
-            low: 1.9,
-            median: 2.0,
-            high: 2.1,
-        });
+        slower.times = vec![times(None, 2.0), times(Some(Regime::Light), 3.0)];
         let mut wrong = slower.clone();
         (wrong.method, wrong.errors) = ("crsm 1024".into(), Change::Worse);
         wrong.now.as_mut().unwrap().wrong = 1_200;
         wrong.view = "other".into();
         let mut better = cell("pcf 1024");
-        (better.errors, better.ratio) = (Change::Better, None);
+        (better.errors, better.times) = (Change::Better, Vec::new());
         (better.now.as_mut().unwrap().wrong, better.then.rmse) = (12, 0.1);
         let mut lost = cell("rt_hw");
-        (lost.now, lost.ratio, lost.errors) = (None, None, Change::Worse);
+        (lost.now, lost.times, lost.errors) = (None, Vec::new(), Change::Worse);
         Changes {
             baseline: "old/results.json".into(),
             began: "2026-11-20T04:30:12Z".into(),

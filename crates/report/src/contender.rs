@@ -3,16 +3,13 @@
 use crate::summary::{Row, When, Worst, Wrong, share};
 use crate::tuning;
 use skiagraph_compare::records::budgets::Budgets;
-use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::regimes::{AT_REST_MS, Regime};
 use skiagraph_compare::records::turns::Ratio;
 use skiagraph_compare::wording::{ms, percent};
 
 /// Share of the pixels facing the light in the band (the pixels whose answer rounding decides)
 /// beyond which a verdict holds for the other pixels only.
 pub const MAX_BAND: f64 = 0.01;
-
-/// Milliseconds of a frame in which nothing moves that are too few to choose a method by.
-const AT_REST_MS: f64 = 0.1;
 
 /// Share of the reference's shadow that is missing, or of its light that is dark, from which on a
 /// verdict says so first.

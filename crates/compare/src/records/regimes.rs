@@ -19,6 +19,9 @@
 use crate::records::statistics::FrameTimes;
 use serde::{Deserialize, Serialize};
 
+/// Milliseconds of a frame in which nothing moves that are too few to choose a method by.
+pub const AT_REST_MS: f64 = 0.1;
+
 /// Kind of frame, by that which has moved since the frame before. A pass whose inputs are unchanged
 /// is skipped, so that methods differ in what they do in each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

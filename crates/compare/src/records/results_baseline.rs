@@ -25,7 +25,9 @@
 use crate::error::CompareError;
 use crate::lists::unique;
 use crate::records::read_back;
+use crate::records::regimes::{AT_REST_MS, Regime};
 use crate::records::results::{Measured, Results, Run};
+use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::turns::{LEAST_TURNS, Ratio};
 use crate::records::unpaired;
 use crate::wording::{plural, size, thousands};
@@ -76,9 +78,23 @@ pub struct CellChange {
     pub now: Option<Figures>,
     /// Change of the errors; a method that could not run this time is worse.
     pub errors: Change,
-    /// Ratio of the new time of a frame to the old one; `None` if they are not compared, for
-    /// example on another machine.
-    pub ratio: Option<Ratio>,
+    /// Changes of the times: of the frames in which every pass runs (of a path, of its frames), then
+    /// of each regime. Empty if times are not compared, for example on another machine.
+    pub times: Vec<TimeChange>,
+}
+
+/// Times of one kind of frame in the baseline and in the new results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimeChange {
+    /// The regime of the frames; `None` for those in which every pass runs, or those of a path.
+    pub regime: Option<Regime>,
+    /// Median milliseconds of a frame in the baseline: GPU and upkeep of the CPU, or by the wall
+    /// clock where one side lacks GPU times.
+    pub then: f64,
+    /// Median milliseconds of a frame in the new results.
+    pub now: f64,
+    /// Ratio of the new times to the old ones.
+    pub ratio: Ratio,
 }
 
 /// Figures of a method on one view that are compared.
@@ -92,8 +108,6 @@ pub struct Figures {
     /// answer rounding decides; for a method that reuses results of earlier frames the mean over
     /// its steady state, of all pixels.
     pub rmse: f64,
-    /// Median milliseconds of a frame in which every pass runs: GPU time, or wall time without it.
-    pub ms: f64,
 }
 
 /// Direction of a change since the baseline.
@@ -265,7 +279,7 @@ impl Baseline {
             then: then.figures(),
             now: None,
             errors: Change::Worse,
-            ratio: None,
+            times: Vec::new(),
         };
         let Some(measured) = &run.measured else {
             return Ok(cell);
@@ -286,8 +300,8 @@ impl Baseline {
         self.check_reference(then, now, tolerance)?;
         let figures = now.figures();
         (cell.now, cell.errors) = (Some(figures), tolerance.change(cell.then, figures));
-        match ratio(then, now) {
-            Ok(ratio) => cell.ratio = Some(ratio),
+        match times(then, now) {
+            Ok(times) => cell.times = times,
             Err(why) => notes.push(format!("times are not compared: {why}")),
         }
         Ok(cell)
@@ -325,22 +339,40 @@ impl Baseline {
 }
 
 impl CellChange {
-    /// Returns the change of the frame times; [`Change::Same`] if they are not compared.
-    pub fn times(&self) -> Change {
-        match self.ratio.filter(Ratio::is_told_apart) {
-            None => Change::Same,
-            Some(ratio) if ratio.median < 1.0 => Change::Better,
-            Some(_) => Change::Worse,
-        }
-    }
-
-    /// Returns the verdict on the method on this view: worse if errors or frame times are worse
-    /// than in the baseline, otherwise better if errors or frame times are better.
+    /// Returns the verdict on the method on this view: worse if errors or the times of any frames
+    /// are worse than in the baseline, otherwise better if any are better.
     pub fn verdict(&self) -> Change {
-        let both = [self.errors, self.times()];
-        let is = |change: &Change| both.contains(change);
+        let times = self.times.iter().map(TimeChange::change);
+        let changes: Vec<Change> = times.chain([self.errors]).collect();
+        let is = |change: &Change| changes.contains(change);
         let order = [Change::Worse, Change::Better];
         order.into_iter().find(is).unwrap_or(Change::Same)
+    }
+}
+
+impl TimeChange {
+    /// Compares two lists of frames; `None` where nothing moves and both cost next to nothing, or
+    /// one list is too short.
+    fn new(regime: Option<Regime>, then: &[f64], now: &[f64]) -> Option<Self> {
+        let median = |ms: &[f64]| Some(Spread::from_ms(ms.iter().copied())?.median);
+        let change = Self {
+            regime,
+            then: median(then)?,
+            now: median(now)?,
+            ratio: unpaired::ratio(now, then)?,
+        };
+        let is_at_rest =
+            regime == Some(Regime::Nothing) && change.then.max(change.now) < AT_REST_MS;
+        (!is_at_rest).then_some(change)
+    }
+
+    /// Returns the change of the times; [`Change::Same`] if they cannot be told apart.
+    pub fn change(&self) -> Change {
+        match self.ratio {
+            ratio if !ratio.is_told_apart() => Change::Same,
+            ratio if ratio.median < 1.0 => Change::Better,
+            _ => Change::Worse,
+        }
     }
 }
 
@@ -388,20 +420,19 @@ impl Measurement<'_> {
     }
 
     fn figures(&self) -> Figures {
-        let (measured, times) = (self.measured, &self.measured.frame);
+        let measured = self.measured;
         let cycle = measured.steady.as_ref().and_then(|steady| steady.judged);
         let wrong = cycle.map(|cycle| cycle.wrong_outside_band_mean.ceil() as u64);
         let rmse = measured.graded.rmse_outside_band;
         Figures {
             wrong: wrong.unwrap_or_else(|| measured.wrong_outside_band()),
             rmse: cycle.map_or(rmse, |cycle| cycle.rmse_mean),
-            ms: times.spread(false).unwrap_or(times.wall_ms).median,
         }
     }
 }
 
-/// The ratio of the new times to the old ones, or why there is none.
-fn ratio(then: Measurement, now: Measurement) -> Result<Ratio, String> {
+/// How the times have changed, or why they are not compared.
+fn times(then: Measurement, now: Measurement) -> Result<Vec<TimeChange>, String> {
     let machines = [then, now].map(|measurement| measurement.results.machine_of(measurement.run));
     if !machines[0].is_same(machines[1]) {
         let [old, new] = machines;
@@ -419,16 +450,26 @@ fn ratio(then: Measurement, now: Measurement) -> Result<Ratio, String> {
             ));
         }
     }
-    let times = [then, now].map(|measurement| &measurement.measured.frame);
-    let by_wall = times.iter().any(|times| times.gpu_frames.is_none());
-    let [then, now] = times.map(|times| times.costs(by_wall).unwrap_or_default());
-    unpaired::ratio(&now, &then).ok_or_else(|| {
+    let frames = [then, now].map(|measurement| &measurement.measured.frame);
+    let by_wall = frames.iter().any(|times| times.gpu_frames.is_none());
+    let costs = |times: &FrameTimes| times.costs(by_wall).unwrap_or_default();
+    let [old, new] = frames.map(costs);
+    let whole = TimeChange::new(None, &old, &new).ok_or_else(|| {
         format!(
             "{} then and {} now, and both must be {LEAST_TURNS} or more",
-            plural(then.len(), "frame"),
-            now.len()
+            plural(old.len(), "frame"),
+            new.len()
         )
-    })
+    })?;
+    let regimes = Regime::ALL.into_iter().filter_map(|regime| {
+        let [old, new] = [then, now].map(|measurement| {
+            let mut times = measurement.measured.regimes.iter();
+            let times = times.find(|times| times.regime == regime);
+            times.map_or_else(Vec::new, |times| costs(&times.frame))
+        });
+        TimeChange::new(Some(regime), &old, &new)
+    });
+    Ok([whole].into_iter().chain(regimes).collect())
 }
 
 /// A fact that tells cells apart, behind its name.
@@ -484,8 +525,8 @@ fn differences(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::records::regimes::RegimeTimes;
     use crate::records::results::{Answer, tests::sample};
-    use crate::records::statistics::FrameTimes;
     use std::time::Duration;
 
     /// `sample()` with ten frames of around so many milliseconds.
@@ -521,7 +562,11 @@ mod tests {
         let mut now = timed(10.0);
         change(&mut now);
         let changes = changes(then, &now);
-        (changes.cells[0].errors, changes.cells[0].times())
+        let times = changes.cells[0].times.first();
+        (
+            changes.cells[0].errors,
+            times.map_or(Change::Same, TimeChange::change),
+        )
     }
 
     fn measured(results: &mut Results) -> &mut Measured {
@@ -604,13 +649,44 @@ mod tests {
             let mut now = timed(20.0);
             spoil(&mut now);
             let changes = changes(timed(10.0), &now);
-            assert_eq!(changes.cells[0].ratio, None);
+            assert_eq!(changes.cells[0].times, []);
             assert_eq!(
                 changes.notes,
                 [format!("times are not compared: {why} (1 cell)")]
             );
             assert_eq!(changes.with(Change::Worse).len(), 1, "the other cell");
         }
+    }
+
+    #[test]
+    fn times_are_compared_by_what_moves() {
+        let with = |light: f64, nothing: f64| {
+            let mut results = timed(10.0);
+            let regime = |regime, ms| RegimeTimes {
+                regime,
+                frame: measured(&mut timed(ms)).frame.clone(),
+                uploaded_bytes: 0,
+                skipped: Vec::new(),
+            };
+            measured(&mut results).regimes = vec![
+                regime(Regime::Nothing, nothing),
+                regime(Regime::Light, light),
+            ];
+            results
+        };
+        let changes = |now: &Results| changes(with(4.0, 0.01), now).cells[0].clone();
+        let slower = changes(&with(8.0, 0.03));
+        assert_eq!(slower.verdict(), Change::Worse);
+        let times = |cell: &CellChange| -> Vec<(Option<Regime>, Change)> {
+            let times = cell.times.iter();
+            times.map(|times| (times.regime, times.change())).collect()
+        };
+        let light = Some(Regime::Light);
+        let expected = [(None, Change::Same), (light, Change::Worse)];
+        assert_eq!(times(&slower), expected, "next to nothing at rest");
+        let moved = changes(&with(4.0, 2.0));
+        assert_eq!(times(&moved)[1], (Some(Regime::Nothing), Change::Worse));
+        assert_eq!(times(&changes(&timed(10.0))).len(), 1, "no regimes now");
     }
 
     #[test]

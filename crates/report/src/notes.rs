@@ -4,6 +4,7 @@ use crate::graded::{area_reference, graded};
 use itertools::Itertools;
 use skiagraph_compare::records::results::{AreaReference, Machine, Results, Run};
 use skiagraph_compare::records::sequence::Sequence;
+use skiagraph_compare::records::steady::EarlyPicture;
 use skiagraph_compare::wording::{frames, ms, percent, plural, thousands};
 use skiagraph_reference::{BlockerCounts, PixelCounts, Quantiles};
 
@@ -220,7 +221,15 @@ pub fn remembering(run: &Run) -> Option<String> {
         Some(period) => format!("its picture repeats every {} after {after}", frames(period)),
         None => format!("its picture does not repeat within {after}"),
     };
-    Some(match steady.judged {
+    let early = |picture: &EarlyPicture| {
+        let wrong = thousands(picture.wrong_outside_band);
+        format!(
+            "{wrong} (RMSE {:.4}, FLIP {:.4}) after {}",
+            picture.rmse, picture.flip, picture.frames
+        )
+    };
+    let early = steady.begin.iter().map(early).format(", ");
+    let line = match steady.judged {
         None => format!("{name} remembers, and stood at the path's begin before: {state}"),
         Some(cycle) if cycle.pictures == 1 => {
             format!("{name} remembers: {state}, and is judged then")
@@ -236,6 +245,10 @@ pub fn remembering(run: &Run) -> Option<String> {
                 measured.graded.rmse
             )
         }
+    };
+    Some(match steady.begin.is_empty() {
+        true => line,
+        false => format!("{line}; from empty memory, wrong outside the band: {early} frames"),
     })
 }
 
@@ -341,6 +354,7 @@ mod tests {
             run.measured.as_mut().unwrap().steady = Some(Steady {
                 frames: 256,
                 period,
+                begin: Vec::new(),
                 judged: pictures.map(cycle),
             });
             let line = remembering(&run).unwrap();

@@ -503,6 +503,7 @@ mod tests {
         results.runs[0].measured.as_mut().unwrap().steady = Some(Steady {
             frames: 36,
             period: Some(3),
+            begin: Vec::new(),
             judged: Some(Cycle::default()),
         });
         let text = summaries(&results)[0].text(false);

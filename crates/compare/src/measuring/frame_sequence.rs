@@ -119,6 +119,11 @@ impl FrameSequence {
         deformed.map_err(|error| CompareError::Input(format!("frame {frame}: {error}")))
     }
 
+    /// Returns the number of frames in a second of the path's clock; all frames of a shorter path.
+    pub fn second(&self) -> usize {
+        (self.frames_per_second.ceil() as usize).clamp(1, self.poses.len().max(1))
+    }
+
     /// Returns the time of the frame with the index `frame` since the first frame, in seconds, at
     /// the frame rate that the path states.
     pub fn seconds(&self, frame: usize) -> f32 {

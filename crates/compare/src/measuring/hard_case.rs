@@ -295,7 +295,7 @@ impl HardCaseContext<'_> {
             let executor = frame::executor(self.session, plan, provider);
             let worst = executor.map_err(Stop::from).and_then(|mut executor| {
                 frame::grow(self.session, &mut executor, provider)?;
-                let mut steady = steady::settle(self.session, &mut executor)?;
+                let mut steady = steady::settle(self.session, &mut executor, &names, judge)?;
                 steady::judge(self.session, &mut executor, &names, &mut steady, judge)
             });
             worst.map_err(|stop| stop.into_error(self.session, &preset.name))?

@@ -9,7 +9,7 @@ use crate::graphs::shadow_method::Outputs;
 use crate::measuring::diagnostics::{Diagnostics, diagnose};
 use crate::measuring::frame::{self, Contents};
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
-use crate::measuring::sequence::{Account, cost, ms};
+use crate::measuring::sequence::{Account, WorstSecond, cost, ms};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{
@@ -99,19 +99,18 @@ impl MeasureContext<'_> {
         step: &Step,
     ) -> Result<Judged, Stop> {
         let session = self.session;
-        let mut executor = frame::executor(session, plan, provider)?;
-        frame::grow(session, &mut executor, provider)?;
+        let (mut executor, _) = frame::settled(session, plan, provider)?;
         let plan = executor.plan();
         let (memory_bytes, saved_bytes) = (plan.memory_bytes(), plan.saved_bytes());
         let (scene_bytes, layer) = (scene_bytes(session, plan, provider)?, self.layer(plan));
         let settle = plan.remembers();
-        let settled = settle.then(|| steady::settle(session, &mut executor));
+        let names = method.preset.judged();
+        let judge = |contents| self.judgement(method, 0, layer, contents);
+        let settled = settle.then(|| steady::settle(session, &mut executor, &names, judge));
         let mut steady = settled.transpose()?;
         let mut account = Account::default();
         let timed = match self.view {
             ViewOrPath::Still(_) => {
-                let names = method.preset.judged();
-                let judge = |contents| self.judgement(method, 0, layer, contents);
                 let (outputs, judgement) = match &mut steady {
                     Some(steady) => steady::judge(session, &mut executor, &names, steady, judge)?,
                     None => judge(frame::read(session, &mut executor, &names)?)?,
@@ -143,8 +142,18 @@ impl MeasureContext<'_> {
         let diagnostics = diagnose(session, method, truth_view, (&outputs, layer), provider)?;
         let place = is_path.then_some(index);
         let shown = (&outputs, &judgement, &diagnostics);
-        let images = self.draw(method, place, &truth_view.ground_truth, shown)?;
+        let mut images = self.draw(method, place, &truth_view.ground_truth, shown)?;
         let pictures = self.pictures.as_ref();
+        let mut pictures = pictures.map(RefCell::take).unwrap_or_default();
+        if let Some(images) = &mut images {
+            let second = std::mem::take(&mut account.second).into_iter();
+            for picture in second {
+                images.worst_second.push(picture.name.clone());
+                if images.shaded != picture.name {
+                    pictures.push(picture);
+                }
+            }
+        }
         let mut measured = Measured {
             certain: counts.certain,
             uncertain: counts.uncertain,
@@ -173,7 +182,7 @@ impl MeasureContext<'_> {
             planned: planned.clone(),
             executor,
             measured,
-            pictures: pictures.map(RefCell::take).unwrap_or_default(),
+            pictures,
         })
     }
 
@@ -196,6 +205,8 @@ impl MeasureContext<'_> {
         for _ in 0..if remembered { 0 } else { warmup } {
             frame::run(self.session, executor, &request)?;
         }
+        let has_pictures = self.pictures.is_some() && self.protocol.pictures;
+        let mut second = WorstSecond::new(self.path.frames.second());
         let mut times = Vec::new();
         for index in 0..self.path.frames.poses.len() {
             let (contents, timed, remade) = self.frame(method, executor, provider, index)?;
@@ -204,11 +215,27 @@ impl MeasureContext<'_> {
             if let Some(frame) = account.frames.last_mut() {
                 frame.cost = cost(&timed, self.timestamps);
                 (frame.skipped, frame.remade) = (timed.skipped.clone(), remade);
+                if let Some(shown) = account.shown.as_ref().filter(|_| has_pictures) {
+                    let truth = &self.path.truth_views[index].ground_truth.pixels;
+                    let place = self.place(method, Some(index), truth.viewport);
+                    let changed = frame.shimmer.map_or(0, |shimmer| shimmer.changed);
+                    second.add(changed, place.shaded(shown, truth)?);
+                }
             }
             times.push(timed);
             step.set_done(u64::from(warmup) + index as u64 + 1);
         }
+        account.second = second.pictures;
         Ok(times)
+    }
+
+    /// Where the pictures of a method are filed.
+    fn place(&self, method: &Method, frame: Option<usize>, viewport: [u32; 2]) -> PicturePlace<'_> {
+        PicturePlace {
+            stem: stem(method, self.view.name(), viewport),
+            view: self.view.name(),
+            frame,
+        }
     }
 
     /// Runs a frame of a path; returns its outputs, its times, and the resources that were made for
@@ -395,11 +422,7 @@ impl MeasureContext<'_> {
         let Some(pictures) = &self.pictures else {
             return Ok(None);
         };
-        let place = PicturePlace {
-            stem: stem(method, self.view.name(), ground_truth.pixels.viewport),
-            view: self.view.name(),
-            frame,
-        };
+        let place = self.place(method, frame, ground_truth.pixels.viewport);
         let (mut images, mut files) = (None, Vec::new());
         if self.protocol.pictures {
             let footprints = diagnostics.footprints.as_deref();

@@ -4,13 +4,14 @@ use crate::error::CompareError;
 use crate::graphs::ground_truth::Judgement;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::ground_truth::GroundTruthFrames;
+use crate::pictures::run_pictures::PictureFile;
 use crate::records::results::Answer;
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Sequence, SequenceFrame};
 use skiagraph_reference::{
     BlockerCounts, EdgeDistances, Graded, JudgedPixels, Shimmer, Statistics, shimmer::shimmer,
 };
-use std::time::Duration;
+use std::{collections::VecDeque, time::Duration};
 
 /// Milliseconds of a time.
 pub fn ms(time: Duration) -> f64 {
@@ -25,6 +26,45 @@ pub fn cost(frame: &TimedFrame, has_gpu: bool) -> FrameCost {
         gpu_ms: gpu.map(ms),
         cpu_ms: ms(upkeep + frame.timing.cpu()),
         wall_ms: ms(upkeep + frame.wall),
+    }
+}
+
+/// A second of a path in pictures: the one with the most shimmer.
+pub struct WorstSecond {
+    /// Number of frames in a second.
+    length: usize,
+    /// The last frames: changed pixels, and the picture.
+    recent: VecDeque<(u64, PictureFile)>,
+    /// Changed pixels of the worst second.
+    changed: Option<u64>,
+    /// The pictures of the worst second, in order.
+    pub pictures: Vec<PictureFile>,
+}
+
+impl WorstSecond {
+    /// Creates a list for seconds of so many frames.
+    pub fn new(length: usize) -> Self {
+        Self {
+            length,
+            recent: VecDeque::new(),
+            changed: None,
+            pictures: Vec::new(),
+        }
+    }
+
+    /// Adds the picture of the next frame; `changed` is the number of its pixels that shimmer.
+    pub fn add(&mut self, changed: u64, picture: PictureFile) {
+        if self.recent.len() == self.length {
+            self.recent.pop_front();
+        }
+        self.recent.push_back((changed, picture));
+        let changed = self.recent.iter().map(|(changed, _)| changed).sum();
+        let is_whole = self.recent.len() == self.length;
+        if is_whole && self.changed.is_none_or(|worst| changed > worst) {
+            self.changed = Some(changed);
+            let pictures = self.recent.iter();
+            self.pictures = pictures.map(|(_, picture)| picture.clone()).collect();
+        }
     }
 }
 
@@ -45,8 +85,10 @@ pub struct Account {
     pub worst: Option<(usize, Outputs, Judgement)>,
     /// The frames in their order.
     pub frames: Vec<SequenceFrame>,
-    /// Shares of light that the frame before showed.
-    before: Option<Vec<f32>>,
+    /// Shares of light that the last frame showed.
+    pub shown: Option<Vec<f32>>,
+    /// Pictures of the path's worst second, in order.
+    pub second: Vec<PictureFile>,
     /// Errors of each frame's shares.
     graded: Vec<(Graded, JudgedPixels)>,
 }
@@ -73,7 +115,7 @@ impl Account {
             *self.blockers.get_or_insert_default() += truth_view.blockers(&outputs)?;
         }
         let shown = outputs.shown().into_owned();
-        let changed = match &self.before {
+        let changed = match &self.shown {
             None => None,
             Some(before) => {
                 let earlier = &path.truth_views[index - 1].ground_truth;
@@ -97,7 +139,7 @@ impl Account {
         if let Some(rays) = outputs.rays {
             self.rays = Some(self.rays.unwrap_or(0) + rays);
         }
-        self.before = Some(shown);
+        self.shown = Some(shown);
         if outputs.shares.is_some() {
             self.answer = Answer::Graded;
         }
@@ -132,5 +174,32 @@ impl Account {
             frames: self.frames,
             shimmer: total,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_second_with_the_most_shimmer_is_kept() {
+        let worst = |changed: &[u64]| {
+            let mut second = WorstSecond::new(2);
+            for (frame, changed) in changed.iter().enumerate() {
+                let name = frame.to_string();
+                second.add(
+                    *changed,
+                    PictureFile {
+                        name,
+                        bytes: Vec::new(),
+                    },
+                );
+            }
+            let names = second.pictures.iter().map(|picture| picture.name.clone());
+            names.collect::<String>()
+        };
+        assert_eq!(worst(&[0, 1, 9, 3, 4]), "23");
+        assert_eq!(worst(&[0, 0, 0]), "01", "of equal ones the first");
+        assert_eq!(worst(&[5]), "", "shorter than a second");
     }
 }

@@ -7,7 +7,7 @@ use crate::graphs::preset::VISIBILITY;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame::{self, Contents};
 use crate::measuring::stop::Stop;
-use crate::records::steady::{Cycle, Steady};
+use crate::records::steady::{Cycle, EarlyPicture, Steady};
 use crate::sink::Session;
 use skiagraph_gpu::{Content, Executor};
 use std::{
@@ -28,24 +28,38 @@ const SAME: f32 = 1.0 / 1024.0;
 
 /// Runs frames of a new executor until its output `visibility` repeats with a period of at most 16
 /// frames, for 32 frames in a row; after 256 frames it gives up. Answers 0 and 1 must repeat to the
-/// bit, shares of light within 1/1024.
+/// bit, shares of light within 1/1024. `judge` gets the contents of the outputs `names` after 1, 4,
+/// 16 … frames.
 ///
 /// # Errors
-/// An early end; the errors of the executor.
-pub fn settle(session: Session, executor: &mut Executor) -> Result<Steady, Stop> {
-    let mut pictures = Pictures::default();
+/// An early end; the errors of the executor and of `judge`.
+pub fn settle(
+    session: Session,
+    executor: &mut Executor,
+    names: &[&str],
+    judge: impl Fn(Contents) -> Result<(Outputs, Judgement), CompareError>,
+) -> Result<Steady, Stop> {
+    let (mut pictures, mut begin) = (Pictures::default(), Vec::new());
     while pictures.period.is_none() && pictures.frames < MOST {
         session.check_stopped()?;
-        let mut contents = frame::read(session, executor, &[VISIBILITY])?;
-        pictures.add(
-            contents
-                .remove(VISIBILITY)
-                .map_or(Shown::Bits(0), Shown::new),
-        );
+        let mut contents = frame::read(session, executor, names)?;
+        let shown = contents.get(VISIBILITY);
+        pictures.add(shown.map_or(Shown::Bits(0), Shown::new));
+        let frames = pictures.frames as u32;
+        if frames.is_power_of_two() && frames.trailing_zeros() % 2 == 0 {
+            let (_, judgement) = judge(std::mem::take(&mut contents))?;
+            begin.push(EarlyPicture {
+                frames,
+                wrong_outside_band: judgement.counts.wrong.total - judgement.counts.wrong.in_band,
+                rmse: judgement.graded.rmse,
+                flip: judgement.graded.flip,
+            });
+        }
     }
     Ok(Steady {
         frames: pictures.frames as u32,
         period: pictures.period.map(|period| period as u32),
+        begin,
         judged: None,
     })
 }
@@ -58,7 +72,7 @@ enum Shown {
 }
 
 impl Shown {
-    fn new(content: Content) -> Self {
+    fn new(content: &Content) -> Self {
         match content.as_f32() {
             Some(shares) => Self::Shares(shares),
             None => {

@@ -17,13 +17,14 @@ use crate::pictures::data::{self, DataFormat};
 use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
-use skiagraph_reference::{Error, Footprint, GroundTruth, Image};
+use skiagraph_reference::{Error, Footprint, GroundTruth, GroundTruthPixels, Image};
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
 
 /// A picture or data file in memory. It is written together with the figures of its run.
+#[derive(Clone)]
 pub struct PictureFile {
     /// File name in the folder of the results.
     pub name: String,
@@ -51,6 +52,36 @@ pub struct PicturePlace<'a> {
 }
 
 impl PicturePlace<'_> {
+    /// Draws the scene, shaded with the light that each pixel shows.
+    ///
+    /// # Errors
+    /// Another size than the reference's; a picture that cannot be encoded.
+    pub fn shaded(
+        &self,
+        shown: &[f32],
+        truth: &GroundTruthPixels,
+    ) -> Result<PictureFile, CompareError> {
+        self.picture(&self.own("shaded"), Image::shaded(shown, truth))
+    }
+
+    /// Name of a kind of the method's pictures, without the frame.
+    fn own(&self, kind: &str) -> String {
+        format!("{}-{kind}.png", self.stem)
+    }
+
+    /// Encodes a picture, under a name to which that of the frame is added.
+    fn picture(
+        &self,
+        name: &str,
+        image: Result<Image, Error>,
+    ) -> Result<PictureFile, CompareError> {
+        let name = self.file(name.to_owned());
+        let image =
+            image.map_err(|error| CompareError::Input(format!("no picture {name}: {error}")))?;
+        let bytes = png::encode(Path::new(&name), &image)?;
+        Ok(PictureFile { name, bytes })
+    }
+
     fn file(&self, name: String) -> String {
         match self.frame {
             Some(frame) => numbered(Path::new(&name), frame).display().to_string(),
@@ -76,18 +107,11 @@ pub fn draw_pictures(
     let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
     let mut files = Vec::new();
     let mut draw = |name: String, image: Result<Image, Error>| -> Result<String, CompareError> {
-        let name = place.file(name);
-        let image =
-            image.map_err(|error| CompareError::Input(format!("no picture {name}: {error}")))?;
-        let png = png::encode(Path::new(&name), &image)?;
-        files.push(PictureFile {
-            name: name.clone(),
-            bytes: png,
-        });
-        Ok(name)
+        files.push(place.picture(&name, image)?);
+        Ok(files[files.len() - 1].name.clone())
     };
     let (viewport, shares) = (truth.viewport, &ground_truth.shares());
-    let own = |kind: &str| format!("{}-{kind}.png", place.stem);
+    let own = |kind: &str| place.own(kind);
     let reference = Image::visibility(viewport, shares, &truth.status());
     let shown = Image::visibility(viewport, visibility, status);
     let error = if judgement.is_hard {
@@ -109,6 +133,7 @@ pub fn draw_pictures(
         texels: None,
         perspective: None,
         projection: None,
+        worst_second: Vec::new(),
     };
     if let Some(footprints) = footprints {
         let mut heat = |kind: &str, part: fn(Footprint) -> f64| {

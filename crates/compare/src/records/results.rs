@@ -685,6 +685,11 @@ pub struct Images {
     /// `texel_density`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub projection: Option<String>,
+    /// File names of the pictures of the kind `shaded` of each frame of the second of a path in
+    /// which the most pixels shimmer, in order; of a shorter path all its frames. Absent for a still
+    /// view.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub worst_second: Vec<String>,
 }
 
 #[cfg(test)]
@@ -888,6 +893,7 @@ pub(crate) mod tests {
                 texels: Some(format!("{name}-texels.png")),
                 perspective: Some(format!("{name}-perspective.png")),
                 projection: Some(format!("{name}-projection.png")),
+                worst_second: Vec::new(),
             }),
         };
         Results {

@@ -25,10 +25,27 @@ pub struct Steady {
     /// Number of frames after which the picture repeats, at most 16; [shares of light](crate#terms)
     /// may differ by 1/1024. Null if the picture did not repeat within `frames`.
     pub period: Option<u32>,
+    /// The pictures after 1, 4, 16 … of these frames: how fast errors fall from empty memory.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub begin: Vec<EarlyPicture>,
     /// Means over the pictures that were judged in the steady state; absent for a camera path that
     /// begins in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged: Option<Cycle>,
+}
+
+/// Errors of a picture on the way to the steady state.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EarlyPicture {
+    /// Number of frames that were run until then, this one included.
+    pub frames: u32,
+    /// Number of wrong pixels outside the band.
+    pub wrong_outside_band: u64,
+    /// Root mean square error of the [shares of light](crate#terms), 0 to 1.
+    pub rmse: f64,
+    /// FLIP error (perceptual difference to the [reference](crate#terms)'s picture, 0 to 1): of two
+    /// noises of one RMSE it is less for the one that the eye filters, blue noise.
+    pub flip: f64,
 }
 
 /// Means over the pictures of a steady state, by which methods are ranked. A run's counts are those

@@ -59,6 +59,14 @@ fn it_is_right_where_the_camera_stands_and_late_where_it_moves() {
     assert_eq!(run["steady"]["judged"]["pictures"], 1);
     assert!((33..40).contains(&run["steady"]["frames"].as_u64().unwrap()));
     assert_eq!(run["wrong"]["total"], run["wrong"]["in_band"]);
+    let begin = run["steady"]["begin"].as_array().unwrap();
+    let frames = begin
+        .iter()
+        .map(|picture| picture["frames"].as_u64().unwrap());
+    assert_eq!(frames.collect::<Vec<_>>(), [1, 4, 16]);
+    let wrong = begin.iter().map(|picture| &picture["wrong_outside_band"]);
+    let wrong: Vec<u64> = wrong.map(|wrong| wrong.as_u64().unwrap()).collect();
+    assert!(wrong[0] > 0 && wrong[1..] == [0, 0], "{wrong:?}");
 
     let moving = runs(&along(compared(), "walk"));
     let frames = moving[0]["sequence"]["frames"].as_array().unwrap();

@@ -7,6 +7,7 @@ use crate::summary::{Row, When};
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::steady::{Cycle, EarlyPicture};
 use skiagraph_compare::wording::{ms, size};
 use std::collections::BTreeMap;
 
@@ -64,6 +65,60 @@ pub fn paths(tables: &[Shown]) -> String {
         panels.map(chart).collect::<String>()
     };
     tables.iter().enumerate().map(of_table).collect()
+}
+
+/// Returns the charts of errors after 1, 4, 16 … frames from empty memory as HTML, for each table
+/// with methods that remember: RMSE, and FLIP, which tells noises of one RMSE apart. The last mark
+/// of a method is the mean of its steady state.
+pub fn begins(tables: &[Shown]) -> String {
+    type Error = fn(&EarlyPicture) -> f64;
+    let errors: [(&str, Error, fn(&Cycle) -> f64); 2] = [
+        ("RMSE", |early| early.rmse, |cycle| cycle.rmse_mean),
+        ("FLIP", |early| early.flip, |cycle| cycle.flip_mean),
+    ];
+    let mut html = String::new();
+    for (index, table) in tables.iter().enumerate() {
+        for (name, early, mean) in errors {
+            let line = |row: &Row| {
+                let mut errors: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+                for steady in row
+                    .runs()
+                    .filter_map(|(_, measured)| measured.steady.as_ref())
+                {
+                    let begin = steady.begin.iter();
+                    let end = steady.judged.as_ref();
+                    let marks = begin.map(|picture| (picture.frames, early(picture)));
+                    for (frames, error) in marks.chain(end.map(|end| (steady.frames, mean(end)))) {
+                        errors.entry(frames).or_default().push(error);
+                    }
+                }
+                let mark = |(frames, errors): (u32, Vec<f64>)| {
+                    let error = errors.iter().sum::<f64>() / errors.len() as f64;
+                    Mark {
+                        about: format!("{}\n{frames} frames: {name} {error:.4}", row.label),
+                        ..Mark::new(frames.into(), error)
+                    }
+                };
+                let marks: Vec<Mark> = errors.into_iter().map(mark).collect();
+                (!marks.is_empty()).then(|| Series {
+                    name: row.method.clone(),
+                    marks,
+                })
+            };
+            let series: Vec<Series> = table.summary.rows.iter().filter_map(line).collect();
+            if !series.is_empty() {
+                let panel = Panel {
+                    title: table.title.clone(),
+                    kind: Kind::Frames,
+                    x: "frames since memory was empty".into(),
+                    y: name.into(),
+                    series,
+                };
+                html += &halves(&figure(tables, vec![panel]), &[index], None);
+            }
+        }
+    }
+    html
 }
 
 /// Each row is a series, so that it has a lane of its own where it is exact.

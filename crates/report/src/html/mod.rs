@@ -78,6 +78,7 @@ fn page_within(sources: &[Source], reports: &[Report], limit: usize) -> Page {
         .replace("<!--OVERVIEW-->", &rows::overview(sources, &tables))
         .replace("<!--STEPS-->", &steps::bars(&tables))
         .replace("<!--GROWTHS-->", &charts::growths(&tables))
+        .replace("<!--BEGINS-->", &charts::begins(&tables))
         .replace("<!--PATHS-->", &charts::paths(&tables))
         .replace("<!--STRESS-->", &stress::matrices(reports));
     let filled = |pictures: &Pictures| {

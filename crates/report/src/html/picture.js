@@ -48,10 +48,11 @@ const meanings = {
 const kinds = {
   shaded: 'shaded', visibility: 'visibility', error: 'wrong pixels', uncertain: 'uncertain pixels',
   texels: 'map texels per pixel', perspective: 'texels by distance', projection: 'texels by angles',
+  second: 'worst second, frame by frame',
 };
 const isOfTexels = (kind) => ['texels', 'perspective', 'projection'].includes(kind);
 const meaningOf = (kind, isGraded) => meanings[
-  isOfTexels(kind) ? 'texels' : kind === 'error' && isGraded ? 'difference' : kind];
+  isOfTexels(kind) ? 'texels' : kind === 'second' ? 'shaded' : kind === 'error' && isGraded ? 'difference' : kind];
 
 /** A share of light from its sRGB grey (IEC 61966-2-1). */
 const linear = (grey) => (grey <= 0.04045 ? grey / 12.92 : ((grey + 0.055) / 1.055) ** 2.4);

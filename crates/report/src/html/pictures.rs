@@ -46,6 +46,8 @@ pub struct Set {
     texels: Option<usize>,
     perspective: Option<usize>,
     projection: Option<usize>,
+    /// The frames of a path's worst second.
+    second: Option<Vec<usize>>,
     /// Figures of its map's texels, in words.
     figures: Option<String>,
     /// True if its answer is a share of light.
@@ -72,6 +74,7 @@ enum Kind {
     Texels,
     Perspective,
     Projection,
+    Second,
 }
 
 impl Kind {
@@ -86,6 +89,7 @@ impl Kind {
             Self::Texels => "texels",
             Self::Perspective => "perspective",
             Self::Projection => "projection",
+            Self::Second => "worst second",
         }
     }
 }
@@ -192,6 +196,10 @@ impl Pictures {
             }
             Kind::Perspective => &mut set.perspective,
             Kind::Projection => &mut set.projection,
+            Kind::Second => {
+                set.second.get_or_insert_default().push(file);
+                return;
+            }
             _ => &mut set.visibility,
         };
         *place = Some(file);
@@ -242,5 +250,11 @@ fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
     ]
     .into_iter()
     .chain(optional.filter_map(|(kind, name)| Some((kind, name.clone()?))))
+    .chain(
+        images
+            .worst_second
+            .iter()
+            .map(|name| (Kind::Second, name.clone())),
+    )
     .collect()
 }

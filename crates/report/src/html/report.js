@@ -99,7 +99,7 @@ if (data.tables.length > 0) {
   changed();
   addEventListener('resize', paint);
 } else {
-  for (const id of ['front', 'table', 'pictures', 'passes', 'paths', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
+  for (const id of ['front', 'table', 'pictures', 'passes', 'begins', 'paths', 'growth', 'graph']) byId(`${id}-section`).hidden = true;
 }
 hide(byId('stress-section'), all('#stress table').length === 0);
 for (const link of all('#overview [data-choose]')) {

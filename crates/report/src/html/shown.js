@@ -17,7 +17,7 @@ function show() {
   for (const button of all('#legend button')) button.ariaPressed = String(!state.hidden.has(button.dataset.method));
   filterRows();
   hide(byId('hidden'), state.hidden.size === 0);
-  for (const id of ['passes', 'paths', 'growth']) hide(byId(`${id}-section`), !all(`#${id} > [data-table]`).some(isChosen));
+  for (const id of ['passes', 'begins', 'paths', 'growth']) hide(byId(`${id}-section`), !all(`#${id} > [data-table]`).some(isChosen));
   settleStops();
 }
 

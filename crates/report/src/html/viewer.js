@@ -10,6 +10,8 @@ const viewer = {
   panes: [],
   /** Screen pixels per pixel, and the picture's point in the middle of a stage; null: all of it. */
   scale: null, middle: [0, 0], wipe: 0.5, stages: [], loaded: [], turn: 0,
+  /** Frame of the worst second, and the timer that shows the next. */
+  frame: 0, timer: null,
 };
 
 const setsHere = () => data.pictures.sets.filter((set) => set.source === table().source
@@ -17,6 +19,22 @@ const setsHere = () => data.pictures.sets.filter((set) => set.source === table()
 /** Method or reference; of a camera path with the frame, which is the worst of each method. */
 const nameOf = (set) => `${set.label ?? 'reference'}${set.frame === null ? '' : `, frame ${set.frame}`}`;
 const setOf = (pane) => setsHere().find((set) => nameOf(set) === pane.label);
+
+/** The picture of a set; of its worst second the frame whose turn it is. */
+const fileOf = (set, kind) => (Array.isArray(set[kind]) ? set[kind][viewer.frame % set[kind].length] : set[kind]);
+
+/** Shows the worst second's frames one after the other, or stops; a second takes a second. */
+function play(isOn) {
+  clearInterval(viewer.timer);
+  const frames = viewer.panes.map((pane) => setOf(pane)?.[pane.kind]).find(Array.isArray);
+  viewer.timer = isOn && frames ? setInterval(() => {
+    viewer.frame += 1;
+    load();
+  }, 1000 / frames.length) : null;
+  const button = byId('play');
+  button.hidden = !frames;
+  button.textContent = viewer.timer === null ? 'play' : 'stop';
+}
 
 /** Chooses what there is: views, methods and kinds of the table's source and viewport. */
 function settleViewer() {
@@ -88,8 +106,10 @@ function drawViewer() {
     el('button', { type: 'button', id: 'zoom-in', 'aria-label': 'Zoom in', onclick: () => zoom(2) }, '+'),
     el('button', { type: 'button', id: 'zoom-out', 'aria-label': 'Zoom out', onclick: () => zoom(0.5) }, '−'),
     el('button', { type: 'button', id: 'zoom-fit', onclick: () => { viewer.scale = null; paint(); } }, 'whole'),
+    el('button', { type: 'button', id: 'play', onclick: () => play(viewer.timer === null) }),
     el('span', { class: 'quiet', id: 'zoom' }),
   );
+  play(false);
   const stages = viewer.mode === 'side' ? [[0], [1]] : [[0, 1]];
   viewer.stages = stages.map((panes) => stage(panes));
   byId('viewer').replaceChildren(
@@ -233,7 +253,7 @@ async function load() {
   const turn = viewer.turn;
   const loaded = await Promise.all(viewer.panes.map(async (pane) => {
     const set = setOf(pane);
-    const file = set?.[pane.kind];
+    const file = set && fileOf(set, pane.kind);
     if (file === null || file === undefined) return null;
     const picture = await pixels(file);
     return { picture, telling: telling(pane.kind, set.graded, picture) };
@@ -305,7 +325,7 @@ async function readAt([x, y]) {
         cells.push(null);
         continue;
       }
-      const picture = await pixels(set[kind]);
+      const picture = await pixels(fileOf(set, kind));
       const at = 4 * (row * picture.width + column);
       cells.push([kind, picture.rgba.slice(at, at + 3)]);
     }

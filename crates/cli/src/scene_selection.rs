@@ -25,8 +25,7 @@ pub struct SceneSelection {
     /// Further views that were chosen for a mesh file without cameras, where no view is named: it
     /// is not sure that the first is the one that is meant.
     pub further: Vec<View>,
-    /// Camera paths from the animations of a mesh file; empty for other scenes, whose files list
-    /// them.
+    /// Camera paths: of the scene file, or from the animations of a mesh file.
     pub paths: Vec<CameraPath>,
     /// Notes on the scene, one line each, that were printed while it was loaded.
     pub notes: Vec<String>,
@@ -106,6 +105,10 @@ impl SceneSelection {
             };
             write(path, file, &views)?;
         }
+        let paths = match is_mesh {
+            true => paths,
+            false => library.paths(args.scene()).map_err(explain)?,
+        };
         let under_lights = |views| under_lights(&own.scene, views, args.light_name());
         let (views, further) = (under_lights(views)?, under_lights(further)?);
         if let Some(text) = own_scene_notes::from_below(&views, options.sun) {
@@ -185,7 +188,7 @@ fn explain(error: SceneError, args: &SceneArgs, library: &SceneLibrary) -> CliEr
 }
 
 /// Returns the camera paths that `name`, the value of `--path`, selects, under the lights that
-/// `light` selects. `own` holds the paths of a mesh file; other scenes list theirs in their file.
+/// `light` selects. `own` holds the paths of the scene.
 ///
 /// # Errors
 /// If the arguments set a camera or a light as well, or the path or light does not exist.
@@ -202,11 +205,5 @@ pub fn paths(
              --near, --far and --light x,y,z"
         )));
     }
-    let paths = if MeshFile::is_one(Path::new(args.scene())) {
-        own.to_vec()
-    } else {
-        let paths = SceneLibrary::from_environment().paths(args.scene());
-        paths.map_err(|error| CliError::Input(error.to_string()))?
-    };
-    Ok(ViewOrPath::paths(scene, paths, name, light)?)
+    Ok(ViewOrPath::paths(scene, own.to_vec(), name, light)?)
 }

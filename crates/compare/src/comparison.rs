@@ -24,6 +24,7 @@ use crate::graphs::light_kinds::kind_and_number;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::PlanCheck;
+use crate::measuring::frame_sequence::MovingParts;
 use crate::measuring::ground_truth::{PrimaryVisibility, REFERENCE_SAMPLES};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::pictures::data::DataFormat;
@@ -134,6 +135,9 @@ pub struct Comparison {
     /// Notes on the scene for the results to record, such as its import's repairs and the
     /// [parts chosen for it](crate::own_scene_notes::notes), one line each; empty to record none.
     pub notes: Vec<String>,
+    /// Parts of the mesh that move on a path of the scene: on still views, too, frames are timed
+    /// before which they have moved. `None` for a scene that stands still.
+    pub moving: Option<Arc<MovingParts>>,
 }
 
 impl Comparison {
@@ -156,6 +160,7 @@ impl Comparison {
             command: None,
             commit: None,
             notes: Vec::new(),
+            moving: None,
             scene,
         })
     }

@@ -8,7 +8,7 @@ use crate::notes::{
 use crate::summary::{Row, by_wall, rows};
 use crate::verdict::{Verdict, verdict};
 use crate::{
-    graded,
+    equal_cost, graded,
     results_table::timed_frames,
     table::{TERMINAL, or_dash, terminal, wrapped},
 };
@@ -288,6 +288,7 @@ impl<'a> Summary<'a> {
         if !self.verdict().fastest_exact.is_empty() {
             notes.push("* the fastest with no wrong pixel outside the band".into());
         }
+        notes.extend(equal_cost::sentence(self));
         notes.extend(self.open_parts());
         notes.extend(self.wrong_surfaces());
         notes.extend(self.rows.iter().filter_map(|row| {
@@ -318,8 +319,8 @@ impl<'a> Summary<'a> {
         let regimes = self.regimes();
         let is_still = !regimes.is_empty() && !regimes.contains(&Regime::AllMeshes);
         is_still.then(|| {
-            "No mesh moves here, so that there are no times of moving meshes: compare a path that \
-             moves parts (--path)"
+            "No path of this scene moves a part of its mesh, so that there are no times of moving \
+             meshes"
                 .into()
         })
     }

@@ -20,8 +20,8 @@ pub struct Verdict {
     /// there is a budget of wrong pixels and a row within the budgets that is not exact is faster.
     pub fastest_exact: BTreeMap<When, usize>,
     /// Indices of the recommended rows, or if none is right enough of the least wrong ones: the
-    /// fastest, then those whose times cannot be told apart from it. Times are of the path's own
-    /// frames, or of those before which most has moved. It is empty if no row keeps to the budgets
+    /// fastest, then those whose times cannot be told apart from it. Times are those of
+    /// [`main_choice`]. It is empty if no row keeps to the budgets
     /// or no row can be judged.
     pub first: Vec<usize>,
     /// True if the rows in `first` are recommended: they have no wrong pixel outside the band (the
@@ -92,21 +92,26 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
 }
 
 /// Returns the choices of frames in which rows can be compared: the regimes that all of them have,
-/// from the least that moves to the most, then a path's own frames; without regimes all frames.
+/// from the least that moves to the most, then a path's own frames; without regimes all frames. On
+/// still views moving meshes come first, as they need not move there.
 pub fn choices(rows: &[Row]) -> Vec<When> {
     let measured = || rows.iter().filter(|row| row.views() > 0);
     let has = |regime: &Regime| measured().all(|row| row.regimes().contains(regime));
     let regimes = Regime::ALL.into_iter().filter(has).map(Some);
     let mut choices: Vec<When> = regimes.filter(|_| measured().count() > 0).collect();
     let is_path = measured().any(Row::is_path);
+    if !is_path {
+        let is_of_meshes = |when: &When| *when >= Some(Regime::SomeMeshes);
+        choices.sort_by_key(|when| !is_of_meshes(when));
+    }
     if choices.is_empty() || is_path {
         choices.push(None);
     }
     choices
 }
 
-/// Returns the choice of frames whose times stand for a method where there is room for one: those
-/// before which most has moved, or a path's own.
+/// Returns the choice of frames whose times stand for a method where there is room for one: on
+/// views those before which the light has moved, of a path its own.
 pub fn main_choice(rows: &[Row]) -> When {
     choices(rows).last().copied().flatten()
 }

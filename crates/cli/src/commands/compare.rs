@@ -25,6 +25,7 @@ use skiagraph_compare::graphs::{
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::{
     date, device,
+    frame_sequence::MovingParts,
     ground_truth::PrimaryVisibility,
     resume::Kept,
     scene_folders::{check_kind, scene_folders},
@@ -51,7 +52,7 @@ use skiagraph_report::{
     summary_table::{self, Summary},
     table::terminal,
 };
-use skiagraph_scene::Scene;
+use skiagraph_scene::{CameraPath, Scene};
 use std::{
     ffi::OsString,
     io::IsTerminal,
@@ -143,8 +144,17 @@ impl Loaded {
         } else {
             preset::named_or_all(&args.presets, &sources)
         };
-        let (params, sizes) = (&args.params, &args.map_size);
-        let methods = method::load(&names, params, sizes, &sources, shadow_method::load_each)?;
+        let sizes = match args.map_curve {
+            true => &MAP_CURVE[..],
+            false => &args.map_size,
+        };
+        let methods = method::load(
+            &names,
+            &args.params,
+            sizes,
+            &sources,
+            shadow_method::load_each,
+        )?;
         note_without_map(&methods, &args.map_size);
         Gate::check(&args.fail_if, &methods).map_err(CliError::Input)?;
         let primary = PrimaryVisibility::load(&sources)?;
@@ -156,9 +166,11 @@ impl Loaded {
         let comparison = |scene| -> Result<Comparison, CliError> {
             let mut selection = SceneSelection::load(scene)?;
             let notes = std::mem::take(&mut selection.notes);
+            let paths = selection.paths.clone();
             let (scene, views) = views(args, scene, selection, &methods, session)?;
             Ok(Comparison {
                 views,
+                moving: moving(&paths, &scene),
                 viewports: unique(args.size.iter().map(|Size(size)| *size)),
                 methods: methods.clone(),
                 tuned: Default::default(),
@@ -307,6 +319,17 @@ fn views(
     };
     Ok((scene, views))
 }
+
+/// The parts that move on the scene's paths; a path that cannot move them is noted.
+fn moving(paths: &[CameraPath], scene: &Scene) -> Option<Arc<MovingParts>> {
+    MovingParts::first(paths, &scene.mesh).unwrap_or_else(|error| {
+        note(&format!("{error}: views are timed without moving meshes"));
+        None
+    })
+}
+
+/// Edges of the shadow maps of `--map-curve`, in texels.
+const MAP_CURVE: [u32; 5] = [256, 512, 1024, 2048, 4096];
 
 /// The earlier results that are kept.
 fn kept(args: &CompareArgs) -> Kept {

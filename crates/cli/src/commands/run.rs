@@ -59,7 +59,7 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if let Some(sequence) = &sequence {
         let first = sequence.poses.iter().take(1);
         views = first.map(|pose| pose.view.clone()).collect();
-        sequence.begin(&mut provider);
+        sequence.begin(&scene, &mut provider, &mut None);
     }
     let mut idle = IdleParams::default();
     for view in &views {

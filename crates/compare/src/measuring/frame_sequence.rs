@@ -20,8 +20,41 @@ use crate::error::CompareError;
 use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::view_or_path::ViewOrPath;
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{Mesh, Movable, Scene};
+use skiagraph_scene::{CameraPath, Mesh, Movable, Scene};
 use std::sync::Arc;
+
+/// Parts of a mesh that move on a path.
+#[derive(Debug)]
+pub struct MovingParts {
+    parts: Arc<Movable>,
+    /// The mesh with these parts elsewhere than at rest; `None` if each frame has a mesh of its own.
+    elsewhere: Option<Mesh>,
+}
+
+impl MovingParts {
+    /// Returns the parts that move on the first of `paths` on which any do, to be moved on still
+    /// views, too; `None` if none does.
+    ///
+    /// # Errors
+    /// The errors of [`FrameSequence::new`] on that path.
+    pub fn first(paths: &[CameraPath], mesh: &Mesh) -> Result<Option<Arc<Self>>, CompareError> {
+        for path in paths {
+            let Some(parts) = path.movable(mesh).map_err(CompareError::Input)? else {
+                continue;
+            };
+            for frame in 0..path.frames() {
+                let shape = path.shape(&parts, frame).map_err(CompareError::Input)?;
+                if shape.positions != parts.rest.positions {
+                    return Ok(Some(Arc::new(Self {
+                        parts: Arc::new(parts),
+                        elsewhere: Some(shape),
+                    })));
+                }
+            }
+        }
+        Ok(None)
+    }
+}
 
 /// The frames of a still view or camera path in order: the camera of each frame, and its mesh if
 /// parts of the mesh move.
@@ -31,8 +64,8 @@ pub struct FrameSequence {
     /// Mesh of each frame, parallel to `poses`, all with the same triangles; `None` if no part of
     /// the mesh moves.
     pub meshes: Option<Vec<Mesh>>,
-    /// The mesh cut into the parts that move; `None` if no part does.
-    parts: Option<Arc<Movable>>,
+    /// The parts that move; `None` if no part does.
+    moving: Option<Arc<MovingParts>>,
     /// Frames per second of the path's clock, which says when each is; not how fast they are drawn.
     frames_per_second: f64,
 }
@@ -58,7 +91,7 @@ impl FrameSequence {
                 return Ok(Self {
                     poses: CameraPose::numbered(views, jitter),
                     meshes: None,
-                    parts: None,
+                    moving: None,
                     frames_per_second: 30.0,
                 });
             }
@@ -76,17 +109,51 @@ impl FrameSequence {
         Ok(Self {
             poses: CameraPose::numbered(views, jitter),
             meshes: parts.as_ref().map(shapes).transpose()?,
-            parts: parts.map(Arc::new),
+            moving: parts.map(|parts| {
+                Arc::new(MovingParts {
+                    parts: Arc::new(parts),
+                    elsewhere: None,
+                })
+            }),
             frames_per_second: path.frames_per_second,
         })
     }
 
-    /// Sets the mesh in a provider of scene resources, in parts of which each that moves is a piece
-    /// of its own, before [`show`](Self::show). Does nothing if no part of the mesh moves.
-    pub fn begin(&self, provider: &mut SceneProvider) {
-        if let Some(parts) = &self.parts {
-            provider.set_parts(parts.clone());
+    /// Has parts that move on a path of the scene be pieces of the mesh here, too, so that frames
+    /// can be timed before which they have moved. A path on which parts move keeps its own.
+    pub fn with_moving(mut self, moving: Option<&Arc<MovingParts>>) -> Self {
+        self.moving = self.moving.or_else(|| moving.cloned());
+        self
+    }
+
+    /// Returns a mesh whose parts are elsewhere than in the frame with the index `index`: of a path
+    /// that of the next frame, from the last on of the first, in which they are. `None` if no part
+    /// of the mesh moves.
+    pub fn elsewhere(&self, index: usize) -> Option<&Mesh> {
+        let Some(meshes) = self.meshes.as_deref() else {
+            return self.moving.as_ref()?.elsewhere.as_ref();
+        };
+        let mut behind = meshes[index + 1..].iter().chain(&meshes[..index]);
+        behind.find(|mesh| mesh.positions != meshes[index].positions)
+    }
+
+    /// Sets the mesh of `scene` in a provider of its resources before [`show`](Self::show): in parts
+    /// of which each that moves is a piece of its own, or as a whole if no part moves. `cut` is how
+    /// the provider's mesh is cut, which stays if it is the same.
+    pub fn begin(
+        &self,
+        scene: &Scene,
+        provider: &mut SceneProvider,
+        cut: &mut Option<Arc<Movable>>,
+    ) {
+        let parts = self.moving.as_ref().map(|moving| &moving.parts);
+        match (parts, cut.as_ref()) {
+            (None, None) => return,
+            (Some(parts), Some(cut)) if Arc::ptr_eq(parts, cut) => return,
+            (Some(parts), _) => provider.set_parts(parts.clone()),
+            (None, Some(_)) => provider.set_mesh(scene.mesh.clone()),
         }
+        *cut = parts.cloned();
     }
 
     /// Sets the camera, light and mesh of the frame with the index `frame` in a provider, for a
@@ -105,9 +172,11 @@ impl FrameSequence {
         provider: &mut SceneProvider,
     ) -> Result<(), CompareError> {
         self.poses[frame].show(provider, viewport);
+        let rest = || Some(&self.moving.as_ref()?.parts.rest);
+        let mesh = self.meshes.as_ref().map(|meshes| &meshes[frame]);
         let Some(Mesh {
             positions, normals, ..
-        }) = self.meshes.as_ref().map(|meshes| &meshes[frame])
+        }) = mesh.or_else(rest)
         else {
             return Ok(());
         };

@@ -20,18 +20,10 @@ fn length(count: usize) -> f64 {
 
 /// Returns the regimes of the frames of a view or path: meshes move if parts of them do there.
 pub fn regimes(frames: &FrameSequence) -> &'static [Regime] {
-    match elsewhere(frames, 0) {
+    match frames.elsewhere(0) {
         Some(_) => &Regime::ALL,
         None => &Regime::ALL[..3],
     }
-}
-
-/// The next mesh, from the frame with the index `index` on and then from the first, whose parts are
-/// elsewhere than in that frame.
-fn elsewhere(frames: &FrameSequence, index: usize) -> Option<&Mesh> {
-    let meshes = frames.meshes.as_deref()?;
-    let mut behind = meshes[index + 1..].iter().chain(&meshes[..index]);
-    behind.find(|mesh| mesh.positions != meshes[index].positions)
 }
 
 /// Moves what moves in a regime, in a provider that shows the frame with the index `index`. The
@@ -64,7 +56,7 @@ pub fn step(
             None
         }
         Regime::SomeMeshes => {
-            let mesh = elsewhere(frames, index);
+            let mesh = frames.elsewhere(index);
             mesh.map(|mesh| (mesh.positions.clone(), mesh.normals.clone()))
         }
         Regime::AllMeshes => Some(shifted(&provider.scene().mesh)),

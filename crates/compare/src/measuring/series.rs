@@ -50,13 +50,14 @@ use itertools::Itertools;
 use skiagraph_graph::{Code, Diagnostic, Diagnostics, Plan};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Oracle, PixelCounts};
-use skiagraph_scene::Scene;
+use skiagraph_scene::{Movable, Scene};
 use std::{
     cell::{OnceCell, RefCell},
     collections::BTreeSet,
     ops::Range,
     path::Path,
     rc::Rc,
+    sync::Arc,
 };
 
 /// A comparison under way: its planned runs, and the results so far.
@@ -66,8 +67,8 @@ pub struct Series<'a> {
     /// The methods as they run here.
     methods: Vec<Method>,
     provider: SceneProvider,
-    /// True if the provider has the mesh of a path on which parts move, not the scene's own.
-    is_moved: bool,
+    /// The parts into which the provider's mesh is cut.
+    cut: Option<Arc<Movable>>,
     /// The oracle of the scene's own mesh; built when the first run needs it.
     oracle: OnceCell<Rc<Oracle<'a>>>,
     /// Every run with nothing measured, in the order of the results. One that could not run the
@@ -189,7 +190,7 @@ impl<'a> Series<'a> {
             comparison,
             session,
             provider: SceneProvider::new(comparison.scene.clone()),
-            is_moved: false,
+            cut: None,
             oracle: OnceCell::new(),
             is_done: vec![false; planned.len()],
             is_left_out: vec![false; planned.len()],
@@ -288,12 +289,9 @@ impl<'a> Series<'a> {
         );
         let (scene, protocol) = (&self.comparison.scene, self.comparison.protocol);
         let frames = FrameSequence::new(view, scene, protocol.jitter, None)?;
-        match &frames.meshes {
-            Some(_) => frames.begin(&mut self.provider),
-            None if self.is_moved => self.provider.set_mesh(scene.mesh.clone()),
-            None => {}
-        }
-        self.is_moved = frames.meshes.is_some();
+        let moving = self.comparison.moving.as_ref();
+        let frames = frames.with_moving(moving.filter(|_| protocol.regime_frames > 0));
+        frames.begin(scene, &mut self.provider, &mut self.cut);
         frames.show(0, viewport, &mut self.provider)?;
         let methods = self.methods.iter();
         let methods: Vec<Method> = methods.map(|method| method.at(viewport)).collect();

@@ -13,6 +13,7 @@
 pub mod baseline_text;
 pub mod charts;
 mod contender;
+mod equal_cost;
 pub mod gate;
 pub mod graded;
 pub mod html;

@@ -61,6 +61,10 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N,…", value_delimiter = ',',
           value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Vec<u32>,
+    /// Compare each method that has a shadow map with maps of 256, 512, 1024, 2048 and 4096 texels,
+    /// and tell its error at the cost of the fastest exact method.
+    #[arg(long, conflicts_with = "map_size")]
+    pub map_curve: bool,
     /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
     /// semicolons) or a range (bias=0..0.01/5: five values) is compared. May be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]

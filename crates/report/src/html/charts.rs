@@ -4,6 +4,7 @@ use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
 use crate::looks::looks;
 use crate::summary::{Row, When};
+use itertools::Itertools;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::regimes::Regime;
@@ -121,7 +122,8 @@ pub fn begins(tables: &[Shown]) -> String {
     html
 }
 
-/// Each row is a series, so that it has a lane of its own where it is exact.
+/// The rows of a method with wrong pixels are one series in the order of their maps, each other row
+/// is one, so that it has a lane of its own where it is exact.
 fn front(table: &Shown, when: When) -> Panel {
     let row = |(index, row): (usize, &Row)| {
         let (x, y) = (table.ms(row, when)?, table.error(row)?);
@@ -135,7 +137,16 @@ fn front(table: &Shown, when: When) -> Panel {
         })
     };
     let rows = table.summary.rows.iter().enumerate();
-    let mut series: Vec<Series> = rows.filter_map(row).collect();
+    let rows = rows.sorted_by_key(|(_, row)| row.map_size());
+    let mut series: Vec<Series> = Vec::new();
+    for single in rows.filter_map(row) {
+        let is_wrong = |series: &Series| series.marks[0].y > 0.0;
+        let curve = series.iter_mut().find(|series| series.name == single.name);
+        match curve.filter(|curve| is_wrong(curve) && is_wrong(&single)) {
+            Some(curve) => curve.marks.extend(single.marks),
+            None => series.push(single),
+        }
+    }
     series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
     let clock = if table.by_wall {
         "wall clock"

@@ -3,10 +3,10 @@
 use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
 use crate::looks::looks;
-use crate::summary::{Row, When};
+use crate::summary::Row;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
-use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::regimes::{Regime, When};
 use skiagraph_compare::wording::{ms, size};
 use std::collections::BTreeMap;
 
@@ -58,8 +58,8 @@ fn halves(figure: &Figure, tables: &[usize], when: Option<When>) -> String {
 /// without paths. A method has the colour that it has in other charts.
 pub fn paths(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
-        let runs = table.summary.rows.iter().flat_map(Row::runs);
-        let panels = path_panels(runs, &[]).into_iter();
+        let cases = table.summary.rows.iter().flat_map(Row::cases);
+        let panels = path_panels(cases, &[], None).into_iter();
         let chart = |panel| halves(&figure(tables, vec![panel]), &[index], None);
         panels.map(chart).collect::<String>()
     };
@@ -82,7 +82,7 @@ fn front(table: &Shown, when: When) -> Panel {
     let rows = table.summary.rows.iter().enumerate();
     let mut series: Vec<Series> = rows.filter_map(row).collect();
     series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
-    let clock = if table.by_wall {
+    let clock = if table.summary.by_wall() {
         "wall clock"
     } else {
         "GPU and CPU"

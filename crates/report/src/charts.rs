@@ -6,10 +6,10 @@ use crate::summary::rows;
 use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::lists::{entry, find_or_push, place, unique};
+use skiagraph_compare::lists::{entry, find_or_push, place};
 use skiagraph_compare::records::figure::{self, Case, Clocks};
 use skiagraph_compare::records::figures;
-use skiagraph_compare::records::results::{Measured, Results, Run};
+use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::sources::Kept;
 use skiagraph_compare::wording::{frames, size};
 use std::collections::BTreeSet;
@@ -148,19 +148,16 @@ fn titled(views: &str, light: Option<&str>, viewport: [u32; 2]) -> String {
 /// # Errors
 /// If a drawn run has no GPU times.
 pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
-    let runs = || {
-        kept.iter().flat_map(|kept| {
-            let viewports = viewports(&kept.results, viewport);
-            viewports
-                .into_iter()
-                .flat_map(|viewport| drawn(&kept.results, viewport))
-                .map(move |(run, measured)| (kept, run, measured))
-        })
-    };
     let maps = maps(kept, viewport);
     let mut cells = Vec::new();
     let mut panels: Vec<[Panel; 2]> = Vec::new();
-    for (kept, run, measured) in runs() {
+    let runs = kept
+        .iter()
+        .flat_map(|kept| kept.results.runs.iter().map(move |run| (kept, run)));
+    for (kept, run) in runs.filter(|(_, run)| is_drawn(run, viewport)) {
+        let Some(measured) = &run.measured else {
+            continue;
+        };
         let scene = &kept.results.scene;
         let light = run.light.as_deref();
         let cell = (scene.name.as_str(), run.view.as_str(), light, run.viewport);
@@ -232,10 +229,10 @@ pub fn frames_of_paths(
     let mut panels = Vec::new();
     for kept in kept {
         let clocks = Clocks::new(&kept.results);
-        for viewport in viewports(&kept.results, viewport) {
-            let cases = drawn(&kept.results, viewport).map(|(run, _)| clocks.case(run));
-            panels.extend(path_panels(cases, &maps, error));
-        }
+        let runs = kept.results.runs.iter();
+        let runs = runs.filter(|run| is_drawn(run, viewport));
+        let cases = runs.map(|run| clocks.case(run));
+        panels.extend(path_panels(cases, &maps, error));
     }
     if panels.is_empty() {
         return Err(CompareError::Input(match error {
@@ -263,12 +260,12 @@ fn has_path(results: &Results) -> bool {
     figures::are_paths(&results.runs.iter().collect::<Vec<_>>())
 }
 
-/// Returns a panel for each camera path and light among `cases`, with a series for each run and a
+/// Returns a panel for each camera path, light and viewport among `cases`, with a series for each run and a
 /// mark for the `error` of each frame. Without a figure it is the percentage of the pixels facing
 /// the light that are wrong outside the band (the pixels whose answer rounding decides), under a
 /// light [with an extent](skiagraph_compare#terms) the root mean square error of the [shares of
-/// light](skiagraph_compare#terms). Runs of still views are skipped. All runs must have one
-/// viewport. A series is named after its method. The size of its marks is the index of the run's
+/// light](skiagraph_compare#terms). Runs of still views are skipped.
+/// A series is named after its method. The size of its marks is the index of the run's
 /// map size in `maps` (texels), or 0.
 pub fn path_panels<'a>(
     cases: impl Iterator<Item = Case<'a>>,
@@ -285,7 +282,7 @@ pub fn path_panels<'a>(
         let Some(frames) = error.of_frames(&case) else {
             continue;
         };
-        let place = (&run.view, run.light.as_deref());
+        let place = (&run.view, run.light.as_deref(), run.viewport);
         let new = || Panel {
             title: titled(&format!("path {}", run.view), place.1, run.viewport),
             kind: Kind::Frames,
@@ -343,20 +340,6 @@ fn without_marks(name: &str) -> Series {
 
 fn is_drawn(run: &Run, viewport: Option<[u32; 2]>) -> bool {
     run.measured.is_some() && viewport.is_none_or(|wanted| wanted == run.viewport)
-}
-
-/// Viewports with something to draw, in the order of the file.
-fn viewports(results: &Results, wanted: Option<[u32; 2]>) -> Vec<[u32; 2]> {
-    let drawn = results.runs.iter().filter(|run| is_drawn(run, wanted));
-    unique(drawn.map(|run| run.viewport))
-}
-
-fn drawn(results: &Results, viewport: [u32; 2]) -> impl Iterator<Item = (&Run, &Measured)> {
-    let runs = results
-        .runs
-        .iter()
-        .filter(move |run| run.viewport == viewport);
-    runs.filter_map(|run| Some((run, run.measured.as_ref()?)))
 }
 
 fn no_times(kept: &Kept) -> CompareError {

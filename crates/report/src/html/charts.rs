@@ -6,6 +6,7 @@ use crate::looks::looks;
 use crate::summary::Row;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
+use skiagraph_compare::records::figures;
 use skiagraph_compare::records::regimes::{Regime, When};
 use skiagraph_compare::wording::{ms, size};
 use std::collections::BTreeMap;
@@ -89,15 +90,17 @@ fn front(table: &Shown, when: When) -> Panel {
     };
     let frame = when.map_or("frames as in the table", Regime::condition);
     let error = if table.summary.is_soft() {
-        "RMSE of the shares of light"
+        "rmse"
     } else {
-        "wrong pixels, % of those facing the light"
+        "wrong"
     };
     Panel {
         title: table.title.clone(),
         kind: Kind::Front,
         x: format!("{clock} ms a frame, {frame}"),
-        y: error.into(),
+        y: figures::named(error)
+            .map_or("", |figure| figure.axis)
+            .into(),
         series,
     }
 }

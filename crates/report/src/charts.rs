@@ -415,6 +415,28 @@ mod tests {
     }
 
     #[test]
+    fn an_error_of_the_list_is_drawn_with_its_axis() {
+        let flip = figures::named("flip");
+        let figure = front(&[kept()], None, flip).unwrap();
+        let [panel] = &figure.panels[..] else {
+            panic!("{figure:?}")
+        };
+        assert_eq!(panel.y, "FLIP error of the shaded picture");
+        assert_eq!(panel.series[0].marks[0].y, 0.012);
+        // Missing shadow is known of whole paths alone.
+        let mut path = kept();
+        let measured = path.results.runs[0].measured.as_mut().unwrap();
+        measured.sequence = Some(Sequence {
+            frames: Vec::new(),
+            shimmer: Default::default(),
+        });
+        assert!(frames_of_paths(&[path.clone()], None, flip).is_ok());
+        let error = frames_of_paths(&[path], None, figures::named("missing")).unwrap_err();
+        let expected = "there is nothing to draw: frames have no missing";
+        assert_eq!(error.to_string(), expected);
+    }
+
+    #[test]
     fn lights_have_panels_of_their_own() {
         let mut kept = kept();
         let mut second = kept.results.runs[0].clone();

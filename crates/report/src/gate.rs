@@ -209,7 +209,7 @@ mod tests {
             };
             gate.failures(&sample()).len()
         });
-        assert_eq!(counts.collect::<Vec<_>>(), [1; 16]);
+        assert!(counts.into_iter().all(|count| count == 1));
         assert_eq!(
             failures("nsm: missing > 0.1%"),
             ["`nsm 1024` at 512x256: missing 0.2550 % is more than 0.1000 %"]

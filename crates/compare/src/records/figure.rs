@@ -27,6 +27,11 @@ use itertools::Itertools;
 use skiagraph_reference::PixelCounts;
 use std::{collections::BTreeSet, fmt};
 
+/// Takes the value from a run.
+type Take = dyn Fn(&Case) -> Option<Value> + Send + Sync;
+/// Takes the values from the frames of a path.
+type Frames = fn(&Case, &Measured) -> Option<Vec<f64>>;
+
 /// A figure of runs: one number, or one text, of each.
 pub struct Figure {
     /// Its name, under which results.csv has its column.
@@ -48,8 +53,8 @@ pub struct Figure {
     pub heads: Vec<(Table, u16, String)>,
     /// Figure of a judged picture of a view with these pixels.
     pub picture: Option<fn(&JudgedPicture, &PixelCounts) -> f64>,
-    value: Box<dyn Fn(&Case) -> Option<Value> + Send + Sync>,
-    frames: Option<fn(&Case, &Measured) -> Option<Vec<f64>>>,
+    value: Box<Take>,
+    frames: Option<Frames>,
     steady: Option<fn(&Cycle) -> f64>,
     over: Over,
     only: Vec<fn(&[&Run]) -> bool>,
@@ -290,7 +295,7 @@ impl Figure {
 
     /// Gives the value in each frame of a camera path, in the figure's unit. The greatest of them
     /// is then what a limit is held against; without them it is the value of the path.
-    pub fn in_frames(mut self, frames: fn(&Case, &Measured) -> Option<Vec<f64>>) -> Self {
+    pub fn in_frames(mut self, frames: Frames) -> Self {
         self.frames = Some(frames);
         self
     }
@@ -342,7 +347,7 @@ impl Figure {
         match (self.unit, value) {
             (_, Value::Text(_)) => None,
             (Unit::Percent, Value::Numbers(part)) => match part[..] {
-                [count, of] => Some(100.0 * count / of.max(1.0)),
+                [count, whole] => Some(100.0 * count / whole.max(1.0)),
                 _ => None,
             },
             (_, Value::Numbers(numbers)) => numbers.first().copied().filter(|_| numbers.len() == 1),
@@ -435,7 +440,7 @@ impl Figure {
             None => "–".to_owned(),
             Some(Value::Text(text)) => text,
             Some(Value::Numbers(numbers)) => match (self.unit, &numbers[..]) {
-                (Unit::Percent, [count, of]) => share(*count as u64, *of as u64),
+                (Unit::Percent, [count, whole]) => share(*count as u64, *whole as u64),
                 _ => numbers.into_iter().map(number).join("–"),
             },
         }

@@ -46,6 +46,7 @@ pub fn drawn() -> impl Iterator<Item = &'static Figure> {
     FIGURES.iter().filter(|figure| !figure.axis.is_empty())
 }
 
+#[allow(clippy::too_many_lines, reason = "a list may be long")]
 #[rustfmt::skip] // A line each.
 fn list() -> Vec<Figure> {
     let mut list = vec![
@@ -166,13 +167,9 @@ fn list() -> Vec<Figure> {
             .shown(Summary, 3, "shimmer"),
         count("shimmer_compared", |measured| shimmer(measured).map(|part| part.of)),
         count("worst_frame", |measured| worst(measured).map(|(index, _)| index as u64)),
-        part_of("worst_frame_wrong", |_, measured| {
-            worst(measured).map(|(_, frame)| part(frame.wrong, frame.facing_light))
-        }).only(are_paths)
+        part_of("worst_frame_wrong", |_, measured| worst_wrong(measured)).only(are_paths)
             .shown(Terminal, 20, "worst frame").shown(Document, 23, "worst frame wrong %"),
-        part_of("worst_wrong", |_, measured| {
-            worst(measured).map(|(_, frame)| part(frame.wrong, frame.facing_light))
-        }).not_in_csv().only(are_paths).only(|runs| !are_soft(runs))
+        part_of("worst_wrong", |_, measured| worst_wrong(measured)).not_in_csv().only(are_paths).only(|runs| !are_soft(runs))
             .shown(Summary, 2, "worst frame").over_views(Worst),
         text("answer", |case| Some(case.run.measured.as_ref()?.answer.word().to_owned()))
             .only(are_graded).shown(Terminal, 2, "answer").shown(Document, 2, "answer"),
@@ -405,12 +402,12 @@ fn gpu(measured: &Measured, figure: fn(&Spread) -> f64) -> Option<f64> {
     measured.frame.gpu_ms.as_ref().map(figure)
 }
 
-fn part(count: u64, of: u64) -> Part {
-    Part { count, of }
+fn part(count: u64, whole: u64) -> Part {
+    Part { count, of: whole }
 }
 
-fn percent(count: u64, of: u64) -> f64 {
-    100.0 * count as f64 / of.max(1) as f64
+fn percent(count: u64, whole: u64) -> f64 {
+    100.0 * count as f64 / whole.max(1) as f64
 }
 
 /// A figure of each frame of a camera path.
@@ -436,6 +433,10 @@ fn shimmer(measured: &Measured) -> Option<Part> {
 /// Worst frame of a camera path.
 fn worst(measured: &Measured) -> Option<(usize, &SequenceFrame)> {
     measured.sequence.as_ref()?.worst()
+}
+
+fn worst_wrong(measured: &Measured) -> Option<Part> {
+    worst(measured).map(|(_, frame)| part(frame.wrong, frame.facing_light))
 }
 
 /// Frames that counts are sums of: those of a path are sums over all its frames.

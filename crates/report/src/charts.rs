@@ -260,13 +260,13 @@ fn has_path(results: &Results) -> bool {
     figures::are_paths(&results.runs.iter().collect::<Vec<_>>())
 }
 
-/// Returns a panel for each camera path, light and viewport among `cases`, with a series for each run and a
-/// mark for the `error` of each frame. Without a figure it is the percentage of the pixels facing
-/// the light that are wrong outside the band (the pixels whose answer rounding decides), under a
-/// light [with an extent](skiagraph_compare#terms) the root mean square error of the [shares of
-/// light](skiagraph_compare#terms). Runs of still views are skipped.
-/// A series is named after its method. The size of its marks is the index of the run's
-/// map size in `maps` (texels), or 0.
+/// Returns a panel for each camera path, light and viewport among `cases`, with a series for each
+/// run and a mark for the `error` of each frame. Without a figure it is the percentage of the
+/// pixels facing the light that are wrong outside the band (the pixels whose answer rounding
+/// decides), under a light [with an extent](skiagraph_compare#terms) the root mean square error of
+/// the [shares of light](skiagraph_compare#terms). Runs of still views are skipped. A series is
+/// named after its method. The size of its marks is the index of the run's map size in `maps`
+/// (texels), or 0.
 pub fn path_panels<'a>(
     cases: impl Iterator<Item = Case<'a>>,
     maps: &[u32],

@@ -169,7 +169,8 @@ fn list() -> Vec<Figure> {
         count("worst_frame", |measured| worst(measured).map(|(index, _)| index as u64)),
         part_of("worst_frame_wrong", |_, measured| worst_wrong(measured)).only(are_paths)
             .shown(Terminal, 20, "worst frame").shown(Document, 23, "worst frame wrong %"),
-        part_of("worst_wrong", |_, measured| worst_wrong(measured)).not_in_csv().only(are_paths).only(|runs| !are_soft(runs))
+        part_of("worst_wrong", |_, measured| worst_wrong(measured)).not_in_csv()
+            .only(are_paths).only(|runs| !are_soft(runs))
             .shown(Summary, 2, "worst frame").over_views(Worst),
         text("answer", |case| Some(case.run.measured.as_ref()?.answer.word().to_owned()))
             .only(are_graded).shown(Terminal, 2, "answer").shown(Document, 2, "answer"),

@@ -2,12 +2,14 @@
 //! `skiagraph-chart` draws them.
 
 use crate::looks::looks;
+use crate::summary::rows;
 use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::lists::{entry, find_or_push, place, unique};
-use skiagraph_compare::records::results::{Measured, Results, Run};
-use skiagraph_compare::records::sequence::SequenceFrame;
+use skiagraph_compare::lists::{entry, find_or_push, place};
+use skiagraph_compare::records::figure::{self, Case, Clocks};
+use skiagraph_compare::records::figures;
+use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::sources::Kept;
 use skiagraph_compare::wording::{frames, size};
 use std::collections::BTreeSet;
@@ -16,20 +18,37 @@ const TIME: &str = "GPU ms of a frame less its G-buffer";
 
 /// Builds the chart of time against error: a panel for each folder, viewport and light, and a mark
 /// for each method and map size. The time is the GPU time of a frame without its G-buffer, in
-/// milliseconds. The error is the wrong pixels outside the band (the pixels whose answer rounding
-/// decides), in percent of all pixels. Marks of several views show the mean of the views. Runs
-/// whose answers are [shares of light](skiagraph_compare#terms), or whose light has an extent, are
-/// not drawn. `viewport` (pixels) limits the chart to one viewport; `None` draws all.
+/// milliseconds. `error` is the figure that is drawn as the error, for several views what it is
+/// over them; without it the wrong pixels outside the band (the pixels whose answer rounding
+/// decides), in percent of all pixels. Runs that do not have the figure are not drawn: with these
+/// those whose answers are [shares of light](skiagraph_compare#terms), or whose light has an
+/// extent. `viewport` (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
 /// If a drawn run has no GPU times.
-pub fn front(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
+pub fn front(
+    kept: &[Kept],
+    viewport: Option<[u32; 2]>,
+    error: Option<&figure::Figure>,
+) -> Result<Figure, CompareError> {
+    let Some(error) = error.or_else(|| figures::named("wrong_of_all")) else {
+        return Ok(Figure::default());
+    };
     let results = || kept.iter().map(|kept| &kept.results);
     let maps = maps(kept, viewport);
     let mut panels = Vec::new();
     for kept in kept {
-        for place in places(&kept.results, viewport) {
-            panels.push(front_panel(kept, place, &maps)?);
+        let clocks = Clocks::new(&kept.results);
+        let runs = kept.results.runs.iter();
+        let runs = runs.filter(|run| is_drawn(run, viewport));
+        let mut places: Vec<(_, Vec<Case>)> = Vec::new();
+        for case in runs.map(|run| clocks.case(run)) {
+            if error.value(&case).is_some() {
+                entry(&mut places, (case.run.viewport, &case.run.light)).push(case);
+            }
+        }
+        for (_, cases) in places {
+            panels.push(front_panel(kept, &cases, error, &maps)?);
         }
     }
     let scenes = results().map(|results| results.scene.to_string());
@@ -74,68 +93,41 @@ fn looks_of(kept: &[Kept]) -> Vec<String> {
     looks(runs.map(|run| run.preset.clone()))
 }
 
-/// Viewport in pixels, and the light where there are several.
-type Place<'a> = ([u32; 2], Option<&'a str>);
-
-/// Places with something to draw, in the order of the file.
-fn places(results: &Results, wanted: Option<[u32; 2]>) -> Vec<Place<'_>> {
-    let runs = results.runs.iter();
-    // A graded answer has no wrong pixels.
-    let drawn = runs.filter(|run| is_drawn(run, wanted) && run.is_hard());
-    unique(drawn.map(|run| (run.viewport, run.light.as_deref())))
-}
-
-fn front_panel(kept: &Kept, place: Place<'_>, maps: &[u32]) -> Result<Panel, CompareError> {
-    let (viewport, light) = place;
-    let is_here = |run: &Run| run.light.as_deref() == light;
-    let runs = drawn(&kept.results, viewport).filter(|(run, _)| run.is_hard() && is_here(run));
-    let runs: Vec<(&Run, &Measured)> = runs.collect();
+/// The panel of the runs of one viewport and light.
+fn front_panel(
+    kept: &Kept,
+    cases: &[Case],
+    error: &figure::Figure,
+    maps: &[u32],
+) -> Result<Panel, CompareError> {
     let mut series: Vec<Series> = Vec::new();
-    let mut cells: Vec<((&str, Option<u32>), Vec<_>)> = Vec::new();
-    for (run, measured) in &runs {
-        entry(&mut cells, (&run.preset, run.map_size)).push((run, measured));
-    }
-    for ((preset, map), of_cell) in cells {
-        let (mut ms, mut wrong, mut pixels, mut views) = (0.0, 0, 0, 0.0);
-        let mut ends = [0.0; 2];
-        for (run, measured) in of_cell {
-            let own = time(kept, measured)?;
-            ms += own;
-            if let Some(gpu) = measured.frame.gpu_ms {
-                ends[0] += own + gpu.q1 - gpu.median;
-                ends[1] += own + gpu.q3 - gpu.median;
-            }
-            wrong += measured.wrong_outside_band();
-            // Counts of a path are those of all its frames.
-            let frames = measured
-                .sequence
-                .as_ref()
-                .map_or(1, |sequence| sequence.frames.len());
-            pixels += run.viewport.map(u64::from).iter().product::<u64>() * frames as u64;
-            views += 1.0;
-        }
-        let spread = ends.map(|end| end / views);
-        let mark = Mark {
-            size: mark_size(map, maps),
-            spread: Some(spread).filter(|[low, high]| *low > 0.0 && low < high),
-            ..Mark::new(ms / views, 100.0 * wrong as f64 / pixels as f64)
+    let viewport = cases.first().map_or([0; 2], |case| case.run.viewport);
+    for row in rows(cases.iter().copied(), viewport) {
+        let Some(y) = row.over(error).and_then(|value| error.number(value)) else {
+            continue;
         };
-        push(&mut series, preset, mark);
+        let ms = row.number("own_ms").ok_or_else(|| no_times(kept))?;
+        let spread = row.range("own_quartiles");
+        let mark = Mark {
+            size: mark_size(row.map_size(), maps),
+            spread: spread.filter(|[low, high]| *low > 0.0 && low < high),
+            ..Mark::new(ms, y)
+        };
+        push(&mut series, &row.method, mark);
     }
-    let views: BTreeSet<&str> = runs.iter().map(|(run, _)| run.view.as_str()).collect();
+    let views: BTreeSet<&str> = cases.iter().map(|case| case.run.view.as_str()).collect();
     let views = match views.first() {
         Some(view) if views.len() == 1 => format!("view {view}"),
         _ => format!("mean of {} views", views.len()),
     };
     Ok(Panel {
-        title: format!(
-            "{}, {}",
-            kept.results.scene.name,
-            titled(&views, light, viewport)
-        ),
+        title: cases.first().map_or(String::new(), |Case { run, .. }| {
+            let place = titled(&views, run.light.as_deref(), run.viewport);
+            format!("{}, {place}", kept.results.scene.name)
+        }),
         kind: Kind::Front,
         x: TIME.into(),
-        y: "wrong pixels outside the band, % of all".into(),
+        y: error.axis.into(),
         series,
     })
 }
@@ -156,19 +148,16 @@ fn titled(views: &str, light: Option<&str>, viewport: [u32; 2]) -> String {
 /// # Errors
 /// If a drawn run has no GPU times.
 pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
-    let runs = || {
-        kept.iter().flat_map(|kept| {
-            let viewports = viewports(&kept.results, viewport);
-            viewports
-                .into_iter()
-                .flat_map(|viewport| drawn(&kept.results, viewport))
-                .map(move |(run, measured)| (kept, run, measured))
-        })
-    };
     let maps = maps(kept, viewport);
     let mut cells = Vec::new();
     let mut panels: Vec<[Panel; 2]> = Vec::new();
-    for (kept, run, measured) in runs() {
+    let runs = kept
+        .iter()
+        .flat_map(|kept| kept.results.runs.iter().map(move |run| (kept, run)));
+    for (kept, run) in runs.filter(|(_, run)| is_drawn(run, viewport)) {
+        let Some(measured) = &run.measured else {
+            continue;
+        };
         let scene = &kept.results.scene;
         let light = run.light.as_deref();
         let cell = (scene.name.as_str(), run.view.as_str(), light, run.viewport);
@@ -187,7 +176,8 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
         }
         let size = mark_size(run.map_size, &maps);
         let bytes = measured.memory_bytes + measured.scene_bytes;
-        let heights = [time(kept, measured)?, bytes as f64 / 1e6];
+        let ms = measured.ms_without_gbuffer();
+        let heights = [ms.ok_or_else(|| no_times(kept))?, bytes as f64 / 1e6];
         for (panel, y) in panels[index].iter_mut().zip(heights) {
             let x = scene.triangles as f64;
             let mark = Mark {
@@ -225,23 +215,32 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
 }
 
 /// Builds the chart of errors over the frames of camera paths: a panel for each folder, path, light
-/// and viewport, and a line for each method and map size. The error is defined at [`path_panels`].
-/// `viewport` (pixels) limits the chart to one viewport; `None` draws all.
+/// and viewport, and a line for each method and map size. The `error` is defined at
+/// [`path_panels`]. `viewport` (pixels) limits the chart to one viewport; `None` draws all.
 ///
 /// # Errors
-/// If none of the runs is of a camera path.
-pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
+/// If none of the runs is of a camera path, or its frames do not have the figure.
+pub fn frames_of_paths(
+    kept: &[Kept],
+    viewport: Option<[u32; 2]>,
+    error: Option<&figure::Figure>,
+) -> Result<Figure, CompareError> {
     let maps = maps(kept, viewport);
     let mut panels = Vec::new();
     for kept in kept {
-        for viewport in viewports(&kept.results, viewport) {
-            panels.extend(path_panels(drawn(&kept.results, viewport), &maps));
-        }
+        let clocks = Clocks::new(&kept.results);
+        let runs = kept.results.runs.iter();
+        let runs = runs.filter(|run| is_drawn(run, viewport));
+        let cases = runs.map(|run| clocks.case(run));
+        panels.extend(path_panels(cases, &maps, error));
     }
     if panels.is_empty() {
-        return Err(CompareError::Input(
-            "there are no frames to draw: no run is of a camera path (compare --path)".into(),
-        ));
+        return Err(CompareError::Input(match error {
+            Some(error) if kept.iter().any(|kept| has_path(&kept.results)) => {
+                format!("there is nothing to draw: frames have no {}", error.name)
+            }
+            _ => "there are no frames to draw: no run is of a camera path (compare --path)".into(),
+        }));
     }
     Ok(Figure {
         title: "Errors along camera paths".into(),
@@ -256,53 +255,50 @@ pub fn frames_of_paths(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figu
     })
 }
 
-/// Returns a panel for each camera path and light among `runs`, with a series for each run and a
-/// mark for the error of each frame. The error is the percentage of the pixels facing the light
-/// that are wrong outside the band (the pixels whose answer rounding decides); under a light [with
-/// an extent](skiagraph_compare#terms) it is the root mean square error of the [shares of
-/// light](skiagraph_compare#terms). Runs of still views are skipped. All runs must have one
-/// viewport. A series is named after its method. The size of its marks is the index of the run's
-/// map size in `maps` (texels), or 0.
+/// True if a run is of a camera path.
+fn has_path(results: &Results) -> bool {
+    figures::are_paths(&results.runs.iter().collect::<Vec<_>>())
+}
+
+/// Returns a panel for each camera path, light and viewport among `cases`, with a series for each
+/// run and a mark for the `error` of each frame. Without a figure it is the percentage of the
+/// pixels facing the light that are wrong outside the band (the pixels whose answer rounding
+/// decides), under a light [with an extent](skiagraph_compare#terms) the root mean square error of
+/// the [shares of light](skiagraph_compare#terms). Runs of still views are skipped. A series is
+/// named after its method. The size of its marks is the index of the run's map size in `maps`
+/// (texels), or 0.
 pub fn path_panels<'a>(
-    runs: impl Iterator<Item = (&'a Run, &'a Measured)>,
+    cases: impl Iterator<Item = Case<'a>>,
     maps: &[u32],
+    error: Option<&figure::Figure>,
 ) -> Vec<Panel> {
     let mut paths: Vec<(_, Panel)> = Vec::new();
-    for (run, measured) in runs {
-        let Some(sequence) = &measured.sequence else {
+    for case in cases {
+        let run = case.run;
+        let usual = run.area.map_or("wrong", |_| "rmse");
+        let Some(error) = error.or_else(|| figures::named(usual)) else {
             continue;
         };
-        let is_soft = run.area.is_some();
-        let place = (&run.view, run.light.as_deref());
-        let y = if is_soft {
-            "RMSE of the shares of light"
-        } else {
-            "wrong pixels, %"
+        let Some(frames) = error.of_frames(&case) else {
+            continue;
         };
+        let place = (&run.view, run.light.as_deref(), run.viewport);
         let new = || Panel {
             title: titled(&format!("path {}", run.view), place.1, run.viewport),
             kind: Kind::Frames,
             x: "frame".into(),
-            y: y.into(),
+            y: error.axis.into(),
             series: Vec::new(),
         };
         let (_, panel) = find_or_push(&mut paths, |(key, _)| *key == place, || (place, new()));
-        let mark = |(index, frame): (usize, &SequenceFrame)| {
-            let wrong = 100.0 * frame.wrong_outside_band as f64;
-            let error = if is_soft {
-                frame.error()
-            } else {
-                wrong / frame.facing_light.max(1) as f64
-            };
-            Mark {
-                size: mark_size(run.map_size, maps),
-                about: format!("{}\nframe {index}: {error:.4}", run.method_label()),
-                ..Mark::new(index as f64, error)
-            }
+        let mark = |(index, error): (usize, f64)| Mark {
+            size: mark_size(run.map_size, maps),
+            about: format!("{}\nframe {index}: {error:.4}", run.method_label()),
+            ..Mark::new(index as f64, error)
         };
         panel.series.push(Series {
             name: run.preset.clone(),
-            marks: sequence.frames.iter().enumerate().map(mark).collect(),
+            marks: frames.into_iter().enumerate().map(mark).collect(),
         });
     }
     paths.into_iter().map(|(_, panel)| panel).collect()
@@ -346,29 +342,13 @@ fn is_drawn(run: &Run, viewport: Option<[u32; 2]>) -> bool {
     run.measured.is_some() && viewport.is_none_or(|wanted| wanted == run.viewport)
 }
 
-/// Viewports with something to draw, in the order of the file.
-fn viewports(results: &Results, wanted: Option<[u32; 2]>) -> Vec<[u32; 2]> {
-    let drawn = results.runs.iter().filter(|run| is_drawn(run, wanted));
-    unique(drawn.map(|run| run.viewport))
-}
-
-fn drawn(results: &Results, viewport: [u32; 2]) -> impl Iterator<Item = (&Run, &Measured)> {
-    let runs = results
-        .runs
-        .iter()
-        .filter(move |run| run.viewport == viewport);
-    runs.filter_map(|run| Some((run, run.measured.as_ref()?)))
-}
-
-fn time(kept: &Kept, measured: &Measured) -> Result<f64, CompareError> {
-    measured.ms_without_gbuffer().ok_or_else(|| {
-        let why = kept.results.adapter.gpu_unavailable.as_deref();
-        CompareError::Input(format!(
-            "{}: there are no GPU times to draw: {}",
-            kept.folder.display(),
-            why.unwrap_or("the adapter gave none for a pass")
-        ))
-    })
+fn no_times(kept: &Kept) -> CompareError {
+    let why = kept.results.adapter.gpu_unavailable.as_deref();
+    CompareError::Input(format!(
+        "{}: there are no GPU times to draw: {}",
+        kept.folder.display(),
+        why.unwrap_or("the adapter gave none for a pass")
+    ))
 }
 
 /// Returns lines about the measurements: one for each adapter, then one with the numbers of timed
@@ -392,7 +372,7 @@ pub fn conditions(kept: &[Kept]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::test_support::results as sample;
-    use skiagraph_compare::records::sequence::{FrameCost, Sequence};
+    use skiagraph_compare::records::sequence::{FrameCost, Sequence, SequenceFrame};
 
     fn kept() -> Kept {
         let mut results = sample();
@@ -412,7 +392,7 @@ mod tests {
         let measured = second.measured.as_mut().unwrap();
         (measured.wrong.total, measured.wrong.in_band) = (6, 6);
         kept.results.runs.insert(1, second);
-        let figure = front(&[kept], None).unwrap();
+        let figure = front(&[kept], None, None).unwrap();
         let [panel] = &figure.panels[..] else {
             panic!("{figure:?}")
         };
@@ -435,13 +415,35 @@ mod tests {
     }
 
     #[test]
+    fn an_error_of_the_list_is_drawn_with_its_axis() {
+        let flip = figures::named("flip");
+        let figure = front(&[kept()], None, flip).unwrap();
+        let [panel] = &figure.panels[..] else {
+            panic!("{figure:?}")
+        };
+        assert_eq!(panel.y, "FLIP error of the shaded picture");
+        assert_eq!(panel.series[0].marks[0].y, 0.012);
+        // Missing shadow is known of whole paths alone.
+        let mut path = kept();
+        let measured = path.results.runs[0].measured.as_mut().unwrap();
+        measured.sequence = Some(Sequence {
+            frames: Vec::new(),
+            shimmer: Default::default(),
+        });
+        assert!(frames_of_paths(&[path.clone()], None, flip).is_ok());
+        let error = frames_of_paths(&[path], None, figures::named("missing")).unwrap_err();
+        let expected = "there is nothing to draw: frames have no missing";
+        assert_eq!(error.to_string(), expected);
+    }
+
+    #[test]
     fn lights_have_panels_of_their_own() {
         let mut kept = kept();
         let mut second = kept.results.runs[0].clone();
         (kept.results.runs[0].light, second.light) = (Some("sun".into()), Some("lamp".into()));
         second.measured.as_mut().unwrap().wrong.total = 6;
         kept.results.runs.insert(1, second);
-        let figure = front(std::slice::from_ref(&kept), None).unwrap();
+        let figure = front(std::slice::from_ref(&kept), None, None).unwrap();
         let [sun, lamp] = &figure.panels[..] else {
             panic!("{figure:?}")
         };
@@ -452,7 +454,7 @@ mod tests {
         // A light under which all answers are graded has none.
         kept.results.runs[1].measured.as_mut().unwrap().answer =
             skiagraph_compare::records::results::Answer::Graded;
-        let figure = front(&[kept], None).unwrap();
+        let figure = front(&[kept], None, None).unwrap();
         let titles: Vec<&str> = figure.panels.iter().map(|panel| &*panel.title).collect();
         assert_eq!(titles, [&*sun.title]);
     }
@@ -476,7 +478,7 @@ mod tests {
     #[test]
     fn a_path_has_a_panel_and_a_method_a_line_of_its_frames() {
         let mut kept = kept();
-        assert!(frames_of_paths(&[], None).is_err());
+        assert!(frames_of_paths(&[], None, None).is_err());
         let frame = |wrong_outside_band: u64| SequenceFrame {
             facing_light: 1_000,
             wrong: wrong_outside_band + 5,
@@ -500,7 +502,7 @@ mod tests {
         let mut other = run.clone();
         other.preset = "pcf".into();
         kept.results.runs.insert(1, other);
-        let figure = frames_of_paths(&[kept], None).unwrap();
+        let figure = frames_of_paths(&[kept], None, None).unwrap();
         let [panel] = &figure.panels[..] else {
             panic!("{figure:?}")
         };
@@ -517,14 +519,19 @@ mod tests {
 
     #[test]
     fn what_is_not_drawn_is_told() {
-        assert!(front(&[kept()], Some([1, 1])).unwrap().panels.is_empty());
+        assert!(
+            front(&[kept()], Some([1, 1]), None)
+                .unwrap()
+                .panels
+                .is_empty()
+        );
         let lines: Vec<String> = unavailable(&[kept()]).into_iter().collect();
         assert_eq!(lines, ["not drawn: rt_hw: needs ray queries, \"not\" here"]);
         let without = Kept {
             folder: "out".into(),
             results: sample(),
         };
-        let error = front(&[without], None).unwrap_err().to_string();
+        let error = front(&[without], None, None).unwrap_err().to_string();
         assert!(error.starts_with("out: there are no GPU times"), "{error}");
     }
 }

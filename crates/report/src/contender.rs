@@ -1,9 +1,11 @@
 //! Rows that a verdict chooses among, each with what decides.
 
-use crate::summary::{Row, When, Worst, Wrong, share};
+use crate::summary::{Row, Wrong};
 use crate::tuning;
 use skiagraph_compare::records::budgets::Budgets;
-use skiagraph_compare::records::regimes::{AT_REST_MS, Regime};
+use skiagraph_compare::records::figure::Worst;
+use skiagraph_compare::records::figures;
+use skiagraph_compare::records::regimes::{AT_REST_MS, Regime, When, time_name};
 use skiagraph_compare::records::turns::Ratio;
 use skiagraph_compare::wording::{ms, percent};
 
@@ -72,7 +74,6 @@ impl Condition {
 #[derive(Clone, Debug)]
 pub struct Contender<'a> {
     pub row: &'a Row<'a>,
-    pub by_wall: bool,
     pub index: usize,
     pub label: &'a str,
     pub wrong: Wrong,
@@ -87,20 +88,19 @@ pub struct Contender<'a> {
     pub frame: f64,
     /// The slowest view, or frame of a path, in milliseconds.
     pub slowest: Worst,
-    /// The view, or frame of a path, with the greatest share of wrong pixels, 0 to 1.
+    /// The view, or frame of a path, with the greatest share of wrong pixels, in percent.
     pub most_wrong: Worst,
 }
 
 impl<'a> Contender<'a> {
-    pub fn new(index: usize, row: &'a Row, when: When, by_wall: bool) -> Option<Self> {
-        let frame = row.frame_ms(when, by_wall)?;
+    pub fn new(index: usize, row: &'a Row, when: When) -> Option<Self> {
+        let frame = row.frame_ms(when)?;
         let wrong = row.wrong();
         if wrong.facing_light == 0 {
             return None; // Nothing was judged.
         }
         Some(Self {
             row,
-            by_wall,
             index,
             label: &row.label,
             wrong,
@@ -110,8 +110,8 @@ impl<'a> Contender<'a> {
             condition: Condition::new(wrong),
             when,
             frame,
-            slowest: row.slowest(when, by_wall)?,
-            most_wrong: row.most_wrong()?,
+            slowest: row.worst(figures::named(&time_name(when))?)?,
+            most_wrong: row.worst(figures::named("wrong")?)?,
         })
     }
 
@@ -136,12 +136,14 @@ impl<'a> Contender<'a> {
                 let wrong = percent(outside_band, facing_light);
                 let wrong = format!("wrong on {wrong} of the surfaces that face the light");
                 // A small share of all surfaces may be all of the shadow.
-                let (missing, dark) = (self.row.missing_shadow(), self.row.false_shadow());
-                if share(missing) >= LARGE {
-                    let missing = percent(missing.count, missing.of);
+                let part = |name| {
+                    let [count, whole] = self.row.range(name)?;
+                    let share = || percent(count as u64, whole as u64);
+                    (count >= LARGE * whole.max(1.0)).then(share)
+                };
+                if let Some(missing) = part("missing") {
                     format!("without {missing} of the shadow, {wrong}")
-                } else if share(dark) >= LARGE {
-                    let dark = percent(dark.count, dark.of);
+                } else if let Some(dark) = part("false") {
                     format!("falsely dark on {dark} of the light, {wrong}")
                 } else {
                     wrong
@@ -178,7 +180,7 @@ impl<'a> Contender<'a> {
             .is_none_or(|most| self.slowest.value <= most);
         let is_right = budgets
             .wrong_percent
-            .is_none_or(|most| 100.0 * self.most_wrong.value < most);
+            .is_none_or(|most| self.most_wrong.value < most);
         let is_small = budgets
             .memory_bytes
             .is_none_or(|most| self.row.bytes() <= most);
@@ -193,7 +195,7 @@ impl<'a> Contender<'a> {
             let [mean, worst] = [self.frame, slowest.value].map(ms);
             format!("takes {worst} ms{} (mean {mean})", slowest.on())
         });
-        let shares = [self.wrong.share(), most_wrong.value].map(|share| 100.0 * share);
+        let shares = [100.0 * self.wrong.share(), most_wrong.value];
         let is_wrong = |most: &f64| shares[0] < *most && shares[1] >= *most;
         let wrong = budgets.wrong_percent.filter(is_wrong).map(|_| {
             let [total, worst] = shares.map(|share| format!("{share:.3} %"));
@@ -223,12 +225,12 @@ impl<'a> Contender<'a> {
 
     pub fn is_told_apart(&self, other: &Self) -> bool {
         let are_resting = self.is_resting() && other.is_resting();
-        !are_resting && self.row.is_told_apart(other.row, self.when, self.by_wall)
+        !are_resting && self.row.is_told_apart(other.row, self.when)
     }
 
     /// How many times as fast as another method it is, with the interval.
     pub fn times_as_fast(&self, other: &Self) -> String {
-        match other.row.ratio(self.row, self.when, self.by_wall) {
+        match other.row.ratio(self.row, self.when) {
             Some(Ratio { low, median, high }) => {
                 let [low, median, high] = [low, median, high].map(ratio);
                 let interval = format!(" ({low} to {high})");

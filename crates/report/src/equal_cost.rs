@@ -1,6 +1,6 @@
 //! Errors of methods at equal cost, read off their curves over the sizes of shadow maps.
 
-use crate::summary::{Row, by_wall};
+use crate::summary::Row;
 use crate::summary_table::Summary;
 use crate::verdict::main_choice;
 use itertools::Itertools;
@@ -21,12 +21,11 @@ type Point = [f64; 3];
 /// method is exact, there is no such sentence.
 pub fn sentence(summary: &Summary) -> Option<String> {
     let (rows, when) = (&summary.rows, main_choice(&summary.rows));
-    let by_wall = by_wall(rows);
     let exact = &rows[*summary.verdict().fastest_exact.get(&when)?];
-    let cost = exact.frame_ms(when, by_wall)?;
+    let cost = exact.frame_ms(when)?;
     let point = |row: &Row| -> Option<Point> {
         let edge = f64::from(row.map_size()?);
-        Some([edge, row.frame_ms(when, by_wall)?, row.wrong().share()])
+        Some([edge, row.frame_ms(when)?, row.wrong().share()])
     };
     let errors = unique(rows.iter().map(|row| &row.method)).into_iter();
     let mut errors = errors.filter_map(|method| {

@@ -1,140 +1,75 @@
 //! Conditions under which `compare` or `judge` fails, for continuous integration:
 //! `nsm: wrong > 0.1%`.
 
-use crate::summary::{Row, When, Worst, by_wall, share};
 use crate::summary_table::summaries;
+use itertools::Itertools;
 use skiagraph_compare::graphs::method::Method;
+use skiagraph_compare::records::figure::Figure;
+use skiagraph_compare::records::figures::limited;
 use skiagraph_compare::records::judged_pictures::{
     JudgedPicture, JudgedPictures, MOST_WITHOUT_ANSWER,
 };
-use skiagraph_compare::records::regimes::Regime;
-use skiagraph_compare::records::results::{Part, Results};
-use skiagraph_compare::wording::{bytes, ms, percent, size, unknown};
-use skiagraph_reference::PixelCounts;
-use std::path::Path;
+use skiagraph_compare::records::results::Results;
+use skiagraph_compare::wording::{percent, size, unknown};
+use std::{path::Path, str::FromStr};
 
 /// Upper limit for one figure of a method or picture, beyond which `--fail-if` makes `compare` or
 /// `judge` fail.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Gate {
     /// Name of the method with its setting, for example `crsm@n=1`. For `judge` it is the path of a
     /// picture, or the picture's file name without its extension.
     pub method: String,
     /// The figure that is limited.
-    pub figure: Figure,
+    pub figure: &'static Figure,
     /// Greatest value that passes, in the unit of the figure: percent, milliseconds, bytes, or
     /// none.
     pub most: f64,
 }
 
-/// A figure of a method that a [`Gate`] can limit: every view, and every frame of a camera path,
-/// must keep to the limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Figure {
-    /// Wrong pixels, in percent of the pixels that face the light. Pixels whose answer rounding
-    /// decides (the band) do not count as wrong.
-    Wrong,
-    /// Shadow that is missing: lit pixels, in percent of those in the reference's shadow, of a
-    /// camera path over all its frames. Pixels in the band count.
-    Missing,
-    /// Shadow that is false: dark pixels, in percent of those that the reference lights, of a
-    /// camera path over all its frames. Pixels in the band count.
-    False,
-    /// Root mean square error of the [shares of light](skiagraph_compare#terms), which are 0 to 1.
-    Rmse,
-    /// FLIP error (perceptual difference) of the shaded picture, 0 to 1.
-    Flip,
-    /// Milliseconds of a frame: the median of a view's frames of that choice, without a regime the
-    /// slowest frame of a path. GPU time and upkeep of the CPU, or wall time if any method has no
-    /// GPU time in the same viewport under the same light.
-    Frame(When),
-    /// Milliseconds that this percentage of a view's or path's frames do not exceed, as
-    /// [`Frame`](Self::Frame) measures them without a regime.
-    Percentile(u8),
-    /// Bytes of the textures and buffers of the method and of the scene buffers that it reads; the
-    /// largest value of all views.
-    Memory,
+/// The figures that can be limited, those of pictures alone if `of_pictures`.
+fn figures(of_pictures: bool) -> impl Iterator<Item = (&'static str, &'static Figure)> {
+    let figures = limited().filter(move |figure| !of_pictures || figure.picture.is_some());
+    figures.filter_map(|figure| Some((figure.gate.as_deref()?, figure)))
 }
 
-impl Figure {
-    /// All figures.
-    pub const ALL: [Self; 16] = [
-        Self::Wrong,
-        Self::Missing,
-        Self::False,
-        Self::Rmse,
-        Self::Flip,
-        Self::Frame(None),
-        Self::Frame(Some(Regime::Nothing)),
-        Self::Frame(Some(Regime::Camera)),
-        Self::Frame(Some(Regime::Light)),
-        Self::Frame(Some(Regime::SomeMeshes)),
-        Self::Frame(Some(Regime::AllMeshes)),
-        Self::Percentile(50),
-        Self::Percentile(95),
-        Self::Percentile(99),
-        Self::Percentile(100),
-        Self::Memory,
-    ];
+/// Returns the figures that `--fail-if` can limit as text for its help, with an example behind
+/// those of one unit: `` `wrong`, `missing` > 5%; `frame` > 3ms ``. Those of pictures alone if
+/// `of_pictures`.
+pub fn help(of_pictures: bool) -> String {
+    let units = figures(of_pictures).chunk_by(|(_, figure)| figure.unit.example());
+    let unit = units.into_iter().map(|(example, figures)| {
+        let mut words = figures.map(|(word, _)| format!("`{word}`"));
+        format!("{} > {example}", words.join(", "))
+    });
+    unit.collect::<Vec<_>>().join("; ")
+}
 
-    /// Returns the word for the figure in a condition, for example `wrong`.
-    pub fn word(self) -> String {
-        match self {
-            Self::Wrong => "wrong".into(),
-            Self::Missing => "missing".into(),
-            Self::False => "false".into(),
-            Self::Rmse => "rmse".into(),
-            Self::Flip => "flip".into(),
-            Self::Frame(None) => "frame".into(),
-            Self::Frame(Some(regime)) => regime.word().replace(' ', "_"),
-            Self::Percentile(100) => "worst".into(),
-            Self::Percentile(percent) => format!("p{percent}"),
-            Self::Memory => "memory".into(),
-        }
-    }
+impl FromStr for Gate {
+    type Err = String;
 
-    /// The greatest value over views and frames; `None` if the method could not run.
-    fn worst(self, row: &Row, by_wall: bool) -> Option<Worst> {
-        let in_percent = |worst: Worst| Worst {
-            value: 100.0 * worst.value,
-            ..worst
+    /// Parses a condition of `--fail-if`, such as `nsm: wrong > 0.1%`, into its limit.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = "expected METHOD: FIGURE > VALUE, for example `nsm: wrong > 0.1%`";
+        let parts = || {
+            let (method, condition) = text.rsplit_once(": ")?;
+            let (word, value) = condition.split_once('>')?;
+            Some([method, word, value].map(str::trim))
         };
-        match self {
-            Self::Wrong => row.most_wrong().map(in_percent),
-            Self::Missing => row.most_missing().map(in_percent),
-            Self::False => row.most_false().map(in_percent),
-            Self::Rmse => row.greatest_rmse(),
-            Self::Flip => row.greatest_flip(),
-            Self::Frame(when) => row.slowest(when, by_wall),
-            Self::Percentile(percent) => row.percentile(percent, by_wall),
-            Self::Memory => (row.views() > 0).then(|| Worst {
-                value: row.bytes() as f64,
-                place: None,
-            }),
-        }
-    }
-
-    /// The figure of a judged picture of a view with these pixels; `None` if pictures have no such
-    /// figure.
-    fn of_picture(self, picture: &JudgedPicture, pixels: &PixelCounts) -> Option<f64> {
-        let percent = |count: u64, whole: u64| Some(100.0 * share(Part { count, of: whole }));
-        match self {
-            Self::Wrong => percent(picture.wrong_attributable(), pixels.facing_light),
-            Self::Missing => percent(picture.wrong.lit, pixels.shadow),
-            Self::False => percent(picture.wrong.shadow, pixels.lit),
-            Self::Rmse => Some(picture.graded.rmse_outside_band),
-            Self::Flip => Some(picture.graded.flip),
-            Self::Frame(_) | Self::Percentile(_) | Self::Memory => None,
-        }
-    }
-
-    fn text(self, value: f64) -> String {
-        match self {
-            Self::Wrong | Self::Missing | Self::False => format!("{value:.4} %"),
-            Self::Rmse | Self::Flip => format!("{value:.5}"),
-            Self::Frame(_) | Self::Percentile(_) => format!("{} ms", ms(value)),
-            Self::Memory => bytes(value as u64),
-        }
+        let [method, word, value] = parts().ok_or(expected)?;
+        let named = figures(false).find(|(name, _)| *name == word);
+        let (_, figure) = named.ok_or_else(|| {
+            let words = figures(false).map(|(name, _)| name).join(", ");
+            format!("unknown figure `{word}`; expected one of {words}")
+        })?;
+        Ok(Self {
+            method: method.into(),
+            figure,
+            most: figure
+                .unit
+                .parse(value)
+                .map_err(|why| format!("{word}: {why}"))?,
+        })
     }
 }
 
@@ -160,12 +95,11 @@ impl Gate {
     pub fn failures(&self, results: &Results) -> Vec<String> {
         let mut lines = Vec::new();
         for summary in summaries(results) {
-            let by_wall = by_wall(&summary.rows);
             let viewport = size(summary.viewport);
             for row in summary.rows.iter().filter(|row| row.method == self.method) {
-                let (label, word) = (&row.label, self.figure.word());
-                let text = |value| self.figure.text(value);
-                match self.figure.worst(row, by_wall) {
+                let (label, word) = (&row.label, self.word());
+                let text = |value| self.figure.unit.limit(value);
+                match row.worst(self.figure) {
                     None => {
                         let why = if row.views() == 0 {
                             "it could not run"
@@ -194,13 +128,11 @@ impl Gate {
     /// # Errors
     /// A text for the user that names the unknown picture, or the figure that pictures lack.
     pub fn check_pictures(&self, files: &[String]) -> Result<(), String> {
-        let (name, word) = (&self.method, self.figure.word());
-        if matches!(
-            self.figure,
-            Figure::Frame(_) | Figure::Percentile(_) | Figure::Memory
-        ) {
+        let (name, word) = (&self.method, self.word());
+        if self.figure.picture.is_none() {
+            let words = figures(true).map(|(name, _)| name).join(", ");
             return Err(format!(
-                "--fail-if: a picture has no {word}; expected wrong, missing, false, rmse or flip"
+                "--fail-if: a picture has no {word}; expected {words}"
             ));
         }
         if files.iter().any(|file| self.is_of(file)) {
@@ -226,7 +158,7 @@ impl Gate {
             .iter()
             .filter(|picture| self.is_of(&picture.file));
         let line = |picture: &JudgedPicture| {
-            let (word, text) = (self.figure.word(), |value| self.figure.text(value));
+            let (word, text) = (self.word(), |value| self.figure.unit.limit(value));
             if picture.without_answer as f64 > MOST_WITHOUT_ANSWER * wanted as f64 {
                 let share = percent(picture.without_answer, wanted);
                 return Some(format!(
@@ -234,7 +166,7 @@ impl Gate {
                     picture.file
                 ));
             }
-            let value = self.figure.of_picture(picture, &judged.pixels)?;
+            let value = self.figure.picture?(picture, &judged.pixels);
             let (value, most) = (value > self.most).then(|| (text(value), text(self.most)))?;
             Some(format!(
                 "`{}`: {word} {value} is more than {most}",
@@ -242,6 +174,10 @@ impl Gate {
             ))
         };
         pictures.filter_map(line).collect()
+    }
+
+    fn word(&self) -> &str {
+        self.figure.gate.as_deref().unwrap_or(&self.figure.name)
     }
 
     fn is_of(&self, file: &str) -> bool {
@@ -259,28 +195,27 @@ mod tests {
 
     #[test]
     fn a_condition_fails_for_what_is_above_it_or_could_not_run() {
-        let failures = |method: &str, figure, most| {
-            let method = method.into();
-            Gate {
-                method,
-                figure,
-                most,
-            }
-            .failures(&sample())
-        };
+        let failures = |condition: &str| condition.parse::<Gate>().unwrap().failures(&sample());
         assert_eq!(
-            failures("nsm", Figure::Wrong, 0.1),
+            failures("nsm: wrong > 0.1%"),
             ["`nsm 1024` at 512x256: wrong 0.4970 % is more than 0.1000 %"]
         );
-        assert_eq!(failures("nsm", Figure::Wrong, 0.5), [""; 0]);
-        let counts = Figure::ALL.map(|figure| failures("nsm", figure, 0.0).len());
-        assert_eq!(counts, [1; 16]);
+        assert_eq!(failures("nsm: wrong > 0.5%"), [""; 0]);
+        let counts = limited().map(|figure| {
+            let gate = Gate {
+                method: "nsm".into(),
+                figure,
+                most: 0.0,
+            };
+            gate.failures(&sample()).len()
+        });
+        assert!(counts.into_iter().all(|count| count == 1));
         assert_eq!(
-            failures("nsm", Figure::Missing, 0.1),
+            failures("nsm: missing > 0.1%"),
             ["`nsm 1024` at 512x256: missing 0.2550 % is more than 0.1000 %"]
         );
         assert_eq!(
-            failures("rt_hw", Figure::Frame(None), 1e9),
+            failures("rt_hw: frame > 9ms"),
             ["`rt_hw` at 512x256 has no frame: it could not run"]
         );
     }
@@ -305,11 +240,7 @@ mod tests {
             frames: vec![frame(0).unwrap(), frame(9).unwrap()],
             shimmer: Shimmer::default(),
         });
-        let gate = |most| Gate {
-            method: "nsm".into(),
-            figure: Figure::Wrong,
-            most,
-        };
+        let gate = |most| format!("nsm: wrong > {most}%").parse::<Gate>().unwrap();
         results.runs.insert(1, roofs);
         let failures = gate(1.5).failures(&results);
         let on_roofs = "`nsm 1024` at 512x256: wrong 2.0060 % on `roofs` is more than 1.5000 %";
@@ -319,5 +250,25 @@ mod tests {
         let on_path =
             "`nsm 1024` at 512x256: wrong 9.0000 % on frame 1 of `walk` is more than 3.0000 %";
         assert_eq!(failures, [on_path]);
+    }
+
+    #[test]
+    fn a_condition_has_a_method_a_figure_and_a_value_with_its_unit() {
+        let most = |text: &str| text.parse().map(|gate: Gate| (gate.method, gate.most));
+        assert_eq!(most("nsm: wrong > 0.1%"), Ok(("nsm".into(), 0.1)));
+        assert_eq!(most("crsm@n=1: frame>3ms"), Ok(("crsm@n=1".into(), 3.0)));
+        for (text, message) in [
+            ("nsm wrong > 1%", "METHOD: FIGURE > VALUE"),
+            ("nsm: wrong < 1%", "METHOD: FIGURE > VALUE"),
+            (
+                "nsm: wrnog > 1%",
+                "wrong, missing, false, rmse, flip, frame",
+            ),
+            ("nsm: wrong > 1", "wrong: no sign for percent"),
+            ("nsm: frame > 1", "frame: no unit"),
+        ] {
+            let error = text.parse::<Gate>().unwrap_err();
+            assert!(error.contains(message), "{text}: {error}");
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::graded::{counted, invalid_counts};
 use crate::notes::{pixels, wrong_surface};
-use crate::table::{TERMINAL, terminal, wrapped};
+use crate::table::{TERMINAL, or_dash, terminal, wrapped};
 use itertools::Itertools;
 use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::judged_pictures::{
@@ -11,6 +11,7 @@ use skiagraph_compare::records::judged_pictures::{
 use skiagraph_compare::records::results::Answer;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{percent, size, thousands};
+use skiagraph_reference::Graded;
 
 /// Returns heading, table, verdict and notes of judged pictures as text. `is_broken` breaks
 /// sentences into lines of 80 characters, as a terminal needs; otherwise each is a line.
@@ -112,60 +113,55 @@ fn heading(judged: &JudgedPictures) -> Vec<String> {
     lines
 }
 
+/// A column: its head, and the cell of a picture.
+type Column = (&'static str, fn(&JudgedPictures, &JudgedPicture) -> String);
+
+/// The columns behind the name.
+#[rustfmt::skip] // A line each.
+const COLUMNS: [Column; 14] = [
+    ("rank", |_, picture| or_dash(picture.rank, |rank| rank.to_string())),
+    ("wrong", |_, picture| thousands(picture.wrong_attributable())),
+    ("wrong %", |judged, picture| {
+        percent(picture.wrong_attributable(), judged.pixels.facing_light)
+    }),
+    ("wrongly lit", |_, picture| thousands(picture.wrong.lit)),
+    ("wrongly in shadow", |_, picture| thousands(picture.wrong.shadow)),
+    ("wrong in band", |_, picture| thousands(picture.wrong.in_band)),
+    ("wrong unattributable", |_, picture| thousands(picture.wrong_unattributable)),
+    ("RMSE", |_, picture| format!("{:.5}", picture.graded.rmse_outside_band)),
+    ("FLIP", |_, picture| format!("{:.5}", picture.graded.flip)),
+    ("px from edge", |_, picture| {
+        let edges = Some(picture.edges.all()).filter(|edges| edges.count > 0);
+        or_dash(edges, |edges| format!("{:.2}", edges.mean_pixels))
+    }),
+    ("light in umbra", |judged, picture| soft(judged, picture, |by| by.soft.light_in_umbra)),
+    ("dark in light", |judged, picture| soft(judged, picture, |by| by.soft.dark_in_light)),
+    ("penumbra RMSE", |judged, picture| soft(judged, picture, |by| by.soft.penumbra_rmse)),
+    ("off > 1/16", |judged, picture| {
+        let share = picture.graded.off.over_1_16 as f64 / judged.pixels.facing_light.max(1) as f64;
+        soft(judged, picture, move |_| share)
+    }),
+];
+
+/// A figure of shares of light.
+fn soft(
+    judged: &JudgedPictures,
+    picture: &JudgedPicture,
+    figure: impl Fn(&Graded) -> f64,
+) -> String {
+    let is_soft = judged.area.is_some() || picture.answer == Answer::Graded;
+    or_dash(is_soft.then(|| figure(&picture.graded)), |figure| {
+        format!("{figure:.5}")
+    })
+}
+
 fn table(judged: &JudgedPictures, names: &[String]) -> Table {
-    let heads = [
-        "picture",
-        "rank",
-        "wrong",
-        "wrong %",
-        "wrongly lit",
-        "wrongly in shadow",
-        "wrong in band",
-        "wrong unattributable",
-        "RMSE",
-        "FLIP",
-        "px from edge",
-        "light in umbra",
-        "dark in light",
-        "penumbra RMSE",
-        "off > 1/16",
-    ];
-    let soft = |picture: &JudgedPicture, figure: f64| {
-        if judged.area.is_some() || picture.answer == Answer::Graded {
-            format!("{figure:.5}")
-        } else {
-            "–".into()
-        }
-    };
-    let row = |(name, picture): (&String, &JudgedPicture)| {
-        let (graded, wrong) = (&picture.graded, &picture.wrong);
-        let edges = picture.edges.all();
-        vec![
-            name.clone(),
-            picture.rank.map_or("–".into(), |rank| rank.to_string()),
-            thousands(picture.wrong_attributable()),
-            percent(picture.wrong_attributable(), judged.pixels.facing_light),
-            thousands(wrong.lit),
-            thousands(wrong.shadow),
-            thousands(wrong.in_band),
-            thousands(picture.wrong_unattributable),
-            format!("{:.5}", graded.rmse_outside_band),
-            format!("{:.5}", graded.flip),
-            if edges.count > 0 {
-                format!("{:.2}", edges.mean_pixels)
-            } else {
-                "–".into()
-            },
-            soft(picture, graded.soft.light_in_umbra),
-            soft(picture, graded.soft.dark_in_light),
-            soft(picture, graded.soft.penumbra_rmse),
-            soft(
-                picture,
-                graded.off.over_1_16 as f64 / judged.pixels.facing_light.max(1) as f64,
-            ),
-        ]
-    };
-    Table::new(heads, 1, names.iter().zip(&judged.pictures).map(row))
+    let rows = names.iter().zip(&judged.pictures).map(|(name, picture)| {
+        let cells = COLUMNS.iter().map(|(_, cell)| cell(judged, picture));
+        [name.clone()].into_iter().chain(cells).collect()
+    });
+    let heads = COLUMNS.map(|(head, _)| head);
+    Table::new(["picture"].into_iter().chain(heads), 1, rows)
 }
 
 fn verdict(judged: &JudgedPictures, name: &str, picture: &JudgedPicture) -> String {
@@ -242,7 +238,7 @@ fn notes(judged: &JudgedPictures, names: &[String]) -> Vec<String> {
 mod tests {
     use super::*;
     use skiagraph_compare::records::results::{OpenParts, Scene};
-    use skiagraph_reference::{BlockerCounts, Graded, Invalid, PixelCounts, WrongCounts};
+    use skiagraph_reference::{BlockerCounts, Invalid, PixelCounts, WrongCounts};
 
     fn judged() -> JudgedPictures {
         let picture = JudgedPicture {

@@ -5,6 +5,7 @@ use crate::graded::area_reference;
 use crate::notes::{band_warning, of_runs, scene_notes, surface_warning};
 use skiagraph_compare::lists::{entry, place, unique};
 use skiagraph_compare::records::columns::{self, Column, STEPS};
+use skiagraph_compare::records::figure::Clocks;
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::records::results::{Measured, Results, Run, step};
 use skiagraph_compare::records::table::Table;
@@ -115,9 +116,11 @@ fn table<'a>(results: &Results, runs: &'a [Run], footnotes: &mut Footnotes<'a>) 
     let steps = steps(&measured);
     let head = |column: &Column| column.head.to_owned();
     let heads = of_table(&columns, &steps, head, columns::step_head);
+    let clocks = Clocks::new(results);
     let row = |(run, measured): &(&'a Run, &'a Measured)| {
+        let case = clocks.case(run);
         let figure =
-            |column: &Column| (column.cell(results, run, share), column.quantity.to_owned());
+            |column: &Column| (column.cell(&case, share), column.figure.quantity.to_owned());
         let time = |step: &str| {
             let ours = measured.step_ms(step).map_or_else(|| "–".to_owned(), ms);
             (ours, format!("ms.{step}"))

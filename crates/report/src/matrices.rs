@@ -1,7 +1,7 @@
 //! Builds tables with a row for each method or pass and a column for each light or size. Nothing is
 //! averaged over lights.
 
-use crate::summary::{Row, by_wall};
+use crate::summary::Row;
 use crate::summary_table::{Summary, summaries};
 use crate::table::{or_dash, terminal};
 use crate::verdict::main_choice;
@@ -54,10 +54,7 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
         let cell = |summary: &Summary, row: &Row| {
             let wrong = row.wrong();
             let share = percent(wrong.outside_band, wrong.facing_light);
-            let time = or_dash(
-                row.frame_ms(main_choice(&summary.rows), by_wall(&summary.rows)),
-                ms,
-            );
+            let time = or_dash(row.frame_ms(main_choice(&summary.rows)), ms);
             format!("{share}, {time} ms, {}", bytes(row.bytes()))
         };
         tables.push((viewport, by_summary(&lights, cell)));

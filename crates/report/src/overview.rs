@@ -3,7 +3,7 @@
 
 use crate::contender::is_conditioned;
 use crate::matrices::by_summary;
-use crate::summary::{Row, by_wall};
+use crate::summary::Row;
 use crate::summary_table::{SOFTWARE, Summary};
 use crate::table::{or_dash, terminal};
 use crate::verdict::{Verdict, main_choice};
@@ -248,10 +248,7 @@ fn cell(summary: &Summary, row: &Row) -> String {
         percent(wrong.outside_band, wrong.facing_light)
     };
     let star = if is_exact(summary, row) { " *" } else { "" };
-    let time = or_dash(
-        row.frame_ms(main_choice(&summary.rows), by_wall(&summary.rows)),
-        ms,
-    );
+    let time = or_dash(row.frame_ms(main_choice(&summary.rows)), ms);
     format!("{error}{star}\n{time} ms")
 }
 

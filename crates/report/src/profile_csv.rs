@@ -1,5 +1,6 @@
 //! `profile --csv`: a line for each pass and one for the whole frame of each profile.
 
+use itertools::Itertools;
 use skiagraph_compare::records::profile::{Conditions, PassProfile, Profile};
 use skiagraph_compare::records::statistics::Series;
 use skiagraph_compare::records::table::Table;
@@ -13,6 +14,7 @@ struct Line<'a> {
 type Column = (&'static str, fn(&Line) -> String);
 
 /// In an order on which scripts rely: new ones stand at the end. Empty cells are nulls.
+#[rustfmt::skip] // A line each.
 const COLUMNS: [Column; 28] = [
     ("program", |line| line.conditions().program.clone()),
     ("build", |line| line.conditions().build.clone()),
@@ -21,46 +23,32 @@ const COLUMNS: [Column; 28] = [
     ("backend", |line| line.conditions().adapter.backend.clone()),
     ("driver", |line| line.conditions().adapter.driver.clone()),
     ("gpu_unavailable", |line| {
-        let reason = line.conditions().adapter.gpu_unavailable.clone();
-        reason.unwrap_or_default()
+        line.conditions().adapter.gpu_unavailable.clone().unwrap_or_default()
     }),
     ("scene", |line| line.conditions().scene.name.clone()),
-    ("triangles", |line| {
-        line.conditions().scene.triangles.to_string()
-    }),
+    ("triangles", |line| line.conditions().scene.triangles.to_string()),
     ("preset", |line| line.conditions().preset.clone()),
     ("view", |line| line.conditions().view.clone()),
     ("width", |line| line.conditions().viewport[0].to_string()),
     ("height", |line| line.conditions().viewport[1].to_string()),
     ("params", |line| {
-        let params = line.conditions().params();
-        let texts = params.map(|(name, value)| format!("{name}={value}"));
-        texts.collect::<Vec<_>>().join(" ")
+        line.conditions().params().map(|(name, value)| format!("{name}={value}")).join(" ")
     }),
     ("frames", |line| line.profile.timed().to_string()),
     ("warmup", |line| line.conditions().warmup.to_string()),
-    ("pass", |line| {
-        line.pass.map_or(String::new(), |pass| pass.name.clone())
-    }),
-    ("kind", |line| {
-        line.pass.map_or("frame".into(), |pass| pass.kind.clone())
-    }),
-    ("gpu_min_ms", |line| ms(line.gpu(), |gpu| gpu.min)),
-    ("gpu_median_ms", |line| ms(line.gpu(), |gpu| gpu.median)),
-    ("gpu_p95_ms", |line| ms(line.gpu(), |gpu| gpu.p95)),
-    ("gpu_max_ms", |line| ms(line.gpu(), |gpu| gpu.max)),
-    ("gpu_share", |line| {
-        line.pass
-            .and_then(|pass| pass.share)
-            .map_or(String::new(), six_digits)
-    }),
-    ("cpu_min_ms", |line| ms(line.cpu(), |cpu| cpu.min)),
-    ("cpu_median_ms", |line| ms(line.cpu(), |cpu| cpu.median)),
-    ("cpu_p95_ms", |line| ms(line.cpu(), |cpu| cpu.p95)),
-    ("cpu_max_ms", |line| ms(line.cpu(), |cpu| cpu.max)),
-    ("wall_median_ms", |line| match line.pass {
-        Some(_) => String::new(),
-        None => six_digits(line.profile.frame.wall_ms.median),
+    ("pass", |line| line.pass.map_or(String::new(), |pass| pass.name.clone())),
+    ("kind", |line| line.pass.map_or("frame".into(), |pass| pass.kind.clone())),
+    ("gpu_min_ms", |line| six_digits(line.gpu().map(|gpu| gpu.min))),
+    ("gpu_median_ms", |line| six_digits(line.gpu().map(|gpu| gpu.median))),
+    ("gpu_p95_ms", |line| six_digits(line.gpu().map(|gpu| gpu.p95))),
+    ("gpu_max_ms", |line| six_digits(line.gpu().map(|gpu| gpu.max))),
+    ("gpu_share", |line| six_digits(line.pass.and_then(|pass| pass.share))),
+    ("cpu_min_ms", |line| six_digits(Some(line.cpu().min))),
+    ("cpu_median_ms", |line| six_digits(Some(line.cpu().median))),
+    ("cpu_p95_ms", |line| six_digits(Some(line.cpu().p95))),
+    ("cpu_max_ms", |line| six_digits(Some(line.cpu().max))),
+    ("wall_median_ms", |line| {
+        six_digits(line.pass.is_none().then_some(line.profile.frame.wall_ms.median))
     }),
 ];
 
@@ -74,18 +62,14 @@ impl Line<'_> {
         self.pass.map_or(frame, |pass| pass.gpu_ms.as_ref())
     }
 
-    fn cpu(&self) -> Option<&Series> {
-        let frame = &self.profile.frame.cpu_ms;
-        Some(self.pass.map_or(frame, |pass| &pass.cpu_ms))
+    fn cpu(&self) -> &Series {
+        self.pass
+            .map_or(&self.profile.frame.cpu_ms, |pass| &pass.cpu_ms)
     }
 }
 
-fn ms(series: Option<&Series>, pick: fn(&Series) -> f64) -> String {
-    series.map_or(String::new(), |series| six_digits(pick(series)))
-}
-
-fn six_digits(number: f64) -> String {
-    format!("{number:.6}")
+fn six_digits(number: Option<f64>) -> String {
+    number.map_or(String::new(), |number| format!("{number:.6}"))
 }
 
 /// Returns the profiles as CSV: for each profile a line for each pass and one for the whole frame.

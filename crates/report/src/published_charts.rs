@@ -4,10 +4,11 @@
 use crate::charts::conditions;
 use crate::looks::looks;
 use crate::published_left_out::{views_left_out, without_counterpart};
-use crate::published_panels::{Bar, Cell, Groups, PanelRow, cells, published, rows};
+use crate::published_panels::{Bar, Groups, PanelRow, cells, published, rows, whole as whole_run};
 use skiagraph_chart::{Figure, Panel};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::columns::{figure, head_of, quantities};
+use skiagraph_compare::records::figure::Case;
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::records::results::Run;
 use skiagraph_compare::records::sources::Kept;
@@ -39,7 +40,7 @@ pub fn draw(
     viewport: Option<[u32; 2]>,
 ) -> Charts {
     let is_in = |size: [u32; 2]| viewport.is_none_or(|wanted| wanted == size);
-    let cells: Vec<Cell> = kept
+    let cells: Vec<Case> = kept
         .iter()
         .flat_map(|kept| cells(&kept.results))
         .filter(|cell| is_in(cell.run.viewport))
@@ -121,13 +122,13 @@ pub fn draw(
 ///
 /// # Errors
 /// Why it cannot be drawn: there is nothing that it is a share of.
-fn axis(cells: &[Cell], quantity: &str) -> Result<(String, String), String> {
+fn axis(cells: &[Case], quantity: &str) -> Result<(String, String), String> {
     let head = head_of(quantity);
     let Some(whole) = whole_of(quantity) else {
         return Ok((head, String::new()));
     };
     let whole_head = head_of(whole);
-    let mut wholes = cells.iter().filter_map(|cell| cell.whole(whole));
+    let mut wholes = cells.iter().filter_map(|cell| whole_run(cell, whole));
     let method = &wholes
         .next()
         .ok_or_else(|| format!("no method without a map has {whole_head} there"))?
@@ -138,7 +139,7 @@ fn axis(cells: &[Cell], quantity: &str) -> Result<(String, String), String> {
 }
 
 /// The quantities that are published of these runs, but counts, which are shares, too.
-fn of_runs(cells: &[Cell]) -> Vec<String> {
+fn of_runs(cells: &[Case]) -> Vec<String> {
     let figures = cells.iter().flat_map(|cell| &cell.run.published);
     let quantities_of = figures.map(|figure| figure.quantity.clone());
     let is_drawn = |name: &String| name.ends_with("_percent") || whole_of(name).is_some();
@@ -174,11 +175,11 @@ fn remarks(drawn: &[PanelRow]) -> Vec<String> {
 }
 
 /// The bar of a quantity: a share as it is, a time or a rate in percent of the whole.
-fn bar<'a>(cell: &'a Cell<'a>, quantity: &str) -> Option<Bar<'a>> {
+fn bar<'a>(cell: &'a Case<'a>, quantity: &str) -> Option<Bar<'a>> {
     let Some(whole) = whole_of(quantity) else {
         return Bar::new(cell, quantity, (1.0, 1.0));
     };
-    let run: &Run = cell.whole(whole)?;
+    let run: &Run = whole_run(cell, whole)?;
     let theirs = published(run, whole)?.value / 100.0;
     let ours = figure(whole, cell.results, run)? / 100.0;
     // The whole is 100 % of itself.

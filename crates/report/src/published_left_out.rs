@@ -1,8 +1,9 @@
 //! Names the figures that are missing in charts, as they are only published or only measured.
 
-use crate::published_panels::{Cell, Groups, PanelRow};
+use crate::published_panels::{Groups, PanelRow};
 use itertools::Itertools;
 use skiagraph_compare::lists::entry;
+use skiagraph_compare::records::figure::Case;
 use skiagraph_compare::records::published_row::Row;
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
@@ -11,14 +12,14 @@ use std::collections::BTreeSet;
 /// `None` if it shows all. `cells` are all measured runs, `chart` is the chart's name, `drawn` are
 /// its pairs of panels, and `groups` is the grouping of its bars.
 pub fn views_left_out(
-    cells: &[Cell],
+    cells: &[Case],
     chart: &str,
     drawn: &[PanelRow],
     groups: Groups,
 ) -> Option<String> {
     let measured: BTreeSet<String> = cells
         .iter()
-        .map(|cell| format!("{} {}", cell.scene(), cell.run.view))
+        .map(|cell| format!("{} {}", cell.results.scene.name, cell.run.view))
         .collect();
     let drawn = drawn
         .iter()
@@ -38,7 +39,7 @@ pub fn views_left_out(
 /// scene with the views, viewports, map sizes and presets that are. `cells` are the measured runs,
 /// `rows` the published figures, and `label` names the publication.
 pub fn without_counterpart<'a>(
-    cells: &[Cell],
+    cells: &[Case],
     rows: impl Iterator<Item = &'a Row>,
     label: &str,
 ) -> Vec<String> {
@@ -46,13 +47,13 @@ pub fn without_counterpart<'a>(
     let mut theirs: Vec<(&str, Sides)> = Vec::new();
     for cell in cells {
         let run = cell.run;
-        let sides = entry(&mut ours, cell.scene());
+        let sides = entry(&mut ours, &*cell.results.scene.name);
         sides.add(&run.view, run.viewport, run.map_size, &run.preset);
     }
     for row in rows {
         let (scene, view, viewport, map, preset, _) = row.key();
         let is_ours = |name: &String| {
-            let mut own = cells.iter().filter(|cell| cell.scene() == scene);
+            let mut own = cells.iter().filter(|cell| cell.results.scene.name == scene);
             own.any(|cell| cell.run.preset == *name)
         };
         // One of several presets is enough.

@@ -5,42 +5,30 @@ use crate::charts::push;
 use skiagraph_chart::{Kind, Mark, Panel, Series};
 use skiagraph_compare::lists::find_or_push;
 use skiagraph_compare::records::columns::figure;
+use skiagraph_compare::records::figure::{Case, Clocks};
 use skiagraph_compare::records::results::{Published, Results, Run};
 use skiagraph_compare::wording::size;
 use std::collections::BTreeSet;
 
-/// A measured run, which may have published figures ([`Run::published`]).
-pub struct Cell<'a> {
-    /// Results that contain the run.
-    pub results: &'a Results,
-    /// The run. It has measurements.
-    pub run: &'a Run,
-}
-
-/// Returns the runs of `results` that have measurements.
-pub fn cells(results: &Results) -> impl Iterator<Item = Cell<'_>> {
+/// Returns the runs of `results` that have measurements. They may have published figures
+/// ([`Run::published`]).
+pub fn cells(results: &Results) -> impl Iterator<Item = Case<'_>> {
+    let clocks = Clocks::new(results);
     let runs = results.runs.iter().filter(|run| run.measured.is_some());
-    runs.map(move |run| Cell { results, run })
+    runs.map(move |run| clocks.case(run))
 }
 
-impl<'a> Cell<'a> {
-    /// Returns the name of the scene.
-    pub fn scene(&self) -> &'a str {
-        &self.results.scene.name
-    }
-
-    /// Returns the run by whose figure of `quantity` this run's figure is divided, as times of
-    /// different machines are only comparable as ratios. It is the first of the same view and
-    /// viewport, of a method without a shadow map, that has a published figure of the quantity.
-    /// Returns `None` if there is no such run.
-    pub fn whole(&self, quantity: &str) -> Option<&'a Run> {
-        let Run { view, viewport, .. } = self.run;
-        let mut runs = self.results.runs.iter();
-        runs.find(|run| {
-            (&run.view, &run.viewport, run.map_size) == (view, viewport, None)
-                && published(run, quantity).is_some()
-        })
-    }
+/// Returns the run by whose figure of `quantity` the figure of a run is divided, as times of
+/// different machines are only comparable as ratios. It is the first of the same view and viewport,
+/// of a method without a shadow map, that has a published figure of the quantity. Returns `None` if
+/// there is no such run.
+pub fn whole<'a>(cell: &Case<'a>, quantity: &str) -> Option<&'a Run> {
+    let Run { view, viewport, .. } = cell.run;
+    let mut runs = cell.results.runs.iter();
+    runs.find(|run| {
+        (&run.view, &run.viewport, run.map_size) == (view, viewport, None)
+            && published(run, quantity).is_some()
+    })
 }
 
 /// Returns the published figure of a run for the quantity with this name, such as `wrong_percent`;
@@ -101,7 +89,7 @@ impl<'a> Bar<'a> {
     /// the measured one by `our_whole`; 1 leaves a figure as it is. Returns `None` if the figure is
     /// not both published and measured, or a quotient is not finite.
     pub fn new(
-        cell: &Cell<'a>,
+        cell: &Case<'a>,
         quantity: &str,
         (their_whole, our_whole): (f64, f64),
     ) -> Option<Self> {
@@ -132,9 +120,9 @@ pub struct PanelRow<'a> {
 /// Groups the runs of `cells` into pairs of panels, and returns the contents of the pairs that have
 /// at least two groups of bars. `bar` returns the bar of a run; `None` leaves the run out.
 pub fn rows<'a>(
-    cells: &'a [Cell<'a>],
+    cells: &'a [Case<'a>],
     groups: Groups,
-    bar: impl Fn(&'a Cell<'a>) -> Option<Bar<'a>>,
+    bar: impl Fn(&'a Case<'a>) -> Option<Bar<'a>>,
 ) -> Vec<PanelRow<'a>> {
     let mut rows: Vec<PanelRow> = Vec::new();
     for cell in cells {
@@ -145,7 +133,7 @@ pub fn rows<'a>(
             (Groups::Maps, Some(map)) => ([map; 2], format!(", {}", size(cell.run.viewport))),
             (Groups::Maps, None) => continue,
         };
-        let (scene, view) = (cell.scene(), cell.run.view.as_str());
+        let (scene, view) = (&*cell.results.scene.name, cell.run.view.as_str());
         if let Some(bar) = bar(cell) {
             let key = (scene, view, &*place);
             let is_of = |row: &PanelRow| (row.scene, row.view, &*row.place) == key;

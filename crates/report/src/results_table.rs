@@ -3,7 +3,9 @@
 
 use crate::notes::{band_warning, of_runs, pixels, surface_warning};
 use crate::table::terminal;
-use skiagraph_compare::records::columns::{self, Column, are_paths};
+use skiagraph_compare::records::columns::{self, Column};
+use skiagraph_compare::records::figure::Clocks;
+use skiagraph_compare::records::figures::are_paths;
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::statistics::Spread;
 use skiagraph_compare::records::table::Table;
@@ -38,7 +40,7 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
 
 fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
     let view = &run.view;
-    let what = if are_paths(runs) {
+    let what = if are_paths(&runs.iter().collect::<Vec<_>>()) {
         format!("path {view}, counts of all its frames together")
     } else {
         format!("view {view}")
@@ -77,11 +79,13 @@ pub fn timed_frames<'a>(results: &Results, runs: impl IntoIterator<Item = &'a Ru
 
 fn comparison(results: &Results, runs: &[Run]) -> String {
     let columns = columns::terminal(&runs.iter().collect::<Vec<_>>());
-    let first = columns.iter().position(Column::is_measured);
+    let clocks = Clocks::new(results);
+    // Behind the names of the method and its map.
+    let is_name = |column: &Column| ["preset", "map_size"].contains(&&*column.figure.name);
+    let first = columns.iter().position(|column| !is_name(column));
     let row = |run: &Run| {
-        let cells = columns
-            .iter()
-            .map(|column| column.cell(results, run, percent));
+        let case = clocks.case(run);
+        let cells = columns.iter().map(|column| column.cell(&case, percent));
         let mut row: Vec<String> = cells.collect();
         if let (None, Some(first)) = (&run.measured, first) {
             row[first] = "n/a".into();

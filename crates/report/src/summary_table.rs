@@ -5,21 +5,23 @@ use crate::notes::{
     band_warning, blocked_by, hint, load_warning, path_costs, remembering, scene_notes,
     surface_warning, times_missing,
 };
-use crate::summary::{Row, by_wall, rows};
+use crate::summary::{Row, rows};
 use crate::verdict::{Verdict, verdict};
 use crate::{
     equal_cost, graded,
     results_table::timed_frames,
-    table::{TERMINAL, or_dash, terminal, wrapped},
+    table::{TERMINAL, terminal, wrapped},
 };
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::date::is_another_hour;
-use skiagraph_compare::records::columns::are_paths;
-use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::columns::{self, Column};
+use skiagraph_compare::records::figure::Clocks;
+use skiagraph_compare::records::figures::are_paths;
+use skiagraph_compare::records::regimes::{Regime, time_name};
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{bytes, ms, percent, plural, size, thousands};
+use skiagraph_compare::wording::{percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,10 +53,6 @@ pub fn summaries(results: &Results) -> Vec<Summary<'_>> {
 /// Beginning of lines that warn; the page makes them stand out by it.
 const WARNING: &str = "warning: ";
 
-/// Head of the column with the number of wrong pixels outside the band, the pixels whose answer
-/// rounding decides.
-pub const WRONG: &str = "wrong outside band";
-
 /// First sentence of a verdict on times of an adapter that runs on the CPU.
 pub const SOFTWARE: &str = "The adapter is software: its times say nothing about a GPU.";
 
@@ -65,6 +63,7 @@ impl<'a> Summary<'a> {
     /// Summarises runs of one viewport and light. Runs on views on which settings were chosen are
     /// left out: no method is judged on the pictures that it was fitted to.
     fn new(results: &'a Results, mut runs: Vec<&'a Run>) -> Self {
+        let clocks = Clocks::new(results);
         let newest = runs.iter().map(|run| run.session.as_str()).max();
         let now = runs
             .iter()
@@ -79,7 +78,7 @@ impl<'a> Summary<'a> {
             results,
             viewport,
             light: runs.first().and_then(|run| run.light.as_deref()),
-            rows: rows(runs.iter().copied(), viewport),
+            rows: rows(runs.iter().map(|run| clocks.case(run)), viewport),
             runs,
         }
     }
@@ -108,7 +107,7 @@ impl<'a> Summary<'a> {
 
     /// True if any run is of a camera path.
     fn are_paths(&self) -> bool {
-        are_paths(self.runs.iter().copied())
+        are_paths(&self.runs)
     }
 
     /// Returns the names of the views or camera paths.
@@ -154,7 +153,7 @@ impl<'a> Summary<'a> {
                 *line = wrapped(line, TERMINAL);
             }
         }
-        lines.push(format!("\n{}\n", terminal(&self.table())));
+        lines.push(format!("\n{}\n", terminal(&self.table(false))));
         lines.extend(sentences);
         lines.join("\n") + "\n"
     }
@@ -162,7 +161,7 @@ impl<'a> Summary<'a> {
     /// Returns the summary as a section in Markdown: heading, table and verdict.
     pub fn markdown(&self) -> String {
         let mut text = format!("\n## In short: {}, {}\n", self.what(), size(self.viewport));
-        text += &format!("\n{}", self.table().markdown());
+        text += &format!("\n{}", self.table(false).markdown());
         let sentences = self.verdict().sentences;
         if !sentences.is_empty() {
             text += &format!("\n{}\n", sentences.join("\n"));
@@ -180,8 +179,7 @@ impl<'a> Summary<'a> {
             1 => "",
             _ => ", means of the views",
         };
-        let by_wall = by_wall(&self.rows);
-        let clock = if by_wall {
+        let clock = if self.by_wall() {
             "wall clock"
         } else {
             "GPU and upkeep of the CPU"
@@ -211,16 +209,24 @@ impl<'a> Summary<'a> {
         lines
     }
 
+    /// True if times are wall times, since a row has no GPU times.
+    pub fn by_wall(&self) -> bool {
+        self.rows.iter().any(|row| row.by_wall)
+    }
+
     /// Returns the table: a row for each method, setting and map size, in the order of
-    /// [`rows`](Self::rows). A star marks, in each column of times, the fastest method without
-    /// wrong pixels outside the band (the pixels whose answer rounding decides).
-    pub fn table(&self) -> Table {
-        let are_paths = self.are_paths();
-        let by_wall = by_wall(&self.rows);
+    /// [`rows`](Self::rows); for the page with more columns. A star marks, in each column of times,
+    /// the fastest method without wrong pixels outside the band (the pixels whose answer rounding
+    /// decides).
+    pub fn table(&self, is_page: bool) -> Table {
         let regimes = self.regimes();
-        let heads = heads(are_paths, &regimes);
-        let fastest = self.verdict().fastest_exact;
-        let (views, is_soft) = (self.views().len(), self.is_soft());
+        let untimed = Regime::ALL.into_iter().filter(|it| !regimes.contains(it));
+        let untimed: Vec<String> = untimed.map(|regime| time_name(Some(regime))).collect();
+        let mut columns = columns::summary(&self.runs, is_page);
+        columns.retain(|column| !untimed.contains(&column.figure.name));
+        let fastest = self.verdict().fastest_exact.into_iter();
+        let fastest: BTreeSet<_> = fastest.map(|(when, row)| (time_name(when), row)).collect();
+        let views = self.views().len();
         let row = |(index, row): (usize, &Row)| {
             let mut label = row.label.clone();
             if row.views() != views && row.views() > 0 {
@@ -235,51 +241,22 @@ impl<'a> Summary<'a> {
             if self.is_old(row) {
                 label += &format!(" (of {})", row.session());
             }
-            let mut cells = vec![label];
-            if row.views() == 0 {
-                cells.push(NOT_THERE.into());
-                cells.resize(heads.len(), "–".into());
-                return cells;
-            }
-            let wrong = row.wrong();
-            cells.extend([
-                thousands(wrong.outside_band),
-                percent(wrong.outside_band, wrong.facing_light),
-            ]);
-            if are_paths {
-                cells.push(or_dash(row.worst_frame(), |frame| {
-                    if is_soft {
-                        format!("{:.4}", frame.error())
-                    } else {
-                        percent(frame.wrong, frame.facing_light)
+            let cells = columns
+                .iter()
+                .enumerate()
+                .map(|(place, Column { figure, .. })| {
+                    if row.views() == 0 {
+                        return if place == 0 { NOT_THERE } else { "–" }.into();
                     }
-                }));
-                let shimmer = row.shimmer();
-                cells.push(or_dash(shimmer, |part| percent(part.count, part.of)));
-            }
-            let choices = [None].into_iter().chain(regimes.iter().copied().map(Some));
-            cells.extend(choices.map(|when| {
-                let is_fastest = fastest.get(&when) == Some(&index);
-                let star = if is_fastest { " *" } else { "" };
-                or_dash(row.frame_ms(when, by_wall), |time| ms(time) + star)
-            }));
-            let (missing, dark) = (row.missing_shadow(), row.false_shadow());
-            let quartiles = row.quartiles(None, by_wall);
-            cells.extend([
-                percent(missing.count, missing.of),
-                percent(dark.count, dark.of),
-                or_dash(row.rmse(), |rmse| format!("{rmse:.4}")),
-                or_dash(quartiles, |[q1, q3]| format!("{}–{}", ms(q1), ms(q3))),
-                bytes(row.bytes()),
-                or_dash(row.own_ms(), ms),
-                or_dash(row.rays(), |rays| thousands(rays.round() as u64)),
-                thousands(wrong.in_band),
-                or_dash(row.flip(), |flip| format!("{flip:.4}")),
-            ]);
-            cells
+                    let is_fastest = fastest.contains(&(figure.name.clone(), index));
+                    let star = if is_fastest { " *" } else { "" };
+                    figure.cell(row.over(figure), percent, 4) + star
+                });
+            [label].into_iter().chain(cells).collect()
         };
+        let heads = columns.iter().map(|column| column.head);
         let rows: Vec<_> = self.rows.iter().enumerate().map(row).collect();
-        Table::new(heads, 1, rows)
+        Table::new(["method"].into_iter().chain(heads), 1, rows)
     }
 
     /// Returns remarks on the table, a line each.
@@ -413,29 +390,6 @@ impl<'a> Summary<'a> {
         let line = |(label, sum): (String, _)| format!("{label}: {}", blocked_by(&[sum]));
         sums.into_iter().map(line).collect()
     }
-}
-
-/// Heads of the table's columns, the first that decide: a terminal has no room for all beside each
-/// other.
-fn heads(are_paths: bool, regimes: &[Regime]) -> Vec<&'static str> {
-    let mut heads = vec!["method", WRONG, "%"];
-    if are_paths {
-        heads.extend(["worst frame", "shimmer"]);
-    }
-    heads.push("frame ms");
-    heads.extend(regimes.iter().map(|regime| regime.word()));
-    heads.extend([
-        "missing",
-        "false",
-        "RMSE",
-        "quartiles",
-        "memory",
-        "less G-buffer",
-        "rays",
-        "in band",
-        "FLIP",
-    ]);
-    heads
 }
 
 #[cfg(test)]

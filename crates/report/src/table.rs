@@ -138,19 +138,9 @@ pub fn or_dash<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
 
 /// Returns a table as HTML. Cells in the word columns become row headers. For the index of a row,
 /// `row` returns its HTML attributes, and `sign` the HTML before its first text. For the indices of
-/// row and column, `cell` returns the HTML attributes of a number cell.
+/// row and column, `cell` returns the HTML attributes of a number cell. `content` returns the HTML
+/// in a number cell, given the index of its column and its text, which is escaped.
 pub fn html(
-    table: &Table,
-    row: impl Fn(usize) -> String,
-    sign: impl Fn(usize) -> String,
-    cell: impl Fn(usize, usize) -> String,
-) -> String {
-    html_with(table, row, sign, cell, |_, text| text)
-}
-
-/// Returns a table as [`html`] does; `content` returns the HTML in a number cell, given the index
-/// of its column and its text, which is escaped.
-pub fn html_with(
     table: &Table,
     row: impl Fn(usize) -> String,
     sign: impl Fn(usize) -> String,

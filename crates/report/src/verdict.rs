@@ -1,12 +1,12 @@
 //! The verdict of a comparison: which method to take, in one or two sentences.
 
 use crate::contender::Contender;
-use crate::summary::{Row, When, by_wall};
+use crate::summary::Row;
 use crate::tuning;
 use itertools::Itertools;
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
-use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::regimes::{Regime, When};
 use skiagraph_compare::records::turns::LEAST_TURNS;
 use skiagraph_compare::wording::{bytes, ms, plural};
 use std::collections::BTreeMap;
@@ -137,14 +137,13 @@ impl<'a> Single<'a> {
     /// `None` if no row can be judged.
     fn new(rows: &'a [Row<'a>], when: When, budgets: &Budgets) -> Option<Self> {
         let most = rows.iter().map(Row::views).max().unwrap_or_default();
-        let by_wall = by_wall(rows);
         let newest = rows.iter().map(Row::session).max().unwrap_or_default();
         let full: Vec<Contender> = rows
             .iter()
             .enumerate()
             .filter(|(_, row)| row.views() == most && most > 0 && row.is_whole())
             .filter(|(_, row)| !is_another_hour(row.session(), newest))
-            .filter_map(|(index, row)| Contender::new(index, row, when, by_wall))
+            .filter_map(|(index, row)| Contender::new(index, row, when))
             .collect();
         let within = full.iter().filter(|method| method.is_within(budgets));
         let within = better_settings(within.cloned().collect());
@@ -562,7 +561,7 @@ fn none_within<'a>(methods: &[Contender], budgets: &Budgets) -> Single<'a> {
             "the least wrong",
             &|method| method.most_wrong.value,
             |method| {
-                let share = 100.0 * method.most_wrong.value;
+                let share = method.most_wrong.value;
                 match method.most_wrong.on() {
                     place if place.is_empty() || method.is_exact => method.error(),
                     place => format!("wrong on {share:.3} %{place}"),
@@ -589,9 +588,11 @@ type Told = fn(&Contender) -> String;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::summary::rows;
+    use crate::summary;
     use crate::test_support::results as sample;
-    use skiagraph_compare::records::{results::Run, statistics::FrameTimes, tuned::Tuned};
+    use skiagraph_compare::records::figure::Clocks;
+    use skiagraph_compare::records::results::{Results, Run};
+    use skiagraph_compare::records::{statistics::FrameTimes, tuned::Tuned};
     use std::time::Duration;
 
     /// A run of 100,000 pixels that face the light: method, wrong pixels outside the band, ms of a
@@ -634,13 +635,27 @@ mod tests {
         run
     }
 
+    fn of_runs(runs: &[Run]) -> Results {
+        Results {
+            runs: runs.to_vec(),
+            ..sample()
+        }
+    }
+
+    fn rows(results: &Results) -> Vec<Row<'_>> {
+        let clocks = Clocks::new(results);
+        let cases = results.runs.iter().map(|run| clocks.case(run));
+        summary::rows(cases, [512, 256])
+    }
+
     /// The label of the marked row, and what is said.
     fn outcome(runs: &[Run]) -> (Option<String>, Vec<String>) {
         within(runs, &Budgets::default())
     }
 
     fn within(runs: &[Run], budgets: &Budgets) -> (Option<String>, Vec<String>) {
-        let rows = rows(runs, [512, 256]);
+        let results = of_runs(runs);
+        let rows = rows(&results);
         let verdict = verdict(&rows, budgets);
         let marked = verdict.fastest_exact.values().next_back();
         let marked = marked.map(|index| rows[*index].label.clone());
@@ -746,7 +761,8 @@ mod tests {
 
     /// The labels of the taken row and of the runner-up.
     fn pair(runs: &[Run], budgets: &Budgets) -> [Option<String>; 2] {
-        let rows = rows(runs, [512, 256]);
+        let results = of_runs(runs);
+        let rows = rows(&results);
         let verdict = verdict(&rows, budgets);
         [verdict.first.first().copied(), verdict.runner_up]
             .map(|index| Some(rows[index?].label.clone()))
@@ -1081,7 +1097,7 @@ mod tests {
             tuned("nsm", &set, 2, 12.0),
             tuned("pcf", &[], 900, 30.0),
         ];
-        let labels: Vec<String> = rows(&runs, [512, 256])
+        let labels: Vec<String> = rows(&of_runs(&runs))
             .into_iter()
             .map(|row| row.label)
             .collect();

@@ -2,18 +2,20 @@
 
 use crate::args::{
     shared::{MethodArgs, SceneArgs},
-    values::{self, LightArgument, frames, gate, texels},
+    values::{self, LightArgument, frames, texels},
 };
+use clap::builder::PossibleValuesParser;
 use clap::{ArgAction, Args, ValueEnum};
 use skiagraph_compare::foreign::factor::Reading;
 use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
 use skiagraph_compare::pictures::{data::DataFormat, save::Save};
 use skiagraph_compare::quantities::{bytes, milliseconds, percent};
+use skiagraph_compare::records::figures::drawn;
 use skiagraph_compare::records::{published_row::PublishedFile, shard::Shard};
 use skiagraph_compare::size::Size;
 use skiagraph_reference::OracleMode;
-use skiagraph_report::gate::Gate;
+use skiagraph_report::gate::{self, Gate};
 use std::path::PathBuf;
 
 /// Arguments of `skiagraph compare`.
@@ -106,12 +108,10 @@ pub struct CompareArgs {
     /// the best ones, too. They are chosen on every second view and judged on the others.
     #[arg(long, conflicts_with = "path")]
     pub tune: bool,
-    /// End with exit code 4 if a figure of a method is greater on any view or in any frame of a
-    /// path: `nsm: wrong > 0.1%`, `missing > 5%` (of the shadow), `false > 5%` (of the light),
-    /// `rmse > 0.05`, `flip > 0.02`, `frame > 3ms`, of frames before which that has moved `camera`,
-    /// `light`, `some_meshes`, `all_meshes` or `nothing`, `p95 > 4ms` (or `p50`, `p99`, `worst`),
-    /// `memory > 64MiB`. May be repeated.
-    #[arg(long, value_name = "METHOD: FIGURE > VALUE", value_parser = gate)]
+    #[arg(long, value_name = "METHOD: FIGURE > VALUE", help = format!(
+        "End with exit code 4 if a figure of a method is greater on any view or in any frame of a \
+         path: `nsm: wrong > 0.1%`. Figures: {}. May be repeated", gate::help(false)
+    ))]
     pub fail_if: Vec<Gate>,
     /// Compare each method on each view with older results: a results.json or its folder. End with
     /// exit code 5 if a method has become more wrong or slower.
@@ -196,6 +196,11 @@ pub struct ChartArgs {
     /// Kind of chart to draw.
     #[arg(long, value_enum, default_value_t = ChartKind::Front)]
     pub kind: ChartKind,
+    /// Error to draw. Without it: wrong pixels of all for `front`, for `frames` wrong pixels of
+    /// those that face the light, or the RMSE under a light with an extent.
+    #[arg(long, value_name = "FIGURE", conflicts_with = "beside",
+          value_parser = PossibleValuesParser::new(drawn().map(|figure| &*figure.name)))]
+    pub error: Option<String>,
     /// Draw only runs of this viewport size. Without it: all sizes, each in a panel of its own.
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
@@ -507,10 +512,10 @@ pub struct JudgeArgs {
     #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
           value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
     pub reference_samples: u32,
-    /// End with exit code 4 if a figure of a picture is greater, by its file name without ending:
-    /// `engine: wrong > 0.1%`, `missing > 5%` (of the shadow), `false > 5%` (of the light),
-    /// `rmse > 0.05`, `flip > 0.02`. May be repeated.
-    #[arg(long, value_name = "PICTURE: FIGURE > VALUE", value_parser = gate)]
+    #[arg(long, value_name = "PICTURE: FIGURE > VALUE", help = format!(
+        "End with exit code 4 if a figure of a picture is greater, by its file name without \
+         ending: `engine: wrong > 0.1%`. Figures: {}. May be repeated", gate::help(true)
+    ))]
     pub fail_if: Vec<Gate>,
     /// Folder for judge.json and pictures of the errors.
     #[arg(long, value_name = "DIR")]

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::terminal::console::{note, print};
 use skiagraph_compare::files::write::{check_folder, check_writable, write_whole};
 use skiagraph_compare::records::{
-    published, published_row::PublishedFile, read_back, sources::Kept,
+    figures, published, published_row::PublishedFile, read_back, sources::Kept,
 };
 use skiagraph_compare::size::Size;
 use skiagraph_compare::wording::plural;
@@ -26,10 +26,15 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
     }
     let kept = kept(args)?;
     let viewport = args.size.map(|Size(size)| size);
+    let error = args.error.as_deref().and_then(figures::named);
     let figure = match args.kind {
-        ChartKind::Front => charts::front(&kept, viewport)?,
+        ChartKind::Front => charts::front(&kept, viewport, error)?,
+        ChartKind::Growth if error.is_some() => {
+            let why = "--error: a chart of growth draws no error";
+            return Err(CliError::Input(why.into()));
+        }
         ChartKind::Growth => charts::growth(&kept, viewport)?,
-        ChartKind::Frames => charts::frames_of_paths(&kept, viewport)?,
+        ChartKind::Frames => charts::frames_of_paths(&kept, viewport, error)?,
     };
     for line in charts::unavailable(&kept) {
         note(&line);

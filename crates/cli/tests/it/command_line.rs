@@ -557,6 +557,10 @@ fn chart_says_what_is_missing() {
             &["good", "--out", "nowhere/a.svg"],
             "there is no folder nowhere",
         ),
+        (
+            &["good", "--kind", "growth", "--error", "rmse"],
+            "--error: a chart of growth draws no error",
+        ),
     ] {
         let error = refused(arguments);
         assert!(error.contains(message), "{arguments:?}: {error}");

@@ -28,6 +28,8 @@ pub mod cell_files;
 pub mod cell_plan;
 pub mod check;
 pub mod columns;
+pub mod figure;
+pub mod figures;
 pub mod hint;
 pub mod judged_pictures;
 pub mod profile;

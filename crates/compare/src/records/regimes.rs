@@ -39,6 +39,25 @@ pub enum Regime {
     AllMeshes,
 }
 
+/// Choice of frames: those before each of which that has moved. `None` chooses the frames of a
+/// still view in which every pass runs, and all frames of a path.
+pub type When = Option<Regime>;
+
+/// Returns the word for such frames in names and limits: `frame`, or `some_meshes`.
+pub fn word(when: When) -> String {
+    when.map_or("frame".into(), |regime| regime.word().replace(' ', "_"))
+}
+
+/// Returns the name of the figure with the time of such a frame: `frame_ms`.
+pub fn time_name(when: When) -> String {
+    word(when) + "_ms"
+}
+
+/// Returns the name of the figure with the quartiles of these times: `frame_quartiles`.
+pub fn quartiles_name(when: When) -> String {
+    word(when) + "_quartiles"
+}
+
 impl Regime {
     /// All regimes, from the least that moves to the most.
     pub const ALL: [Self; 5] = [
@@ -49,8 +68,8 @@ impl Regime {
         Self::AllMeshes,
     ];
 
-    /// Returns the head of the column of its times, and its name in conditions (`--fail-if`):
-    /// `nothing`, `camera`, `light`, `some meshes`, `all meshes`.
+    /// Returns the head of the column of its times: `nothing`, `camera`, `light`, `some meshes`,
+    /// `all meshes`.
     pub fn word(self) -> &'static str {
         match self {
             Self::Nothing => "nothing",

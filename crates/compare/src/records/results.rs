@@ -325,28 +325,6 @@ impl Run {
         format!("{} on {} {size}{map}", self.preset, self.view)
     }
 
-    /// Returns the number of pixels that the method lights wrongly, of all that it lights; `None`
-    /// without measurements.
-    pub fn wrong_lit(&self) -> Option<Part> {
-        let WrongCounts { lit, shadow, .. } = self.measured.as_ref()?.wrong;
-        let total = (self.pixels.lit + lit).saturating_sub(shadow);
-        Some(Part {
-            count: lit,
-            of: total,
-        })
-    }
-
-    /// Returns the number of pixels that the method has wrongly in shadow, of all that it has in
-    /// shadow; `None` without measurements.
-    pub fn wrong_shadow(&self) -> Option<Part> {
-        let WrongCounts { lit, shadow, .. } = self.measured.as_ref()?.wrong;
-        let total = (self.pixels.shadow + shadow).saturating_sub(lit);
-        Some(Part {
-            count: shadow,
-            of: total,
-        })
-    }
-
     /// True if `self` and `other` have the same preset, view, viewport and map size. Results keep
     /// only one of two such runs.
     pub fn is_in_place_of(&self, other: &Self) -> bool {
@@ -597,12 +575,6 @@ impl Measured {
             .map(|pass| Some(pass.gpu_ms?.median))
             .collect::<Option<_>>()?;
         (!medians.is_empty()).then(|| medians.iter().sum())
-    }
-
-    /// Returns the frames per second that the median GPU time of a frame allows; `None` without GPU
-    /// times.
-    pub fn fps(&self) -> Option<f64> {
-        Some(1000.0 / self.frame.gpu_ms?.median)
     }
 
     /// Returns the median GPU times of the passes of the step `gbuffer`, added up, in milliseconds;

@@ -17,24 +17,26 @@
 use crate::error::CompareError;
 use crate::files::json;
 use crate::files::write::write_whole;
-use crate::records::columns;
+use crate::records::figure::Clocks;
+use crate::records::figures::FIGURES;
 use crate::records::results::Results;
 use crate::records::table::Table;
 use std::path::Path;
 
 /// The contents of `results.csv`, with the runs of all joined results: empty cells are nulls.
 fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
-    let columns = columns::csv();
-    let heads = columns.iter().map(|column| column.head);
+    let figures = || FIGURES.iter().filter(|figure| figure.is_in_csv);
+    let heads = figures().map(|figure| &*figure.name);
     let parts = [results].into_iter().chain(&results.others);
-    let runs = parts.flat_map(|results| results.runs.iter().map(move |run| (results, run)));
-    let row = |(results, run)| {
-        columns
-            .iter()
-            .map(|column| column.csv_cell(results, run))
-            .collect()
-    };
-    Table::new(heads, 0, runs.map(row)).csv()
+    let rows = parts.flat_map(|results| {
+        let clocks = Clocks::new(results);
+        let row = move |run| {
+            let case = clocks.case(run);
+            figures().map(|figure| figure.csv_cell(&case)).collect()
+        };
+        results.runs.iter().map(row)
+    });
+    Table::new(heads, 0, rows).csv()
 }
 
 /// Writes `results.json` and `results.csv` into `folder`, each whole or not at all. Returns the
@@ -61,13 +63,9 @@ mod tests {
         let csv = to_csv(&sample()).unwrap();
         insta::assert_snapshot!(csv);
         let mut reader = ::csv::Reader::from_reader(csv.as_bytes());
-        assert_eq!(
-            reader
-                .records()
-                .map(|record| record.unwrap().len())
-                .collect::<Vec<_>>(),
-            [columns::csv().len(); 3]
-        );
+        let lengths = reader.records().map(|record| record.unwrap().len());
+        let columns = FIGURES.iter().filter(|figure| figure.is_in_csv).count();
+        assert_eq!(lengths.collect::<Vec<_>>(), [columns; 3]);
     }
 
     #[test]

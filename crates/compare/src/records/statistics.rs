@@ -99,6 +99,15 @@ impl FrameTimes {
         Spread::from_ms(self.costs(by_wall)?.into_iter())
     }
 
+    /// Returns the milliseconds that `percent` percent of the frames keep to, of
+    /// [`costs`](Self::costs); `None` if GPU times are missing.
+    pub fn percentile(&self, percent: u8, by_wall: bool) -> Option<f64> {
+        let mut costs = self.costs(by_wall)?;
+        costs.sort_by(f64::total_cmp);
+        let rank = (costs.len() * usize::from(percent)).div_ceil(100).max(1);
+        costs.get(rank - 1).copied()
+    }
+
     /// Sets the GPU times to `None`.
     pub fn without_gpu(&mut self) {
         (self.gpu_ms, self.gpu_frames) = (None, None);

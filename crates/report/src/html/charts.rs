@@ -3,11 +3,12 @@
 use crate::charts::path_panels;
 use crate::html::shown::{Shown, part, times};
 use crate::looks::looks;
-use crate::summary::{Row, When};
+use crate::summary::Row;
 use itertools::Itertools;
 use skiagraph_chart::{Error, Figure, Kind, Mark, Panel, Series, xml};
 use skiagraph_compare::lists::unique;
-use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::figures;
+use skiagraph_compare::records::regimes::{Regime, When};
 use skiagraph_compare::records::steady::{Cycle, EarlyPicture};
 use skiagraph_compare::wording::{ms, size};
 use std::collections::BTreeMap;
@@ -60,8 +61,8 @@ fn halves(figure: &Figure, tables: &[usize], when: Option<When>) -> String {
 /// without paths. A method has the colour that it has in other charts.
 pub fn paths(tables: &[Shown]) -> String {
     let of_table = |(index, table): (usize, &Shown)| {
-        let runs = table.summary.rows.iter().flat_map(Row::runs);
-        let panels = path_panels(runs, &[]).into_iter();
+        let cases = table.summary.rows.iter().flat_map(Row::cases);
+        let panels = path_panels(cases, &[], None).into_iter();
         let chart = |panel| halves(&figure(tables, vec![panel]), &[index], None);
         panels.map(chart).collect::<String>()
     };
@@ -148,22 +149,24 @@ fn front(table: &Shown, when: When) -> Panel {
         }
     }
     series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
-    let clock = if table.by_wall {
+    let clock = if table.summary.by_wall() {
         "wall clock"
     } else {
         "GPU and CPU"
     };
     let frame = when.map_or("frames as in the table", Regime::condition);
     let error = if table.summary.is_soft() {
-        "RMSE of the shares of light"
+        "rmse"
     } else {
-        "wrong pixels, % of those facing the light"
+        "wrong"
     };
     Panel {
         title: table.title.clone(),
         kind: Kind::Front,
         x: format!("{clock} ms a frame, {frame}"),
-        y: error.into(),
+        y: figures::named(error)
+            .map_or("", |figure| figure.axis)
+            .into(),
         series,
     }
 }

@@ -47,7 +47,7 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
             return Some(format!("<b>{sign}{label}</b>{frame}: {figures}"));
         }
         let time = row
-            .frame_ms(main_choice(&table.summary.rows), table.by_wall)
+            .frame_ms(main_choice(&table.summary.rows))
             .map_or("–".into(), ms);
         let error = error(table, row);
         let suffix = if row.views() > 1 && !table.summary.is_soft() && !is_right(row) {
@@ -124,7 +124,7 @@ fn figures_of_frame(table: &Shown, measured: &Measured, frame: usize) -> Option<
     let frame = measured.sequence.as_ref()?.frames.get(frame)?;
     let error = error_of_frame(frame, !table.summary.is_soft());
     let cost = frame.cost;
-    let time = if table.by_wall {
+    let time = if table.summary.by_wall() {
         Some(cost.wall_ms)
     } else {
         cost.gpu_ms.map(|_| cost.ms())

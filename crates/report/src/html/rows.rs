@@ -5,10 +5,11 @@ use crate::html::shown::{Shown, part};
 use crate::matrices::by_light;
 use crate::overview::{Matrix, Overview, scene_names};
 use crate::summary::Row;
-use crate::summary_table::{NOT_THERE, WRONG};
-use crate::table::{html, html_with};
+use crate::summary_table::NOT_THERE;
+use crate::table::html;
 use itertools::Itertools;
 use skiagraph_chart::xml;
+use skiagraph_compare::records::figures::WRONG;
 use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::size;
@@ -54,6 +55,7 @@ pub fn tables(tables: &[Shown]) -> String {
         |row| rows[row].clone(),
         |row| signs[row].clone(),
         class,
+        |_, text| text,
     );
     let indices: Vec<usize> = (0..tables.len()).collect();
     part("rows", &indices, None, &table)
@@ -75,7 +77,8 @@ pub fn lights(sources: &[Source], tables: &[Shown]) -> String {
                     &table,
                     |_| String::new(),
                     |row| sign_of(tables, &table, row),
-                    none
+                    none,
+                    |_, text| text
                 )
             )
         };
@@ -125,7 +128,7 @@ pub fn overview(sources: &[Source], tables: &[Shown]) -> String {
         };
         let none = |_| String::new();
         let sign = |row| sign_of(tables, &matrix.table, row);
-        head + &html_with(&matrix.table, none, sign, class, link)
+        head + &html(&matrix.table, none, sign, class, link)
     };
     let matrices = overview.matrices().into_iter().map(matrix);
     let sentences = overview.sentences().into_iter();

@@ -1,10 +1,10 @@
 //! Tables of the page, and parts of the page that belong to some of them. Every part stands in the
 //! page; its script shows those of the chosen tables.
 
-use crate::summary::{Row, When, by_wall};
+use crate::summary::Row;
 use crate::summary_table::Summary;
 use itertools::Itertools;
-use skiagraph_compare::records::regimes::Regime;
+use skiagraph_compare::records::regimes::{Regime, When};
 use skiagraph_compare::records::results::Results;
 use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::table::Table;
@@ -18,10 +18,8 @@ pub struct Shown<'a> {
     pub source: usize,
     /// Summary of the source in that viewport under that light.
     pub summary: &'a Summary<'a>,
-    /// The rows as the terminal shows them.
+    /// The rows as the terminal shows them, with the page's own columns.
     pub table: Table,
-    /// True if the times are wall times, since a row has no GPU times.
-    pub by_wall: bool,
     /// Heading: scene, views and viewport, the adapter, machine or protocol if the sources differ
     /// in it, and the folder or a number if another table would have the same heading.
     pub title: String,
@@ -57,8 +55,7 @@ pub fn shown<'a>(sources: &[Source], summaries: &'a [(usize, Summary<'a>)]) -> V
         Shown {
             source,
             summary,
-            table: summary.table(),
-            by_wall: by_wall(&summary.rows),
+            table: summary.table(true),
             title,
         }
     };
@@ -113,14 +110,14 @@ impl Shown<'_> {
     /// Returns the milliseconds of a row's frame; `None` if they are missing or 0, so that they
     /// cannot be drawn on a logarithmic axis.
     pub fn ms(&self, row: &Row, when: When) -> Option<f64> {
-        let ms = row.frame_ms(when, self.by_wall);
+        let ms = row.frame_ms(when);
         ms.filter(|ms| ms.is_finite() && *ms > 0.0)
     }
 
     /// Returns the first and third quartile of the times of [`ms`](Self::ms), in milliseconds;
     /// `None` if they are missing, equal or 0.
     pub fn spread(&self, row: &Row, when: When) -> Option<[f64; 2]> {
-        let quartiles = row.quartiles(when, self.by_wall)?;
+        let quartiles = row.quartiles(when)?;
         Some(quartiles).filter(|[q1, q3]| *q1 > 0.0 && q1 < q3 && q3.is_finite())
     }
 }

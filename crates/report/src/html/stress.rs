@@ -40,6 +40,6 @@ fn of_report(report: &Report) -> String {
     };
     lines("quiet", &heading(report))
         + &lines("warning", &failures(report, &|_, _, _| String::new()))
-        + &html(&table, why, |_| String::new(), verdict)
+        + &html(&table, why, |_| String::new(), verdict, |_, text| text)
         + &lines("quiet", &remarks(report))
 }

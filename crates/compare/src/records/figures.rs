@@ -18,6 +18,7 @@ use crate::records::regimes::{Regime, When, quartiles_name, time_name, word};
 use crate::records::results::{AreaReference, Measured, Part, Run};
 use crate::records::sequence::SequenceFrame;
 use crate::records::statistics::{FrameTimes, Spread};
+use crate::records::steady::EarlyPicture;
 use skiagraph_reference::{
     BlockerCounts, Distances, LayerJump, SoftErrors, TexelsPerPixel, WrongCounts,
 };
@@ -304,6 +305,17 @@ fn list() -> Vec<Figure> {
             measured.memory_bytes + measured.scene_bytes
         }).not_in_csv().shown(Summary, 22, "memory").over_views(Worst).limited("memory"),
     ]);
+    for (place, frames) in (220..).step_by(2).zip([1, 4, 16, 64]) {
+        let early = |name: &str, place, error: fn(&EarlyPicture) -> f64| {
+            let figure = measured(format!("after_{frames}_{}", name.to_lowercase()), Plain, move |by| {
+                let mut begin = by.steady.as_ref()?.begin.iter();
+                Some(error(begin.find(|picture| picture.frames == frames)?))
+            });
+            figure.only(remember).shown(Terminal, place, format!("{name} after {frames}"))
+        };
+        list.push(early("RMSE", place, |picture| picture.rmse));
+        list.push(early("FLIP", place + 1, |picture| picture.flip));
+    }
     list
 }
 
@@ -373,6 +385,12 @@ fn cost(when: When) -> Figure {
 fn quartiles(when: When) -> Figure {
     let ends = move |case: &Case| case.spread(when).map(|times| [times.q1, times.q3]);
     Figure::new(quartiles_name(when), Ms, ends).not_in_csv()
+}
+
+/// True if a method remembers.
+fn remember(runs: &[&Run]) -> bool {
+    let mut measured = runs.iter().filter_map(|run| run.measured.as_ref());
+    measured.any(|measured| measured.steady.is_some())
 }
 
 /// Milliseconds that so many percent of the frames keep to.

@@ -5,7 +5,6 @@ use crate::error::{CompareError, is_fatal};
 use crate::graphs::ground_truth;
 use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
-use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
 use crate::measuring::ground_truth::GroundTruthView;
 use crate::records::hint::{Cause, Hint};
@@ -129,8 +128,7 @@ fn wrong_with(
         }
         Err(_) => return Ok(None),
     };
-    let outputs = Outputs::from_contents(contents, layer, &truth.pixels);
     // A setting whose outputs are not those of a shadow method is no way out.
-    let wrong = ground_truth::error(&method.preset, outputs, truth).ok();
+    let wrong = ground_truth::error(&method.preset, (contents, layer), truth).ok();
     Ok(wrong.map(|wrong| wrong as u64))
 }

@@ -104,18 +104,13 @@ impl MeasureContext<'_> {
         let plan = executor.plan();
         let (memory_bytes, saved_bytes) = (plan.memory_bytes(), plan.saved_bytes());
         let (scene_bytes, layer) = (scene_bytes(session, plan, provider)?, self.layer(plan));
-        let settle = plan.remembers();
-        let settled = settle.then(|| steady::settle(session, &mut executor));
-        let mut steady = settled.transpose()?;
+        let mut steady = steady::settle(session, &mut executor)?;
         let mut account = Account::default();
         let timed = match self.view {
             ViewOrPath::Still(_) => {
-                let names = method.preset.judged();
-                let judge = |contents| self.judgement(method, 0, layer, contents);
-                let (outputs, judgement) = match &mut steady {
-                    Some(steady) => steady::judge(session, &mut executor, &names, steady, judge)?,
-                    None => judge(frame::read(session, &mut executor, &names)?)?,
-                };
+                let drawn = (&*method.preset, &mut executor);
+                let truth = (&self.truth_view.ground_truth, layer);
+                let (outputs, judgement) = steady::judge(session, drawn, steady.as_mut(), truth)?;
                 account.add(self.path, 0, outputs, judgement)?;
                 step.set_done(1);
                 timing::sample(session, &mut executor, [0, 1], |_| ())?
@@ -199,7 +194,8 @@ impl MeasureContext<'_> {
         let mut times = Vec::new();
         for index in 0..self.path.frames.poses.len() {
             let (contents, timed, remade) = self.frame(method, executor, provider, index)?;
-            let (outputs, judgement) = self.judgement(method, index, layer, contents)?;
+            let truth = &self.path.truth_views[index].ground_truth;
+            let (outputs, judgement) = judged(&method.preset, (contents, layer), truth)?;
             account.add(self.path, index, outputs, judgement)?;
             if let Some(frame) = account.frames.last_mut() {
                 frame.cost = cost(&timed, self.timestamps);
@@ -243,22 +239,6 @@ impl MeasureContext<'_> {
         let mut timed = timed_frame(report, Duration::ZERO, wall)?;
         timed.upkeep = Some(upkeep);
         Ok((contents, timed, remade))
-    }
-
-    /// Judges what a method shows in the frame with the index `index`.
-    ///
-    /// # Errors
-    /// Outputs of another size, format or range than a shadow method's.
-    pub fn judgement(
-        &self,
-        method: &Method,
-        index: usize,
-        layer: usize,
-        contents: Contents,
-    ) -> Result<(Outputs, Judgement), CompareError> {
-        let ground_truth = &self.path.truth_views[index].ground_truth;
-        let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
-        judged(&method.preset, outputs, ground_truth)
     }
 
     /// Returns the run of a judged method with its provisional times: it stays in the results if

@@ -6,7 +6,6 @@ use crate::graphs::ground_truth;
 use crate::graphs::light_kinds::{self, kind_and_number};
 use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
-use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
 use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::run::scene_bytes;
@@ -340,10 +339,9 @@ impl<'a> Trials<'a> {
         let request = Frame::new().with_all(true).with_read(&names);
         let (report, _) = frame::run(self.session, executor, &request)?;
         self.left = self.left.saturating_sub(1 + u64::from(growth.frames));
-        let contents = frame::contents(report.readbacks);
+        let layer = layer_of(executor.plan(), self.provider.light_number()).unwrap_or_default();
+        let shown = (frame::contents(report.readbacks), layer);
         let truth = &view.truth.ground_truth;
-        let layer = layer_of(executor.plan(), self.provider.light_number());
-        let outputs = Outputs::from_contents(contents, layer.unwrap_or_default(), &truth.pixels);
-        Ok(ground_truth::error(&set.preset, outputs, truth)?)
+        Ok(ground_truth::error(&set.preset, shown, truth)?)
     }
 }

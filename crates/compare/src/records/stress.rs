@@ -228,12 +228,10 @@ impl Verdict {
 }
 
 impl Counts {
-    /// Creates the counts of a picture. `whole` counts the method's answers as they are. `settled`
-    /// counts them with the [reference](crate#terms)'s answer at each pixel in the band (the pixels
-    /// whose answer rounding decides), so that its wrong pixels are those outside the band. `rays`
-    /// is the number of rays traced; `None` if the graph does not count them.
-    pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
-        let outside = settled.wrong;
+    /// Creates the counts of a picture. `whole` counts all of its pixels; `outside` are the wrong
+    /// ones that are not in the band (the pixels whose answer rounding decides). `rays` is the
+    /// number of rays traced; `None` if the graph does not count them.
+    pub fn new(whole: &Statistics, outside: WrongCounts, rays: Option<u64>) -> Self {
         Self {
             wrong: whole.wrong,
             outside_band: OutsideBand {

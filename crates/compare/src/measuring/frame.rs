@@ -18,10 +18,12 @@
 //! ```
 
 use crate::error::CompareError;
+use crate::records::samples::Upkeep;
 use crate::sink::Session;
 use crate::wording::frames;
 use skiagraph_gpu::{Content, ExecuteError, Executor, Frame, FrameReport, Provider, Readback};
 use skiagraph_graph::Plan;
+use skiagraph_passes::{Built, SceneProvider};
 use std::{
     collections::BTreeMap,
     time::{Duration, Instant},
@@ -82,6 +84,46 @@ pub fn render(
     settled
         .and_then(|(mut executor, growth)| Ok((read(session, &mut executor, names)?, growth)))
         .map_err(|error| failed(session, graph, error))
+}
+
+/// A frame that was drawn behind a change of the scene, and what the change cost.
+pub struct Drawn<T> {
+    /// The frame.
+    pub frame: T,
+    /// Work of the CPU between the change and the frame.
+    pub upkeep: Upkeep,
+    /// Resources of the scene that were made for the frame.
+    pub made: Vec<Built>,
+}
+
+/// Draws a frame as a host does it: brings what the executor reads of the scene up to date, lets
+/// `draw` run the frame, and lets buffers grow by the counts that have arrived.
+///
+/// # Errors
+/// The errors of the executor and of `draw`.
+pub fn next<T>(
+    executor: &mut Executor,
+    provider: &mut SceneProvider,
+    draw: impl FnOnce(&mut Executor) -> Result<T, ExecuteError>,
+) -> Result<Drawn<T>, ExecuteError> {
+    let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
+    let times = |built: &[Built], name| {
+        let earlier = built.iter().find(|earlier| earlier.name == name);
+        earlier.map_or(0, |earlier| earlier.times)
+    };
+    let began = Instant::now();
+    executor.refresh(provider)?;
+    let time = began.elapsed();
+    let is_new = |made: &&Built| made.times > times(&built, made.name);
+    let made = provider.built().iter().filter(is_new).copied().collect();
+    let frame = draw(executor)?;
+    executor.grow(provider)?;
+    let uploaded = provider.work().uploaded - uploaded;
+    Ok(Drawn {
+        frame,
+        upkeep: Upkeep { time, uploaded },
+        made,
+    })
 }
 
 /// Runs one frame and waits for its end. Returns the frame's report, and the time from the start of

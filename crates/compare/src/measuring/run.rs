@@ -12,15 +12,13 @@ use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::sequence::{Account, cost, ms};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{
-    self, Kind, Takes, TimedKinds, Times, Turn, made_since, timed_frame,
-};
+use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Times, Turn, timed_frame};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
 use crate::records::regimes::RegimeTimes;
 use crate::records::results::{AreaReference, Images, Measured, Run};
-use crate::records::samples::{TimedFrame, Upkeep};
+use crate::records::samples::TimedFrame;
 use crate::records::sequence::Remade;
 use crate::records::statistics::FrameTimes;
 use crate::records::turns::Turns;
@@ -29,10 +27,7 @@ use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{GroundTruth, Statistics};
-use std::{
-    cell::RefCell,
-    time::{Duration, Instant},
-};
+use std::{cell::RefCell, time::Duration};
 
 /// Data that all methods share when they are measured on one view or path in one viewport.
 pub struct MeasureContext<'a> {
@@ -113,14 +108,20 @@ impl MeasureContext<'_> {
                 let (outputs, judgement) = steady::judge(session, drawn, steady.as_mut(), truth)?;
                 account.add(self.path, 0, outputs, judgement)?;
                 step.set_done(1);
-                timing::sample(session, &mut executor, [0, 1], |_| ())?
+                timing::sample(
+                    session,
+                    self.path.frames,
+                    (&mut executor, provider),
+                    [0, 1],
+                    |_| (),
+                )?
             }
             ViewOrPath::Path(_) => {
                 let walked = (method, steady.is_some());
                 self.follow(walked, &mut executor, provider, (&mut account, step))?
             }
         };
-        let times = Times::new(&timed)?;
+        let times = Times::new(&timed, self.timestamps)?;
         let (index, outputs, judgement) = account.worst.take().ok_or_else(|| {
             CompareError::Input(format!("the path {} has no frames", self.view.name()))
         })?;
@@ -140,7 +141,7 @@ impl MeasureContext<'_> {
         let shown = (&outputs, &judgement, &diagnostics);
         let images = self.draw(method, place, &truth_view.ground_truth, shown)?;
         let pictures = self.pictures.as_ref();
-        let mut measured = Measured {
+        let measured = Measured {
             certain: counts.certain,
             uncertain: counts.uncertain,
             split: counts.split,
@@ -160,9 +161,10 @@ impl MeasureContext<'_> {
             layer_jump: diagnostics.layer_jump,
             sequence: is_path.then(|| account.sequence()),
             images,
+            frame: times.frame,
+            passes: times.passes,
             ..Measured::default()
         };
-        self.set_times(&mut measured, times);
         Ok(Judged {
             method: method.clone(),
             planned: planned.clone(),
@@ -219,26 +221,18 @@ impl MeasureContext<'_> {
         let (session, frames) = (self.session, self.path.frames);
         session.check_stopped()?;
         frames.show(index, executor.plan().viewport(), provider)?;
-        let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
-        let began = Instant::now();
-        executor.refresh(provider)?;
-        let upkeep = Upkeep {
-            time: began.elapsed(),
-            uploaded: provider.work().uploaded - uploaded,
-        };
-        let remade = made_since(&built, provider.built()).map(remade).collect();
         let read = method.preset.judged();
         let request = Frame::new()
             .with_timing(true)
             .with_read(&read)
             .with_seconds(frames.seconds(index));
-        let (mut report, wall) = frame::run(session, executor, &request)?;
-        // As a host does it: between frames, by the counts that have arrived.
-        executor.grow(provider)?;
+        let draw = |executor: &mut Executor| frame::run(session, executor, &request);
+        let drawn = frame::next(executor, provider, draw)?;
+        let (mut report, wall) = drawn.frame;
         let contents = frame::contents(std::mem::take(&mut report.readbacks));
         let mut timed = timed_frame(report, Duration::ZERO, wall)?;
-        timed.upkeep = Some(upkeep);
-        Ok((contents, timed, remade))
+        timed.upkeep = Some(drawn.upkeep);
+        Ok((contents, timed, drawn.made.iter().map(remade).collect()))
     }
 
     /// Returns the run of a judged method with its provisional times: it stays in the results if
@@ -313,27 +307,10 @@ impl MeasureContext<'_> {
             None => Kind::EveryPass,
         };
         let frames = timed.get(&kind).map_or(&[][..], Vec::as_slice);
-        self.set_times(measured, Times::new(frames)?);
-        measured.regimes = timing::regime_times(timed)?;
-        let regimes = measured.regimes.iter_mut();
-        regimes.for_each(|times| self.distrust(&mut times.frame));
-        Ok(())
-    }
-
-    /// Writes the times of frames and their passes into a method's measurements.
-    fn set_times(&self, measured: &mut Measured, mut times: Times) {
-        self.distrust(&mut times.frame);
-        if !self.timestamps {
-            times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
-        }
+        let times = Times::new(frames, self.timestamps)?;
         (measured.frame, measured.passes) = (times.frame, times.passes);
-    }
-
-    /// Sets the GPU times in `frame` to `None` if timestamps cannot be trusted.
-    pub fn distrust(&self, frame: &mut FrameTimes) {
-        if !self.timestamps {
-            frame.without_gpu();
-        }
+        measured.regimes = timing::regime_times(timed, self.timestamps)?;
+        Ok(())
     }
 
     /// Creates the run of a method from `planned`, its [`Run`] without measurements, and its

@@ -6,6 +6,7 @@ use crate::error::CompareError;
 use crate::measuring::frame;
 use crate::measuring::frame_sequence::FrameSequence;
 use crate::measuring::scene_motion::{self, regimes};
+use crate::measuring::stop::Stop;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::records::regimes::{Regime, RegimeTimes};
 use crate::records::results::Pass;
@@ -190,40 +191,32 @@ impl<'t, 'e> Takes<'t, 'e> {
         made: &mut Vec<Built>,
     ) -> Result<TimedFrame, ExecuteError> {
         let (executor, provider) = (&mut *self.takes[index].executor, &mut self.provider);
-        let began = self.first.elapsed();
-        let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
-        let refresh = Instant::now();
-        executor.refresh(provider)?;
-        let mut refresh = refresh.elapsed();
+        let (session, first) = (self.session, self.first);
+        let request = Frame::new().with_seconds(self.frames.seconds(turn.frame));
+        let draw = |executor: &mut Executor| {
+            // A frame with timing is never left out.
+            let is_rest = turn.kind == Kind::Moved(Regime::Nothing);
+            let rest = is_rest.then(|| rest(session, executor, &request));
+            if let Some(rest) = rest.transpose()?.flatten() {
+                return Ok(rest);
+            }
+            let is_whole = turn.kind == Kind::EveryPass;
+            let request = request.with_timing(true).with_all(is_whole);
+            let began = first.elapsed();
+            let (report, wall) = frame::run(session, executor, &request)?;
+            Ok((timed_frame(report, began, wall)?, Duration::ZERO))
+        };
+        let drawn = frame::next(executor, provider, draw)?;
+        let ((frame, rested), upkeep) = (drawn.frame, drawn.upkeep);
         // Resources that no pass reads, made for others that one does, stay this method's own.
         let read = executor.plan().provided();
-        let own = made_since(&built, provider.built()).filter(|built| is_read(built, &read));
-        let own: Vec<Built> = own.copied().collect();
-        let request = Frame::new().with_seconds(self.frames.seconds(turn.frame));
-        // A frame with timing is never left out.
-        let is_rest = turn.kind == Kind::Moved(Regime::Nothing);
-        let rest = is_rest.then(|| rest(self.session, executor, &request));
-        let frame = match rest.transpose()?.flatten() {
-            Some((frame, cpu)) => {
-                refresh += cpu;
-                frame
-            }
-            None => {
-                let is_whole = turn.kind == Kind::EveryPass;
-                let request = request.with_timing(true).with_all(is_whole);
-                let (report, wall) = frame::run(self.session, executor, &request)?;
-                timed_frame(report, began, wall)?
-            }
-        };
-        // As a host does it: between frames, by the counts that have arrived.
-        executor.grow(provider)?;
-        let shared: Duration = own.iter().map(|built| built.time).sum();
-        let shared_bytes: u64 = own.iter().map(|built| built.uploaded).sum();
-        let uploaded = provider.work().uploaded - uploaded;
+        let own = drawn.made.iter().filter(|built| is_read(built, &read));
+        let shared: Duration = own.clone().map(|built| built.time).sum();
+        let shared_bytes: u64 = own.clone().map(|built| built.uploaded).sum();
         made.extend(own);
         let upkeep = (turn.kind != Kind::EveryPass).then(|| Upkeep {
-            time: refresh.saturating_sub(shared),
-            uploaded: uploaded.saturating_sub(shared_bytes),
+            time: (upkeep.time + rested).saturating_sub(shared),
+            uploaded: upkeep.uploaded.saturating_sub(shared_bytes),
         });
         Ok(TimedFrame { upkeep, ..frame })
     }
@@ -277,51 +270,35 @@ fn rest(
     Ok((report.skipped.len() == passes).then(|| (frame(), cpu)))
 }
 
-/// Returns the resources that were made between two moments.
-pub fn made_since<'b>(before: &[Built], now: &'b [Built]) -> impl Iterator<Item = &'b Built> {
-    let times = |built: &Built| {
-        let earlier = before.iter().find(|earlier| earlier.name == built.name);
-        earlier.map_or(0, |earlier| earlier.times)
-    };
-    now.iter().filter(move |built| built.times > times(built))
-}
-
-/// Runs `warmup` frames, then `frames` timed ones, with every pass. `done` is called with the
-/// number of finished frames. If the session's sink asks for an early end, the frames timed until
-/// then are returned.
+/// Runs `warmup` frames of one method, then `timed` timed ones, with every pass, on the first of
+/// `frames`. `done` is called with the number of finished frames. If the session's sink asks for an
+/// early end, the frames timed until then are returned.
 ///
 /// # Errors
 /// Those of the executor.
 pub fn sample(
     session: Session,
-    executor: &mut Executor,
-    [warmup, frames]: [u32; 2],
+    frames: &FrameSequence,
+    (executor, provider): (&mut Executor, &SceneProvider),
+    [warmup, timed]: [u32; 2],
     done: impl Fn(u64),
-) -> Result<Vec<TimedFrame>, ExecuteError> {
-    let mut timed = Vec::new();
-    let mut first = Instant::now();
-    let request = Frame::new().with_timing(true).with_all(true);
-    for index in 0..u64::from(warmup) + u64::from(frames) {
-        if session.is_stopped() {
-            break;
-        }
-        if index == u64::from(warmup) {
-            first = Instant::now();
-        }
-        // Warm-up frames are timed too: they then do the same work, only their figures are not
-        // kept.
-        let began = first.elapsed();
-        let (report, wall) = match frame::run(session, executor, &request) {
-            Err(ExecuteError::Unfinished { .. }) if session.is_stopped() => break,
-            frame => frame?,
-        };
-        let frame = timed_frame(report, began, wall)?;
-        if index >= u64::from(warmup) {
-            timed.push(frame);
+) -> Result<Vec<TimedFrame>, Stop> {
+    let viewport = executor.plan().viewport();
+    let mut takes = Takes::new(session, frames, viewport, provider, [executor]);
+    for index in 0..u64::from(warmup) + u64::from(timed) {
+        // Warm-up frames are timed too: they then do the same work.
+        match takes.take(Turn {
+            kind: Kind::EveryPass,
+            frame: 0,
+            is_kept: index >= u64::from(warmup),
+        }) {
+            Err(CompareError::Interrupted { .. }) => break,
+            taken => taken?,
         }
         done(index + 1);
     }
-    Ok(timed)
+    let kinds = takes.end().pop().transpose()?.unwrap_or_default();
+    Ok(kinds.into_values().flatten().collect())
 }
 
 /// Returns the times of a frame that was run with timing. `began` is the time from the start of the
@@ -356,30 +333,32 @@ pub struct Times {
 }
 
 impl Times {
-    /// Summarises the times of some frames.
+    /// Summarises the times of some frames; without GPU times unless `has_gpu`.
     ///
     /// # Errors
     /// [`CompareError::Interrupted`] if there are no frames.
-    pub fn new(timed: &[TimedFrame]) -> Result<Self, CompareError> {
+    pub fn new(timed: &[TimedFrame], has_gpu: bool) -> Result<Self, CompareError> {
         let samples = Samples::new(timed);
         let frame = FrameTimes::new(&samples.gpu, samples.upkeep.as_deref(), &samples.wall);
+        let mut frame = frame.ok_or_else(CompareError::interrupted)?;
+        if !has_gpu {
+            frame.without_gpu();
+        }
         let pass = |PassSamples { name, gpu, cpu }| Pass {
             name,
-            gpu_ms: Spread::from_all(&gpu),
+            gpu_ms: Spread::from_all(&gpu).filter(|_| has_gpu),
             cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
         };
-        Ok(Self {
-            frame: frame.ok_or_else(CompareError::interrupted)?,
-            passes: samples.passes.into_iter().map(pass).collect(),
-        })
+        let passes = samples.passes.into_iter().map(pass).collect();
+        Ok(Self { passes, frame })
     }
 }
 
-/// Summarises the frames of each regime.
+/// Summarises the frames of each regime; without GPU times unless `has_gpu`.
 ///
 /// # Errors
 /// [`CompareError::Interrupted`] for a regime without frames.
-pub fn regime_times(timed: &TimedKinds) -> Result<Vec<RegimeTimes>, CompareError> {
+pub fn regime_times(timed: &TimedKinds, has_gpu: bool) -> Result<Vec<RegimeTimes>, CompareError> {
     let of_regimes = timed.iter().filter_map(|(kind, frames)| match kind {
         Kind::Moved(regime) => Some((*regime, frames)),
         Kind::EveryPass | Kind::Path => None,
@@ -390,7 +369,7 @@ pub fn regime_times(timed: &TimedKinds) -> Result<Vec<RegimeTimes>, CompareError
         uploaded.sort_unstable();
         Ok(RegimeTimes {
             regime,
-            frame: Times::new(frames)?.frame,
+            frame: Times::new(frames, has_gpu)?.frame,
             uploaded_bytes: uploaded
                 .get(uploaded.len() / 2)
                 .copied()

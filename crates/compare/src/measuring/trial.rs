@@ -7,11 +7,13 @@ use crate::graphs::light_kinds::{self, kind_and_number};
 use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame;
+use crate::measuring::frame_sequence::FrameSequence;
 use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::run::scene_bytes;
 use crate::measuring::search::Trial;
 use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{self, Times};
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::records::budgets::Budgets;
 use crate::sink::Session;
 use itertools::Itertools;
@@ -214,7 +216,7 @@ impl<'a> Trials<'a> {
         };
         let set = self.set(params);
         self.provider.set_view(&view.view, self.viewport);
-        let timed = self.timed(&set);
+        let timed = self.timed(&set, &view.view);
         Ok(match attempt(self.session, &set, timed)? {
             Ok(Some(ms)) => ms <= MARGIN * most,
             Ok(None) | Err(_) => false,
@@ -231,7 +233,7 @@ impl<'a> Trials<'a> {
     }
 
     /// Median milliseconds of a frame with every pass; `None` if it cannot be planned.
-    fn timed(&mut self, set: &Method) -> Result<Option<f64>, Stop> {
+    fn timed(&mut self, set: &Method, view: &View) -> Result<Option<f64>, Stop> {
         if !self.plan(set)? {
             return Ok(None);
         }
@@ -240,10 +242,12 @@ impl<'a> Trials<'a> {
         };
         executor.refresh(self.provider)?;
         frame::grow(self.session, executor, self.provider)?;
-        let timed = timing::sample(self.session, executor, TIMED, |_| ())?;
-        let frame = Times::new(&timed)?.frame;
-        let spread = frame.spread(!self.limits.has_timestamps);
-        let spread = spread.or_else(|| frame.spread(true));
+        let still = ViewOrPath::Still(view.clone());
+        let frames = FrameSequence::new(&still, self.provider.scene(), None, None)?;
+        let drawn = (executor, &*self.provider);
+        let timed = timing::sample(self.session, &frames, drawn, TIMED, |_| ())?;
+        let frame = Times::new(&timed, self.limits.has_timestamps)?.frame;
+        let spread = frame.spread(false).or_else(|| frame.spread(true));
         Ok(spread.map(|spread| spread.median))
     }
 

@@ -1,83 +1,70 @@
 //! `profile --csv`: a line for each pass and one for the whole frame of each profile.
 
-use skiagraph_compare::records::profile::{Conditions, PassProfile, Profile};
+use itertools::Itertools;
+use skiagraph_compare::records::profile::{Line, Profile};
+use skiagraph_compare::records::results::Adapter;
 use skiagraph_compare::records::statistics::Series;
 use skiagraph_compare::records::table::Table;
 
-/// A line: a pass, or the frame.
-struct Line<'a> {
-    profile: &'a Profile,
-    pass: Option<&'a PassProfile>,
-}
-
-type Column = (&'static str, fn(&Line) -> String);
+type Column = (&'static str, fn(&Profile, Line) -> String);
 
 /// In an order on which scripts rely: new ones stand at the end. Empty cells are nulls.
 const COLUMNS: [Column; 28] = [
-    ("program", |line| line.conditions().program.clone()),
-    ("build", |line| line.conditions().build.clone()),
-    ("date", |line| line.conditions().date.clone()),
-    ("adapter", |line| line.conditions().adapter.name.clone()),
-    ("backend", |line| line.conditions().adapter.backend.clone()),
-    ("driver", |line| line.conditions().adapter.driver.clone()),
-    ("gpu_unavailable", |line| {
-        let reason = line.conditions().adapter.gpu_unavailable.clone();
-        reason.unwrap_or_default()
+    ("program", |profile, _| profile.conditions.program.clone()),
+    ("build", |profile, _| profile.conditions.build.clone()),
+    ("date", |profile, _| profile.conditions.date.clone()),
+    ("adapter", |profile, _| adapter(profile).name.clone()),
+    ("backend", |profile, _| adapter(profile).backend.clone()),
+    ("driver", |profile, _| adapter(profile).driver.clone()),
+    ("gpu_unavailable", |profile, _| {
+        adapter(profile).gpu_unavailable.clone().unwrap_or_default()
     }),
-    ("scene", |line| line.conditions().scene.name.clone()),
-    ("triangles", |line| {
-        line.conditions().scene.triangles.to_string()
+    ("scene", |profile, _| profile.conditions.scene.name.clone()),
+    ("triangles", |profile, _| {
+        profile.conditions.scene.triangles.to_string()
     }),
-    ("preset", |line| line.conditions().preset.clone()),
-    ("view", |line| line.conditions().view.clone()),
-    ("width", |line| line.conditions().viewport[0].to_string()),
-    ("height", |line| line.conditions().viewport[1].to_string()),
-    ("params", |line| {
-        let params = line.conditions().params();
-        let texts = params.map(|(name, value)| format!("{name}={value}"));
-        texts.collect::<Vec<_>>().join(" ")
+    ("preset", |profile, _| profile.conditions.preset.clone()),
+    ("view", |profile, _| profile.conditions.view.clone()),
+    ("width", |profile, _| {
+        profile.conditions.viewport[0].to_string()
     }),
-    ("frames", |line| line.profile.timed().to_string()),
-    ("warmup", |line| line.conditions().warmup.to_string()),
-    ("pass", |line| {
-        line.pass.map_or(String::new(), |pass| pass.name.clone())
+    ("height", |profile, _| {
+        profile.conditions.viewport[1].to_string()
     }),
-    ("kind", |line| {
-        line.pass.map_or("frame".into(), |pass| pass.kind.clone())
+    ("params", |profile, _| {
+        let params = profile.conditions.params();
+        params
+            .map(|(name, value)| format!("{name}={value}"))
+            .join(" ")
     }),
-    ("gpu_min_ms", |line| ms(line.gpu(), |gpu| gpu.min)),
-    ("gpu_median_ms", |line| ms(line.gpu(), |gpu| gpu.median)),
-    ("gpu_p95_ms", |line| ms(line.gpu(), |gpu| gpu.p95)),
-    ("gpu_max_ms", |line| ms(line.gpu(), |gpu| gpu.max)),
-    ("gpu_share", |line| {
-        line.pass
-            .and_then(|pass| pass.share)
-            .map_or(String::new(), six_digits)
+    ("frames", |profile, _| profile.timed().to_string()),
+    ("warmup", |profile, _| profile.conditions.warmup.to_string()),
+    ("pass", |_, (pass, ..)| {
+        pass.map_or(String::new(), |pass| pass.name.clone())
     }),
-    ("cpu_min_ms", |line| ms(line.cpu(), |cpu| cpu.min)),
-    ("cpu_median_ms", |line| ms(line.cpu(), |cpu| cpu.median)),
-    ("cpu_p95_ms", |line| ms(line.cpu(), |cpu| cpu.p95)),
-    ("cpu_max_ms", |line| ms(line.cpu(), |cpu| cpu.max)),
-    ("wall_median_ms", |line| match line.pass {
+    ("kind", |_, (pass, ..)| {
+        pass.map_or("frame".into(), |pass| pass.kind.clone())
+    }),
+    ("gpu_min_ms", |_, (_, gpu, _)| ms(gpu, |gpu| gpu.min)),
+    ("gpu_median_ms", |_, (_, gpu, _)| ms(gpu, |gpu| gpu.median)),
+    ("gpu_p95_ms", |_, (_, gpu, _)| ms(gpu, |gpu| gpu.p95)),
+    ("gpu_max_ms", |_, (_, gpu, _)| ms(gpu, |gpu| gpu.max)),
+    ("gpu_share", |_, (pass, ..)| {
+        let share = pass.and_then(|pass| pass.share);
+        share.map_or(String::new(), six_digits)
+    }),
+    ("cpu_min_ms", |_, (.., cpu)| six_digits(cpu.min)),
+    ("cpu_median_ms", |_, (.., cpu)| six_digits(cpu.median)),
+    ("cpu_p95_ms", |_, (.., cpu)| six_digits(cpu.p95)),
+    ("cpu_max_ms", |_, (.., cpu)| six_digits(cpu.max)),
+    ("wall_median_ms", |profile, (pass, ..)| match pass {
         Some(_) => String::new(),
-        None => six_digits(line.profile.frame.wall_ms.median),
+        None => six_digits(profile.frame.wall_ms.median),
     }),
 ];
 
-impl Line<'_> {
-    fn conditions(&self) -> &Conditions {
-        &self.profile.conditions
-    }
-
-    fn gpu(&self) -> Option<&Series> {
-        let frame = self.profile.frame.gpu_ms.as_ref();
-        self.pass.map_or(frame, |pass| pass.gpu_ms.as_ref())
-    }
-
-    fn cpu(&self) -> Option<&Series> {
-        let frame = &self.profile.frame.cpu_ms;
-        Some(self.pass.map_or(frame, |pass| &pass.cpu_ms))
-    }
+fn adapter(profile: &Profile) -> &Adapter {
+    &profile.conditions.adapter
 }
 
 fn ms(series: Option<&Series>, pick: fn(&Series) -> f64) -> String {
@@ -95,11 +82,14 @@ fn six_digits(number: f64) -> String {
 /// # Errors
 /// The errors of [`Table::csv`].
 pub fn to_csv(profiles: &[Profile]) -> Result<String, ::csv::Error> {
-    let lines = profiles.iter().flat_map(|profile| {
-        let passes = profile.passes.iter().map(Some).chain([None]);
-        passes.map(move |pass| Line { profile, pass })
+    let lines = profiles.iter();
+    let lines = lines.flat_map(|profile| profile.lines().map(move |line| (profile, line)));
+    let rows = lines.map(|(profile, line)| {
+        COLUMNS
+            .iter()
+            .map(|(_, cell)| cell(profile, line))
+            .collect()
     });
-    let rows = lines.map(|line| COLUMNS.iter().map(|(_, cell)| cell(&line)).collect());
     Table::new(COLUMNS.map(|(name, _)| name), 0, rows).csv()
 }
 

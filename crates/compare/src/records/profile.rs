@@ -152,6 +152,9 @@ pub struct FrameProfile {
     pub wall_ms: Series,
 }
 
+/// Times of a pass, or of whole frames without one: of the GPU, if there are any, and of the CPU.
+pub type Line<'a> = (Option<&'a PassProfile>, Option<&'a Series>, &'a Series);
+
 /// Memory of the graph's own textures and buffers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
@@ -252,6 +255,13 @@ impl Profile {
             only_old: missing(old, self),
             only_new: missing(self, old),
         }
+    }
+
+    /// Returns the times of each pass, then those of whole frames.
+    pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+        let passes = self.passes.iter();
+        let passes = passes.map(|pass| (Some(pass), pass.gpu_ms.as_ref(), &pass.cpu_ms));
+        passes.chain([(None, self.frame.gpu_ms.as_ref(), &self.frame.cpu_ms)])
     }
 
     /// Returns the number of timed frames.

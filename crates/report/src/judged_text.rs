@@ -2,7 +2,7 @@
 
 use crate::graded::{counted, invalid_counts};
 use crate::notes::{pixels, wrong_surface};
-use crate::table::{TERMINAL, terminal, wrapped};
+use crate::table::{TERMINAL, or_dash, terminal, wrapped};
 use itertools::Itertools;
 use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::judged_pictures::{
@@ -42,18 +42,16 @@ fn short_names(pictures: &[JudgedPicture]) -> Vec<String> {
         .map(|picture| picture.file.split(['/', '\\']));
     let paths: Vec<Vec<&str>> = paths.map(Iterator::collect).collect();
     let shortest = paths.iter().map(Vec::len).min().unwrap_or_default();
-    let is_common = |part: fn(&Vec<&str>, usize) -> String, at: &usize| {
-        paths.iter().map(|path| part(path, *at)).all_equal()
+    let has_front = |at: &usize| paths.iter().map(|path| path[*at]).all_equal();
+    let has_back = |at: &usize| {
+        paths
+            .iter()
+            .map(|path| path[path.len() - 1 - at])
+            .all_equal()
     };
-    let from_front = |path: &Vec<&str>, at: usize| path[at].to_owned();
-    let from_back = |path: &Vec<&str>, at: usize| path[path.len() - 1 - at].to_owned();
-    let front = (0..shortest)
-        .take_while(|at| is_common(from_front, at))
-        .count();
+    let front = (0..shortest).take_while(has_front).count();
     let front = front.min(shortest.saturating_sub(1));
-    let back = (0..shortest - front)
-        .take_while(|at| is_common(from_back, at))
-        .count();
+    let back = (0..shortest - front).take_while(has_back).count();
     let names = |back: usize| -> Vec<String> {
         let name = |path: &Vec<&str>| path[front..(path.len() - back).max(front + 1)].join("/");
         paths.iter().map(name).collect()
@@ -131,18 +129,15 @@ fn table(judged: &JudgedPictures, names: &[String]) -> Table {
         "off > 1/16",
     ];
     let soft = |picture: &JudgedPicture, figure: f64| {
-        if judged.area.is_some() || picture.answer == Answer::Graded {
-            format!("{figure:.5}")
-        } else {
-            "–".into()
-        }
+        let is_soft = judged.area.is_some() || picture.answer == Answer::Graded;
+        or_dash(is_soft.then_some(figure), |figure| format!("{figure:.5}"))
     };
     let row = |(name, picture): (&String, &JudgedPicture)| {
         let (graded, wrong) = (&picture.graded, &picture.wrong);
         let edges = picture.edges.all();
         vec![
             name.clone(),
-            picture.rank.map_or("–".into(), |rank| rank.to_string()),
+            or_dash(picture.rank, |rank| rank.to_string()),
             thousands(picture.wrong_attributable()),
             percent(picture.wrong_attributable(), judged.pixels.facing_light),
             thousands(wrong.lit),
@@ -151,11 +146,9 @@ fn table(judged: &JudgedPictures, names: &[String]) -> Table {
             thousands(picture.wrong_unattributable),
             format!("{:.5}", graded.rmse_outside_band),
             format!("{:.5}", graded.flip),
-            if edges.count > 0 {
-                format!("{:.2}", edges.mean_pixels)
-            } else {
-                "–".into()
-            },
+            or_dash((edges.count > 0).then_some(edges.mean_pixels), |pixels| {
+                format!("{pixels:.2}")
+            }),
             soft(picture, graded.soft.light_in_umbra),
             soft(picture, graded.soft.dark_in_light),
             soft(picture, graded.soft.penumbra_rmse),

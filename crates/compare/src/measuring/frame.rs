@@ -69,21 +69,18 @@ pub fn settled(
 
 /// Runs one frame of a plan with an executor from [`settled`]. Returns the contents of the outputs
 /// and captures that `names` lists, and the report of the frames that were run to find buffer
-/// sizes. `graph` is the graph's name for messages.
+/// sizes.
 ///
 /// # Errors
-/// [`CompareError::Gpu`] if the graph cannot run; an [early end](crate#terms).
+/// The errors of the executor.
 pub fn render(
     session: Session,
-    graph: &str,
     plan: Plan,
     provider: &mut dyn Provider,
     names: &[&str],
-) -> Result<(Contents, Growth), CompareError> {
-    let settled = settled(session, plan, provider);
-    settled
-        .and_then(|(mut executor, growth)| Ok((read(session, &mut executor, names)?, growth)))
-        .map_err(|error| failed(session, graph, error))
+) -> Result<(Contents, Growth), ExecuteError> {
+    let (mut executor, growth) = settled(session, plan, provider)?;
+    Ok((read(session, &mut executor, names)?, growth))
 }
 
 /// A frame that was drawn behind a change of the scene, and what the change cost.

@@ -1,12 +1,13 @@
 //! Finds a setting that makes most of a method's wrong pixels right, by the casters that block
 //! their light.
 
-use crate::error::{CompareError, is_fatal};
+use crate::error::CompareError;
 use crate::graphs::ground_truth;
 use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame;
 use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::stop::{Stop, attempt};
 use crate::records::hint::{Cause, Hint};
 use crate::records::tuned::named;
 use crate::sink::Session;
@@ -119,14 +120,9 @@ fn wrong_with(
     let Ok(plan) = method.plan(truth.pixels.viewport, capabilities, provider) else {
         return Ok(None);
     };
-    let contents = frame::settled(session, plan, provider)
-        .and_then(|(mut executor, _)| frame::read(session, &mut executor, &names));
-    let contents = match contents {
-        Ok(contents) => contents,
-        Err(error) if is_fatal(&error) => {
-            return Err(frame::failed(session, &method.name, error));
-        }
-        Err(_) => return Ok(None),
+    let rendered = frame::render(session, plan, provider, &names).map_err(Stop::from);
+    let Ok((contents, _)) = attempt(session, method, rendered)? else {
+        return Ok(None);
     };
     // A setting whose outputs are not those of a shadow method is no way out.
     let wrong = ground_truth::error(&method.preset, (contents, layer), truth).ok();

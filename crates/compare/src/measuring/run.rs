@@ -238,7 +238,7 @@ impl MeasureContext<'_> {
     /// Returns the run of a judged method with its provisional times: it stays in the results if
     /// the work ends before [`times`](Self::times).
     pub fn judged_run(&self, judged: &Judged) -> Run {
-        self.run(&judged.method, &judged.planned, judged.measured.clone())
+        self.run(&judged.method, &judged.planned, Ok(judged.measured.clone()))
     }
 
     /// Times judged methods in turns, frame by frame, and returns the run of each, in order.
@@ -281,10 +281,8 @@ impl MeasureContext<'_> {
                 });
                 Ok(measured)
             });
-            runs.push(match attempt(self.session, &judged.method, measured)? {
-                Ok(measured) => self.run(&judged.method, &judged.planned, measured),
-                Err(reason) => self.unavailable(&judged.method, &judged.planned, reason),
-            });
+            let outcome = attempt(self.session, &judged.method, measured)?;
+            runs.push(self.run(&judged.method, &judged.planned, outcome));
         }
         Ok(runs)
     }
@@ -314,20 +312,24 @@ impl MeasureContext<'_> {
     }
 
     /// Creates the run of a method from `planned`, its [`Run`] without measurements, and its
-    /// measurements.
-    pub fn run(&self, method: &Method, planned: &Run, measured: Measured) -> Run {
+    /// measurements or the reason why there are none.
+    pub fn run(&self, method: &Method, planned: &Run, outcome: Result<Measured, String>) -> Run {
+        let ground_truth = &self.truth_view.ground_truth;
+        let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
+        let (measured, unavailable) = match outcome {
+            Ok(measured) => (Some(measured), None),
+            Err(reason) => (None, Some(reason)),
+        };
         Run {
-            measured: Some(measured),
-            ..self.empty(method, planned)
-        }
-    }
-
-    /// Creates the run of a method from `planned`, its [`Run`] without measurements, and the reason
-    /// why there are none.
-    pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
-        Run {
-            unavailable: Some(reason),
-            ..self.empty(method, planned)
+            date: date::today(),
+            promise: guarantee::promise(method),
+            pixels: self.own.pixels,
+            band: self.own.band,
+            wrong_surface: self.path.wrong_surfaces(),
+            area: area.map(|area| AreaReference::new(area, truth)),
+            measured,
+            unavailable,
+            ..planned.clone()
         }
     }
 
@@ -369,22 +371,6 @@ impl MeasureContext<'_> {
         }
         pictures.replace(files);
         Ok(images)
-    }
-
-    /// The run with nothing measured.
-    fn empty(&self, method: &Method, planned: &Run) -> Run {
-        let ground_truth = &self.truth_view.ground_truth;
-        let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
-        Run {
-            date: date::today(),
-            promise: guarantee::promise(method),
-            pixels: self.own.pixels,
-            band: self.own.band,
-            wrong_surface: self.path.wrong_surfaces(),
-            area: area.map(|area| AreaReference::new(area, truth)),
-            unavailable: None,
-            ..planned.clone()
-        }
     }
 }
 

@@ -89,6 +89,7 @@ impl Shown {
 }
 
 /// The pictures so far.
+#[derive(Default)]
 struct Pictures {
     /// As many of the last ones as the longest period has.
     last: VecDeque<Rc<Shown>>,
@@ -100,22 +101,11 @@ struct Pictures {
 
 /// A period that is looked for: all pictures are held against those of its first turn, so that one
 /// that creeps is not steady.
-#[derive(Clone, Default)]
+#[derive(Default)]
 struct Period {
     first_turn: Vec<Rc<Shown>>,
     /// How many pictures in a row were like theirs in the first turn.
     repeated: usize,
-}
-
-impl Default for Pictures {
-    fn default() -> Self {
-        Self {
-            last: VecDeque::new(),
-            frames: 0,
-            periods: std::array::from_fn(|_| Period::default()),
-            period: None,
-        }
-    }
 }
 
 impl Pictures {

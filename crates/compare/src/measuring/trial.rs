@@ -18,9 +18,9 @@ use crate::records::budgets::Budgets;
 use crate::sink::Session;
 use itertools::Itertools;
 use skiagraph_gpu::{Executor, Frame};
+use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{LightKind, View};
-use std::collections::BTreeMap;
 
 /// A view on which settings are tried, with its ground truth.
 pub struct TrialView<'a> {
@@ -68,8 +68,6 @@ pub struct Trials<'a> {
     limits: Limits,
     /// True if settings that need too much memory are refused: the defaults need less.
     holds_memory: bool,
-    /// Bytes of the scene data that plans read, by its names.
-    scene_bytes: BTreeMap<Vec<String>, u64>,
     /// Executor of the last setting.
     executor: Option<Executor>,
     /// Pixels facing the light, over all views.
@@ -104,7 +102,6 @@ impl<'a> Trials<'a> {
             provider,
             limits,
             holds_memory: false,
-            scene_bytes: BTreeMap::new(),
             executor: None,
             left: limits.work,
         }
@@ -182,24 +179,13 @@ impl<'a> Trials<'a> {
         let set = self.set(params);
         for view in self.one_of_each_light() {
             self.provider.set_view(&view.view, self.viewport);
-            let capabilities = Capabilities::new(self.session.gpu);
-            let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
+            let Some(plan) = self.planned(&set) else {
                 return Ok(false);
             };
-            let names = plan.provided().into_iter().map(str::to_owned).collect();
-            let scene = match self.scene_bytes.get(&names) {
-                Some(bytes) => Ok(Ok(*bytes)),
-                None => {
-                    let bytes = scene_bytes(self.session, &plan, self.provider);
-                    attempt(self.session, &set, bytes.map_err(Stop::from))
-                }
-            };
-            let Ok(scene) = scene? else {
-                return Ok(false);
-            };
-            self.scene_bytes.insert(names, scene);
-            if plan.memory_bytes() + scene > most {
-                return Ok(false);
+            let scene = scene_bytes(self.session, &plan, self.provider).map_err(Stop::from);
+            match attempt(self.session, &set, scene)? {
+                Ok(scene) if plan.memory_bytes() + scene <= most => {}
+                _ => return Ok(false),
             }
         }
         Ok(true)
@@ -263,8 +249,7 @@ impl<'a> Trials<'a> {
                 return false;
             }
             self.provider.set_view(&view.view, self.viewport);
-            let capabilities = Capabilities::new(self.session.gpu);
-            let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
+            let Some(plan) = self.planned(set) else {
                 return false;
             };
             let names = plan.idle_params();
@@ -309,18 +294,19 @@ impl<'a> Trials<'a> {
                 .max(1.0)
     }
 
+    /// The plan of a setting under the light of the provider; `None` if there is none.
+    fn planned(&self, set: &Method) -> Option<Plan> {
+        let capabilities = Capabilities::new(self.session.gpu);
+        set.plan(self.viewport, capabilities, self.provider).ok()
+    }
+
     /// Plans a setting under the light of the provider; false if it cannot run, or if it remembers
-    /// earlier frames.
+    /// earlier frames: one frame shows nothing of a method that needs many.
     fn plan(&mut self, set: &Method) -> Result<bool, Stop> {
         self.left = self.left.saturating_sub(1);
-        let capabilities = Capabilities::new(self.session.gpu);
-        let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
+        let Some(plan) = self.planned(set).filter(|plan| !plan.remembers()) else {
             return Ok(false);
         };
-        // One frame shows nothing of a method that needs many.
-        if plan.remembers() {
-            return Ok(false);
-        }
         self.executor = Some(match self.executor.take() {
             Some(mut executor) => {
                 executor.replace_graph(plan, self.provider)?;

@@ -108,7 +108,7 @@ impl FrameTimes {
 impl Spread {
     /// Returns the order statistics of samples; `None` if there are no samples.
     pub fn new(samples: &[Duration]) -> Option<Self> {
-        Self::from_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
+        Self::from_ms(in_ms(samples).into_iter())
     }
 
     /// Returns the order statistics of samples in milliseconds; `None` if there are no samples.

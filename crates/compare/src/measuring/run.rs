@@ -7,12 +7,12 @@ use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::diagnostics::{Diagnostics, diagnose};
-use crate::measuring::frame::{self, Contents};
+use crate::measuring::frame;
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::sequence::{Account, cost, ms};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Times, Turn, timed_frame};
+use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Times, Turn};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
@@ -23,11 +23,11 @@ use crate::records::sequence::Remade;
 use crate::records::statistics::FrameTimes;
 use crate::records::turns::Turns;
 use crate::sink::{Session, Step};
-use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider};
+use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{GroundTruth, Statistics};
-use std::{cell::RefCell, time::Duration};
+use std::cell::RefCell;
 
 /// Data that all methods share when they are measured on one view or path in one viewport.
 pub struct MeasureContext<'a> {
@@ -189,50 +189,31 @@ impl MeasureContext<'_> {
         (account, step): (&mut Account, &Step),
     ) -> Result<Vec<TimedFrame>, Stop> {
         let (warmup, layer) = (self.protocol.warmup, self.layer(executor.plan()));
-        let request = Frame::new().with_all(true);
+        let (frames, viewport) = (self.path.frames, executor.plan().viewport());
+        let names = method.preset.judged();
+        let mut takes = Takes::new(self.session, frames, viewport, provider, [executor]);
         for _ in 0..if remembered { 0 } else { warmup } {
-            frame::run(self.session, executor, &request)?;
+            takes.take(Turn::new(Kind::EveryPass, 0, false))?;
         }
-        let mut times = Vec::new();
-        for index in 0..self.path.frames.poses.len() {
-            let (contents, timed, remade) = self.frame(method, executor, provider, index)?;
-            let truth = &self.path.truth_views[index].ground_truth;
+        takes.read(&names);
+        for (frame, truth_view) in self.path.truth_views.iter().enumerate() {
+            takes.take(Turn::new(Kind::Path, frame, true))?;
+            let Some((contents, made)) = takes.shown() else {
+                break;
+            };
+            let truth = &truth_view.ground_truth;
             let (outputs, judgement) = judged(&method.preset, (contents, layer), truth)?;
-            account.add(self.path, index, outputs, judgement)?;
-            if let Some(frame) = account.frames.last_mut() {
-                frame.cost = cost(&timed, self.timestamps);
-                (frame.skipped, frame.remade) = (timed.skipped.clone(), remade);
-            }
-            times.push(timed);
-            step.set_done(u64::from(warmup) + index as u64 + 1);
+            account.add(self.path, frame, outputs, judgement)?;
+            account.frames[frame].remade = made.iter().map(remade).collect();
+            step.set_done(u64::from(warmup) + frame as u64 + 1);
+        }
+        let kinds = takes.end().pop().transpose()?.unwrap_or_default();
+        let times: Vec<TimedFrame> = kinds.into_values().flatten().collect();
+        for (frame, timed) in account.frames.iter_mut().zip(&times) {
+            frame.cost = cost(timed, self.timestamps);
+            frame.skipped.clone_from(&timed.skipped);
         }
         Ok(times)
-    }
-
-    /// Runs a frame of a path; returns its outputs, its times, and the resources that were made for
-    /// it.
-    fn frame(
-        &self,
-        method: &Method,
-        executor: &mut Executor,
-        provider: &mut SceneProvider,
-        index: usize,
-    ) -> Result<(Contents, TimedFrame, Vec<Remade>), Stop> {
-        let (session, frames) = (self.session, self.path.frames);
-        session.check_stopped()?;
-        frames.show(index, executor.plan().viewport(), provider)?;
-        let read = method.preset.judged();
-        let request = Frame::new()
-            .with_timing(true)
-            .with_read(&read)
-            .with_seconds(frames.seconds(index));
-        let draw = |executor: &mut Executor| frame::run(session, executor, &request);
-        let drawn = frame::next(executor, provider, draw)?;
-        let (mut report, wall) = drawn.frame;
-        let contents = frame::contents(std::mem::take(&mut report.readbacks));
-        let mut timed = timed_frame(report, Duration::ZERO, wall)?;
-        timed.upkeep = Some(drawn.upkeep);
-        Ok((contents, timed, drawn.made.iter().map(remade).collect()))
     }
 
     /// Returns the run of a judged method with its provisional times: it stays in the results if

@@ -3,7 +3,7 @@
 
 use crate::comparison::Protocol;
 use crate::error::CompareError;
-use crate::measuring::frame;
+use crate::measuring::frame::{self, Contents};
 use crate::measuring::frame_sequence::FrameSequence;
 use crate::measuring::scene_motion::{self, regimes};
 use crate::measuring::stop::Stop;
@@ -40,6 +40,17 @@ pub struct Turn {
     pub is_kept: bool,
 }
 
+impl Turn {
+    /// Creates a turn from the values of its fields.
+    pub fn new(kind: Kind, frame: usize, is_kept: bool) -> Self {
+        Self {
+            kind,
+            frame,
+            is_kept,
+        }
+    }
+}
+
 /// Returns the turns of a view or path: of a view, frames in which every pass runs, and after each
 /// of them a frame of each regime; of a path, all its frames, then frames of each regime at places
 /// spread over it.
@@ -50,17 +61,9 @@ pub fn schedule(view: &ViewOrPath, frames: &FrameSequence, protocol: &Protocol) 
         regime_frames,
         ..
     } = *protocol;
-    let every_pass = |frame, is_kept| Turn {
-        kind: Kind::EveryPass,
-        frame,
-        is_kept,
-    };
+    let every_pass = |frame, is_kept| Turn::new(Kind::EveryPass, frame, is_kept);
     let regimes = |frame| {
-        let moved = move |regime: &Regime| Turn {
-            kind: Kind::Moved(*regime),
-            frame,
-            is_kept: true,
-        };
+        let moved = move |regime: &Regime| Turn::new(Kind::Moved(*regime), frame, true);
         regimes(frames).iter().map(moved)
     };
     let mut turns: Vec<Turn> = (0..warmup).map(|_| every_pass(0, false)).collect();
@@ -73,12 +76,7 @@ pub fn schedule(view: &ViewOrPath, frames: &FrameSequence, protocol: &Protocol) 
             }
         }
         ViewOrPath::Path(_) => {
-            let path = |frame| Turn {
-                kind: Kind::Path,
-                frame,
-                is_kept: true,
-            };
-            turns.extend((0..count).map(path));
+            turns.extend((0..count).map(|frame| Turn::new(Kind::Path, frame, true)));
             for round in 0..regime_frames as usize {
                 let frame = round * count / regime_frames as usize;
                 turns.push(every_pass(frame, false));
@@ -99,6 +97,12 @@ pub struct Takes<'t, 'e> {
     viewport: [u32; 2],
     provider: SceneProvider,
     takes: Vec<Take<'e>>,
+    /// Names of the outputs that are read back.
+    read: &'t [&'t str],
+    /// Contents of these, of the frame that was drawn last.
+    shown: Option<Contents>,
+    /// Resources of the scene that were made in the last turn.
+    made: Vec<Built>,
     first: Instant,
     turns: usize,
 }
@@ -129,9 +133,23 @@ impl<'t, 'e> Takes<'t, 'e> {
             viewport,
             provider: provider.branch(),
             takes: executors.into_iter().map(take).collect(),
+            read: &[],
+            shown: None,
+            made: Vec::new(),
             first: Instant::now(),
             turns: 0,
         }
+    }
+
+    /// Has frames from now on read back outputs.
+    pub fn read(&mut self, names: &'t [&'t str]) {
+        self.read = names;
+    }
+
+    /// Returns what the frame that was drawn last has shown, and the resources of the scene that
+    /// were made in its turn; `None` behind an error.
+    pub fn shown(&mut self) -> Option<(Contents, &[Built])> {
+        Some((self.shown.take()?, &self.made))
     }
 
     /// Has each executor draw a frame. Each turn begins with another of them, so that none always
@@ -154,14 +172,14 @@ impl<'t, 'e> Takes<'t, 'e> {
             }
         }
         let count = self.takes.len();
-        let mut made = Vec::new();
+        self.made.clear();
         for place in 0..count {
             self.session.check_stopped()?;
             let index = (place + self.turns) % count;
             if self.takes[index].timed.is_err() {
                 continue;
             }
-            let frame = self.frame(index, turn, &mut made);
+            let frame = self.frame(index, turn);
             let take = &mut self.takes[index];
             match (frame, &mut take.timed) {
                 (Err(ExecuteError::Unfinished { .. }), _) if self.session.is_stopped() => {
@@ -177,43 +195,41 @@ impl<'t, 'e> Takes<'t, 'e> {
         self.turns += 1;
         if turn.is_kept && turn.kind != Kind::EveryPass {
             for take in &mut self.takes {
-                take.charge(turn.kind, &made);
+                take.charge(turn.kind, &self.made);
             }
         }
         Ok(())
     }
 
-    /// Times a frame of one executor, and adds what was made for it of the scene to `made`.
-    fn frame(
-        &mut self,
-        index: usize,
-        turn: Turn,
-        made: &mut Vec<Built>,
-    ) -> Result<TimedFrame, ExecuteError> {
+    /// Times a frame of one executor.
+    fn frame(&mut self, index: usize, turn: Turn) -> Result<TimedFrame, ExecuteError> {
         let (executor, provider) = (&mut *self.takes[index].executor, &mut self.provider);
         let (session, first) = (self.session, self.first);
         let request = Frame::new().with_seconds(self.frames.seconds(turn.frame));
+        let request = request.with_read(self.read);
         let draw = |executor: &mut Executor| {
             // A frame with timing is never left out.
             let is_rest = turn.kind == Kind::Moved(Regime::Nothing);
             let rest = is_rest.then(|| rest(session, executor, &request));
-            if let Some(rest) = rest.transpose()?.flatten() {
-                return Ok(rest);
+            if let Some((frame, cpu)) = rest.transpose()?.flatten() {
+                return Ok((frame, cpu, Contents::new()));
             }
             let is_whole = turn.kind == Kind::EveryPass;
             let request = request.with_timing(true).with_all(is_whole);
             let began = first.elapsed();
-            let (report, wall) = frame::run(session, executor, &request)?;
-            Ok((timed_frame(report, began, wall)?, Duration::ZERO))
+            let (mut report, wall) = frame::run(session, executor, &request)?;
+            let contents = frame::contents(std::mem::take(&mut report.readbacks));
+            Ok((timed_frame(report, began, wall)?, Duration::ZERO, contents))
         };
         let drawn = frame::next(executor, provider, draw)?;
-        let ((frame, rested), upkeep) = (drawn.frame, drawn.upkeep);
+        let ((frame, rested, shown), upkeep) = (drawn.frame, drawn.upkeep);
         // Resources that no pass reads, made for others that one does, stay this method's own.
         let read = executor.plan().provided();
         let own = drawn.made.iter().filter(|built| is_read(built, &read));
         let shared: Duration = own.clone().map(|built| built.time).sum();
         let shared_bytes: u64 = own.clone().map(|built| built.uploaded).sum();
-        made.extend(own);
+        self.shown = Some(shown);
+        self.made.extend(&drawn.made);
         let upkeep = (turn.kind != Kind::EveryPass).then(|| Upkeep {
             time: (upkeep.time + rested).saturating_sub(shared),
             uploaded: upkeep.uploaded.saturating_sub(shared_bytes),
@@ -287,11 +303,8 @@ pub fn sample(
     let mut takes = Takes::new(session, frames, viewport, provider, [executor]);
     for index in 0..u64::from(warmup) + u64::from(timed) {
         // Warm-up frames are timed too: they then do the same work.
-        match takes.take(Turn {
-            kind: Kind::EveryPass,
-            frame: 0,
-            is_kept: index >= u64::from(warmup),
-        }) {
+        let is_kept = index >= u64::from(warmup);
+        match takes.take(Turn::new(Kind::EveryPass, 0, is_kept)) {
             Err(CompareError::Interrupted { .. }) => break,
             taken => taken?,
         }

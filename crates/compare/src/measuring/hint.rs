@@ -56,13 +56,8 @@ pub fn find(
         let set = set.map(|(name, value)| format!("{name}={value}")).join(",");
         let mut params = method.params.clone();
         params.extend(changes);
-        let other = Method::on(
-            method.preset.clone(),
-            params,
-            method.viewport,
-            method.features,
-        );
-        let Some(wrong_then) = wrong_with(session, &other, (truth_view, layer), provider)? else {
+        let seen = (truth_view, layer);
+        let Some(wrong_then) = wrong_with(session, &method.with(params), seen, provider)? else {
             continue;
         };
         if 2 * wrong_then < wrong {

@@ -33,18 +33,6 @@ use std::{
 /// (materials that the plan copies for the host after a pass).
 pub type Contents = BTreeMap<String, Content>;
 
-/// Creates the executor of a plan on the session's GPU.
-///
-/// # Errors
-/// The errors of the executor.
-pub fn executor(
-    session: Session,
-    plan: Plan,
-    provider: &mut dyn Provider,
-) -> Result<Executor, ExecuteError> {
-    Executor::on(session.gpu, plan, provider)
-}
-
 /// Creates the executor of a plan, with growing buffers (those whose size depends on the frame's
 /// content) as large as a frame needs: in smaller ones the items that do not fit are lost. Runs
 /// frames to find the sizes, and returns a report of them. A method that reuses results of earlier
@@ -57,14 +45,14 @@ pub fn settled(
     plan: Plan,
     provider: &mut dyn Provider,
 ) -> Result<(Executor, Growth), ExecuteError> {
-    let mut grown = executor(session, plan, provider)?;
+    let mut grown = Executor::on(session.gpu, plan, provider)?;
     let growth = grow(session, &mut grown, provider)?;
     if growth.frames == 0 || !grown.plan().remembers() {
         return Ok((grown, growth));
     }
     let plan = grown.plan().with(|_| ())?;
     drop(grown);
-    Ok((executor(session, plan, provider)?, growth))
+    Ok((Executor::on(session.gpu, plan, provider)?, growth))
 }
 
 /// Runs one frame of a plan with an executor from [`settled`]. Returns the contents of the outputs
@@ -305,7 +293,7 @@ mod tests {
         let mut provider = placeholder([16, 16], &preset[0].graph);
         let request = Capabilities::new(&gpu).request([16, 16], &provider);
         let plan = preset[0].graph.plan(&request).unwrap();
-        let mut executor = executor(session, plan, &mut provider).unwrap();
+        let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
         run(session, &mut executor, &Frame::default()).unwrap();
         gpu.device.destroy();
         let Err(lost) = run(session, &mut executor, &Frame::default()) else {

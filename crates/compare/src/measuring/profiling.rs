@@ -84,7 +84,8 @@ pub fn profile(
     let timed = timed.map_err(failed)?;
     step.end();
 
-    match Profile::new(conditions, &passes, &Samples::new(&timed), memory) {
+    let samples = Samples::new(&timed, conditions.adapter.gpu_unavailable.is_none());
+    match Profile::new(conditions, &passes, samples, memory) {
         Some(profile) => Ok((profile, timed)),
         None => Err(CompareError::Interrupted {
             kept: "no frame was timed".into(),

@@ -9,7 +9,7 @@ use crate::graphs::shadow_method::Outputs;
 use crate::measuring::diagnostics::{Diagnostics, diagnose};
 use crate::measuring::frame;
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
-use crate::measuring::sequence::{Account, cost, ms};
+use crate::measuring::sequence::{Account, cost};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
 use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Times, Turn};
@@ -20,7 +20,7 @@ use crate::records::regimes::RegimeTimes;
 use crate::records::results::{AreaReference, Images, Measured, Run};
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::Remade;
-use crate::records::statistics::FrameTimes;
+use crate::records::statistics::{FrameTimes, ms};
 use crate::records::turns::Turns;
 use crate::sink::{Session, Step};
 use skiagraph_gpu::{ExecuteError, Executor, Provider};
@@ -94,7 +94,7 @@ impl MeasureContext<'_> {
         step: &Step,
     ) -> Result<Judged, Stop> {
         let session = self.session;
-        let mut executor = frame::executor(session, plan, provider)?;
+        let mut executor = Executor::on(session.gpu, plan, provider)?;
         frame::grow(session, &mut executor, provider)?;
         let plan = executor.plan();
         let (memory_bytes, saved_bytes) = (plan.memory_bytes(), plan.saved_bytes());

@@ -7,15 +7,10 @@ use crate::measuring::ground_truth::GroundTruthFrames;
 use crate::records::results::Answer;
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Sequence, SequenceFrame};
+use crate::records::statistics::ms;
 use skiagraph_reference::{
     BlockerCounts, EdgeDistances, Graded, JudgedPixels, Shimmer, Statistics, shimmer::shimmer,
 };
-use std::time::Duration;
-
-/// Milliseconds of a time.
-pub fn ms(time: Duration) -> f64 {
-    time.as_secs_f64() * 1e3
-}
 
 /// The times of a frame; `has_gpu` is false if GPU times cannot be trusted.
 pub fn cost(frame: &TimedFrame, has_gpu: bool) -> FrameCost {

@@ -351,19 +351,17 @@ impl Times {
     /// # Errors
     /// [`CompareError::Interrupted`] if there are no frames.
     pub fn new(timed: &[TimedFrame], has_gpu: bool) -> Result<Self, CompareError> {
-        let samples = Samples::new(timed);
-        let frame = FrameTimes::new(&samples.gpu, samples.upkeep.as_deref(), &samples.wall);
-        let mut frame = frame.ok_or_else(CompareError::interrupted)?;
-        if !has_gpu {
-            frame.without_gpu();
-        }
+        let samples = Samples::new(timed, has_gpu);
+        let frame = FrameTimes::new(samples.gpu, samples.upkeep, samples.wall);
         let pass = |PassSamples { name, gpu, cpu }| Pass {
             name,
-            gpu_ms: Spread::from_all(&gpu).filter(|_| has_gpu),
-            cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
+            gpu_ms: gpu.and_then(Spread::new),
+            cpu_ms: Spread::new(cpu).expect("a pass is named by its first sample"),
         };
-        let passes = samples.passes.into_iter().map(pass).collect();
-        Ok(Self { passes, frame })
+        Ok(Self {
+            frame: frame.ok_or_else(CompareError::interrupted)?,
+            passes: samples.passes.into_iter().map(pass).collect(),
+        })
     }
 }
 

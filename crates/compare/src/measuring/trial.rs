@@ -134,7 +134,7 @@ impl<'a> Trials<'a> {
         if self.left < 1 + self.views.len() as u64 {
             return Ok(Trial::Ended);
         }
-        let set = self.set(params);
+        let set = self.method.with(params.clone());
         if self.has_idle_param(&set) {
             return Ok(Trial::Same);
         }
@@ -158,15 +158,6 @@ impl<'a> Trials<'a> {
         Ok(())
     }
 
-    /// The method with `params`.
-    fn set(&self, params: &ParamValues) -> Method {
-        let Method {
-            preset, features, ..
-        } = self.method;
-        let set = Method::on(preset.clone(), params.clone(), self.viewport, *features);
-        set.named(&self.method.name)
-    }
-
     /// True if the method with `params` keeps to the limit of memory under each kind of light, or
     /// if there is none.
     ///
@@ -176,7 +167,7 @@ impl<'a> Trials<'a> {
         let Some(most) = self.limits.budgets.memory_bytes else {
             return Ok(true);
         };
-        let set = self.set(params);
+        let set = self.method.with(params.clone());
         for view in self.one_of_each_light() {
             self.provider.set_view(&view.view, self.viewport);
             let Some(plan) = self.planned(&set) else {
@@ -200,7 +191,7 @@ impl<'a> Trials<'a> {
         let (Some(most), Some(view)) = (self.limits.budgets.frame_ms, self.views.first()) else {
             return Ok(true);
         };
-        let set = self.set(params);
+        let set = self.method.with(params.clone());
         self.provider.set_view(&view.view, self.viewport);
         let timed = self.timed(&set, &view.view);
         Ok(match attempt(self.session, &set, timed)? {
@@ -312,7 +303,7 @@ impl<'a> Trials<'a> {
                 executor.replace_graph(plan, self.provider)?;
                 executor
             }
-            None => frame::executor(self.session, plan, self.provider)?,
+            None => Executor::on(self.session.gpu, plan, self.provider)?,
         });
         Ok(true)
     }

@@ -486,7 +486,6 @@ mod tests {
     use super::*;
     use crate::records::results::{Answer, tests::sample};
     use crate::records::statistics::FrameTimes;
-    use std::time::Duration;
 
     /// `sample()` with ten frames of around so many milliseconds.
     fn timed(ms: f64) -> Results {
@@ -496,11 +495,9 @@ mod tests {
             .iter_mut()
             .filter_map(|run| run.measured.as_mut())
         {
-            let frame =
-                |turn: u32| Duration::from_secs_f64((ms + f64::from(turn % 3) * 0.01) / 1e3);
-            let frames: Vec<Duration> = (0..10).map(frame).collect();
-            let gpu: Vec<Option<Duration>> = frames.iter().copied().map(Some).collect();
-            measured.frame = FrameTimes::new(&gpu, None, &frames).unwrap();
+            let frame = |turn: u32| ms + f64::from(turn % 3) * 0.01;
+            let frames: Vec<f64> = (0..10).map(frame).collect();
+            measured.frame = FrameTimes::new(Some(frames.clone()), None, frames).unwrap();
         }
         results
     }

@@ -2,13 +2,12 @@
 //!
 //! ```
 //! use skiagraph_compare::records::statistics::{Series, Spread};
-//! use std::time::Duration;
 //!
-//! let times = [7, 5, 6, 20].map(Duration::from_millis);
-//! let spread = Spread::new(&times).ok_or("no samples")?;
+//! let times = [7.0, 5.0, 6.0, 20.0];
+//! let spread = Spread::new(times).ok_or("no samples")?;
 //! assert_eq!((spread.min, spread.median, spread.p95), (5.0, 6.5, 20.0));
 //! assert_eq!([spread.q1, spread.q3], [5.75, 10.25]);
-//! assert_eq!(Series::from_times(&times).ok_or("no samples")?.max, 20.0);
+//! assert_eq!(Series::new(times.to_vec()).ok_or("no samples")?.max, 20.0);
 //! # Ok::<(), &str>(())
 //! ```
 
@@ -57,21 +56,16 @@ pub struct FrameTimes {
 
 impl FrameTimes {
     /// Creates the times of frames from the GPU time, the CPU time of the upkeep, and the wall time
-    /// of each frame, in order. GPU times are left out if any is missing. Returns `None` if there
-    /// are no frames.
+    /// of each frame in milliseconds, in order. Returns `None` if there are no frames.
     pub fn new(
-        gpu: &[Option<Duration>],
-        cpu: Option<&[Duration]>,
-        wall: &[Duration],
+        gpu_frames: Option<Vec<f64>>,
+        cpu_frames: Option<Vec<f64>>,
+        wall_frames: Vec<f64>,
     ) -> Option<Self> {
-        let gpu_frames = all(gpu)
-            .map(|gpu| in_ms(&gpu))
-            .filter(|gpu| !gpu.is_empty());
-        let (cpu_frames, wall_frames) = (cpu.map(in_ms), in_ms(wall));
-        let spread = |frames: &[f64]| Spread::from_ms(frames.iter().copied());
+        let spread = |frames: &Vec<f64>| Spread::new(frames.iter().copied());
         Some(Self {
-            gpu_ms: gpu_frames.as_deref().and_then(spread),
-            cpu_ms: cpu_frames.as_deref().and_then(spread),
+            gpu_ms: gpu_frames.as_ref().and_then(spread),
+            cpu_ms: cpu_frames.as_ref().and_then(spread),
             wall_ms: spread(&wall_frames)?,
             gpu_frames,
             cpu_frames,
@@ -96,24 +90,14 @@ impl FrameTimes {
 
     /// Returns the order statistics of [`costs`](Self::costs); `None` if GPU times are missing.
     pub fn spread(&self, by_wall: bool) -> Option<Spread> {
-        Spread::from_ms(self.costs(by_wall)?.into_iter())
-    }
-
-    /// Sets the GPU times to `None`.
-    pub fn without_gpu(&mut self) {
-        (self.gpu_ms, self.gpu_frames) = (None, None);
+        Spread::new(self.costs(by_wall)?)
     }
 }
 
 impl Spread {
-    /// Returns the order statistics of samples; `None` if there are no samples.
-    pub fn new(samples: &[Duration]) -> Option<Self> {
-        Self::from_ms(in_ms(samples).into_iter())
-    }
-
     /// Returns the order statistics of samples in milliseconds; `None` if there are no samples.
-    pub fn from_ms(samples: impl Iterator<Item = f64>) -> Option<Self> {
-        let mut ms: Vec<f64> = samples.collect();
+    pub fn new(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut ms: Vec<f64> = samples.into_iter().collect();
         ms.sort_by(f64::total_cmp);
         let last = ms.len().checked_sub(1)?;
         let rank = (ms.len() as f64 * 0.95).ceil() as usize;
@@ -125,12 +109,6 @@ impl Spread {
             q3,
             p95: ms[rank.clamp(1, ms.len()) - 1],
         })
-    }
-
-    /// Returns the order statistics of samples; `None` if any sample is missing, or if there are no
-    /// samples.
-    pub fn from_all(samples: &[Option<Duration>]) -> Option<Self> {
-        Self::new(&all(samples)?)
     }
 }
 
@@ -144,16 +122,9 @@ fn quartiles(sorted: &[f64]) -> [f64; 2] {
     })
 }
 
-/// Converts times into milliseconds, exact to the nanosecond.
-pub fn in_ms(times: &[Duration]) -> Vec<f64> {
-    times
-        .iter()
-        .map(|time| time.as_nanos() as f64 / 1e6)
-        .collect()
-}
-
-fn all(samples: &[Option<Duration>]) -> Option<Vec<Duration>> {
-    samples.iter().copied().collect()
+/// Returns the milliseconds of a time, exact to the nanosecond.
+pub fn ms(time: Duration) -> f64 {
+    time.as_nanos() as f64 / 1e6
 }
 
 /// Times in milliseconds, one per frame, and their order statistics.
@@ -174,7 +145,7 @@ pub struct Series {
 impl Series {
     /// Creates a series of times in milliseconds; `None` if there are no samples.
     pub fn new(samples: Vec<f64>) -> Option<Self> {
-        let spread = Spread::from_ms(samples.iter().copied())?;
+        let spread = Spread::new(samples.iter().copied())?;
         let Spread {
             min, median, p95, ..
         } = spread;
@@ -185,16 +156,6 @@ impl Series {
             max: samples.iter().copied().reduce(f64::max)?,
             samples,
         })
-    }
-
-    /// Creates a series of times; `None` if there are no samples.
-    pub fn from_times(times: &[Duration]) -> Option<Self> {
-        Self::new(in_ms(times))
-    }
-
-    /// Creates a series of times; `None` if any sample is missing, or if there are no samples.
-    pub fn from_all(times: &[Option<Duration>]) -> Option<Self> {
-        Self::from_times(&all(times)?)
     }
 
     /// Returns the first and third quartile of the samples, each interpolated linearly between the
@@ -216,14 +177,7 @@ pub(crate) mod tests {
 
     #[test]
     fn spreads_are_order_statistics() {
-        let ms = |list: &[u64]| {
-            Spread::new(
-                &list
-                    .iter()
-                    .map(|&ms| Duration::from_millis(ms))
-                    .collect::<Vec<_>>(),
-            )
-        };
+        let ms = |list: &[u64]| Spread::new(list.iter().map(|&ms| ms as f64));
         assert_eq!(ms(&[]), None);
         assert_eq!(
             ms(&[7]),
@@ -256,7 +210,6 @@ pub(crate) mod tests {
                 p95: 95.0
             })
         );
-        assert_eq!(Spread::from_all(&[Some(Duration::ZERO), None]), None);
     }
 
     #[test]

@@ -101,7 +101,11 @@ impl Spread {
         ms.sort_by(f64::total_cmp);
         let last = ms.len().checked_sub(1)?;
         let rank = (ms.len() as f64 * 0.95).ceil() as usize;
-        let [q1, q3] = quartiles(&ms);
+        let [q1, q3] = [0.25, 0.75].map(|share| {
+            let place = share * last as f64;
+            let [below, above] = [place.floor(), place.ceil()].map(|place| ms[place as usize]);
+            below + (above - below) * place.fract()
+        });
         Some(Self {
             min: ms[0],
             q1,
@@ -110,16 +114,6 @@ impl Spread {
             p95: ms[rank.clamp(1, ms.len()) - 1],
         })
     }
-}
-
-/// First and third quartile of sorted samples, linear between those beside them.
-fn quartiles(sorted: &[f64]) -> [f64; 2] {
-    [0.25, 0.75].map(|share| {
-        let place = share * sorted.len().saturating_sub(1) as f64;
-        let at = |index: f64| sorted.get(index as usize).copied().unwrap_or(f64::NAN);
-        let (below, above) = (at(place.floor()), at(place.ceil()));
-        below + (above - below) * place.fract()
-    })
 }
 
 /// Returns the milliseconds of a time, exact to the nanosecond.
@@ -161,9 +155,8 @@ impl Series {
     /// Returns the first and third quartile of the samples, each interpolated linearly between the
     /// two nearest samples.
     pub fn quartiles(&self) -> [f64; 2] {
-        let mut sorted = self.samples.clone();
-        sorted.sort_by(f64::total_cmp);
-        quartiles(&sorted)
+        let spread = Spread::new(self.samples.iter().copied()).unwrap_or_default();
+        [spread.q1, spread.q3]
     }
 }
 

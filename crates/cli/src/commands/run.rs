@@ -36,11 +36,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     }
 
     let is_sequence = args.frames.is_some() || args.path.is_some();
-    let files: Vec<Save> = if is_sequence {
-        saves.iter().map(|save| of_frame(save, 0)).collect()
-    } else {
-        saves.clone()
-    };
+    let files = saves.iter().map(|save| of_frame(save, 0, is_sequence));
+    let files: Vec<Save> = files.collect();
     let name = |save: &Save| format!("--save {}", save.capture.name());
     let files = files.iter().map(|save| (name(save), save.file.as_path()));
     check_writable(&files.collect::<Vec<_>>())?;

@@ -18,12 +18,13 @@ use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Scene, View};
 
-/// Returns `save` with the numbered file of a frame: `v.0003.png` for `v.png` and index 3.
-pub fn of_frame(save: &Save, index: usize) -> Save {
-    Save {
-        file: numbered(&save.file, index),
-        ..save.clone()
+/// Returns `save` with the file of a frame; a numbered one is `v.0003.png` for `v.png` and index 3.
+pub fn of_frame(save: &Save, index: usize, is_numbered: bool) -> Save {
+    let mut save = save.clone();
+    if is_numbered {
+        save.file = numbered(&save.file, index);
     }
+    save
 }
 
 /// Returns the frames of the path that the arguments name, or of the only view. `None` without
@@ -116,14 +117,8 @@ pub fn record(
         let draw = |executor: &mut Executor| frame::run(session, executor, &request);
         let drawn = frame::next(&mut executor, provider, draw).map_err(failed)?;
         let contents = frame::contents(drawn.frame.0.readbacks);
-        let file = |save: &Save| {
-            if are_numbered {
-                of_frame(save, index)
-            } else {
-                save.clone()
-            }
-        };
-        let files: Vec<Save> = saves.iter().map(file).collect();
+        let files = saves.iter().map(|save| of_frame(save, index, are_numbered));
+        let files: Vec<Save> = files.collect();
         for line in write_all(&preset.name, &files, &decodings, &contents) {
             let line = line?;
             if !are_numbered {

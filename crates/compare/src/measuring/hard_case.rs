@@ -43,7 +43,7 @@ use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
 use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
-use crate::records::stress::{Case, Casters, Cell, Column, Counts, Verdict};
+use crate::records::stress::{Case, Casters, Cell, Column, Counts, OutsideBand, Verdict};
 use crate::sink::{Session, Sink};
 use itertools::Itertools;
 use skiagraph_cases::HardCase;
@@ -278,7 +278,18 @@ impl HardCaseContext<'_> {
         let (visibility, status) = (strict(&outputs, ground_truth), &outputs.status);
         let whole = Statistics::judged(&visibility, status, truth).map_err(broken)?;
         let outside = Statistics::wrong_outside_band(&visibility, status, truth);
-        let counts = Counts::new(&whole, outside.map_err(broken)?, outputs.rays);
+        let outside = outside.map_err(broken)?;
+        let counts = Counts {
+            wrong: whole.wrong,
+            outside_band: OutsideBand {
+                lit: outside.lit,
+                shadow: outside.shadow,
+                certain: outside.certain,
+            },
+            uncertain: whole.uncertain,
+            uncertain_share: whole.uncertain_share(),
+            rays: outputs.rays,
+        };
         Ok((outputs, judgement, counts))
     }
 }

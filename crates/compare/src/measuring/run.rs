@@ -12,7 +12,7 @@ use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
 use crate::measuring::sequence::{Account, cost};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Times, Turn};
+use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Turn};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
@@ -121,7 +121,7 @@ impl MeasureContext<'_> {
                 self.follow(walked, &mut executor, provider, (&mut account, step))?
             }
         };
-        let times = Times::new(&timed, self.timestamps)?;
+        let (frame, passes) = timing::times(&timed, self.timestamps)?;
         let (index, outputs, judgement) = account.worst.take().ok_or_else(|| {
             CompareError::Input(format!("the path {} has no frames", self.view.name()))
         })?;
@@ -161,8 +161,8 @@ impl MeasureContext<'_> {
             layer_jump: diagnostics.layer_jump,
             sequence: is_path.then(|| account.sequence()),
             images,
-            frame: times.frame,
-            passes: times.passes,
+            frame,
+            passes,
             ..Measured::default()
         };
         Ok(Judged {
@@ -286,8 +286,7 @@ impl MeasureContext<'_> {
             None => Kind::EveryPass,
         };
         let frames = timed.get(&kind).map_or(&[][..], Vec::as_slice);
-        let times = Times::new(frames, self.timestamps)?;
-        (measured.frame, measured.passes) = (times.frame, times.passes);
+        (measured.frame, measured.passes) = timing::times(frames, self.timestamps)?;
         measured.regimes = timing::regime_times(timed, self.timestamps)?;
         Ok(())
     }

@@ -337,32 +337,21 @@ pub fn timed_frame(
     })
 }
 
-/// Order statistics of the times of some frames, of each pass and of whole frames.
-pub struct Times {
-    /// Order statistics of the times of each pass, in the order in which the passes ran.
-    pub passes: Vec<Pass>,
-    /// Order statistics of the times of whole frames, and the time of each frame.
-    pub frame: FrameTimes,
-}
-
-impl Times {
-    /// Summarises the times of some frames; without GPU times unless `has_gpu`.
-    ///
-    /// # Errors
-    /// [`CompareError::Interrupted`] if there are no frames.
-    pub fn new(timed: &[TimedFrame], has_gpu: bool) -> Result<Self, CompareError> {
-        let samples = Samples::new(timed, has_gpu);
-        let frame = FrameTimes::new(samples.gpu, samples.upkeep, samples.wall);
-        let pass = |PassSamples { name, gpu, cpu }| Pass {
-            name,
-            gpu_ms: gpu.and_then(Spread::new),
-            cpu_ms: Spread::new(cpu).expect("a pass is named by its first sample"),
-        };
-        Ok(Self {
-            frame: frame.ok_or_else(CompareError::interrupted)?,
-            passes: samples.passes.into_iter().map(pass).collect(),
-        })
-    }
+/// Summarises the times of some frames, of whole ones and of each pass in the order in which they
+/// ran; without GPU times unless `has_gpu`.
+///
+/// # Errors
+/// [`CompareError::Interrupted`] if there are no frames.
+pub fn times(timed: &[TimedFrame], has_gpu: bool) -> Result<(FrameTimes, Vec<Pass>), CompareError> {
+    let samples = Samples::new(timed, has_gpu);
+    let frame = FrameTimes::new(samples.gpu, samples.upkeep, samples.wall);
+    let pass = |PassSamples { name, gpu, cpu }| Pass {
+        name,
+        gpu_ms: gpu.and_then(Spread::new),
+        cpu_ms: Spread::new(cpu).expect("a pass is named by its first sample"),
+    };
+    let passes = samples.passes.into_iter().map(pass).collect();
+    Ok((frame.ok_or_else(CompareError::interrupted)?, passes))
 }
 
 /// Summarises the frames of each regime; without GPU times unless `has_gpu`.
@@ -380,7 +369,7 @@ pub fn regime_times(timed: &TimedKinds, has_gpu: bool) -> Result<Vec<RegimeTimes
         uploaded.sort_unstable();
         Ok(RegimeTimes {
             regime,
-            frame: Times::new(frames, has_gpu)?.frame,
+            frame: times(frames, has_gpu)?.0,
             uploaded_bytes: uploaded
                 .get(uploaded.len() / 2)
                 .copied()

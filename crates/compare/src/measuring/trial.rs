@@ -12,7 +12,7 @@ use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::run::scene_bytes;
 use crate::measuring::search::Trial;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{self, Times};
+use crate::measuring::timing;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::records::budgets::Budgets;
 use crate::sink::Session;
@@ -223,7 +223,7 @@ impl<'a> Trials<'a> {
         let frames = FrameSequence::new(&still, self.provider.scene(), None, None)?;
         let drawn = (executor, &*self.provider);
         let timed = timing::sample(self.session, &frames, drawn, TIMED, |_| ())?;
-        let frame = Times::new(&timed, self.limits.has_timestamps)?.frame;
+        let (frame, _) = timing::times(&timed, self.limits.has_timestamps)?;
         let spread = frame.spread(false).or_else(|| frame.spread(true));
         Ok(spread.map(|spread| spread.median))
     }

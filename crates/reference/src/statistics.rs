@@ -217,6 +217,25 @@ impl Statistics {
         self.wrong.certain += u64::from(pixel.is_certain_wrong());
     }
 
+    /// Counts the wrong pixels that are not indeterminate. The arguments are those of
+    /// [`judged`](Self::judged).
+    ///
+    /// # Errors
+    /// Those of [`judged`](Self::judged).
+    pub fn wrong_outside_band(
+        visibility: &[impl Copy + Into<u32>],
+        status: &[impl Copy + Into<u32>],
+        truth: &GroundTruthPixels,
+    ) -> Result<WrongCounts, Error> {
+        let mut counts = Self::default();
+        for_each_verdict(visibility, status, truth, |pixel| {
+            if !pixel.indeterminate {
+                counts.add(pixel);
+            }
+        })?;
+        Ok(counts.wrong)
+    }
+
     /// Finds the pixels that [`WrongCounts::certain`] counts, as ascending indices into
     /// `visibility` and `status`. The arguments are those of [`judged`](Self::judged).
     ///
@@ -438,6 +457,8 @@ mod tests {
             Statistics::certain_wrong_pixels(&visibility, &status, &truth),
             Ok(vec![3, 7, 13])
         );
+        let outside = Statistics::wrong_outside_band(&visibility, &status, &truth).unwrap();
+        assert_eq!([outside.lit, outside.shadow, outside.certain], [3; 3]);
         // The same values as u32.
         let (visibility, status) = (visibility.map(u32::from), status.map(u32::from));
         assert_eq!(

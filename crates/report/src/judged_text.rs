@@ -43,18 +43,16 @@ fn short_names(pictures: &[JudgedPicture]) -> Vec<String> {
         .map(|picture| picture.file.split(['/', '\\']));
     let paths: Vec<Vec<&str>> = paths.map(Iterator::collect).collect();
     let shortest = paths.iter().map(Vec::len).min().unwrap_or_default();
-    let is_common = |part: fn(&Vec<&str>, usize) -> String, at: &usize| {
-        paths.iter().map(|path| part(path, *at)).all_equal()
+    let has_front = |at: &usize| paths.iter().map(|path| path[*at]).all_equal();
+    let has_back = |at: &usize| {
+        paths
+            .iter()
+            .map(|path| path[path.len() - 1 - at])
+            .all_equal()
     };
-    let from_front = |path: &Vec<&str>, at: usize| path[at].to_owned();
-    let from_back = |path: &Vec<&str>, at: usize| path[path.len() - 1 - at].to_owned();
-    let front = (0..shortest)
-        .take_while(|at| is_common(from_front, at))
-        .count();
+    let front = (0..shortest).take_while(has_front).count();
     let front = front.min(shortest.saturating_sub(1));
-    let back = (0..shortest - front)
-        .take_while(|at| is_common(from_back, at))
-        .count();
+    let back = (0..shortest - front).take_while(has_back).count();
     let names = |back: usize| -> Vec<String> {
         let name = |path: &Vec<&str>| path[front..(path.len() - back).max(front + 1)].join("/");
         paths.iter().map(name).collect()

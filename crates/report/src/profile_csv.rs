@@ -1,71 +1,51 @@
 //! `profile --csv`: a line for each pass and one for the whole frame of each profile.
 
 use itertools::Itertools;
-use skiagraph_compare::records::profile::{Conditions, PassProfile, Profile};
-use skiagraph_compare::records::statistics::Series;
+use skiagraph_compare::records::profile::{Line, Profile};
+use skiagraph_compare::records::results::Adapter;
 use skiagraph_compare::records::table::Table;
 
-/// A line: a pass, or the frame.
-struct Line<'a> {
-    profile: &'a Profile,
-    pass: Option<&'a PassProfile>,
-}
-
-type Column = (&'static str, fn(&Line) -> String);
+type Column = (&'static str, fn(&Profile, Line) -> String);
 
 /// In an order on which scripts rely: new ones stand at the end. Empty cells are nulls.
 #[rustfmt::skip] // A line each.
 const COLUMNS: [Column; 28] = [
-    ("program", |line| line.conditions().program.clone()),
-    ("build", |line| line.conditions().build.clone()),
-    ("date", |line| line.conditions().date.clone()),
-    ("adapter", |line| line.conditions().adapter.name.clone()),
-    ("backend", |line| line.conditions().adapter.backend.clone()),
-    ("driver", |line| line.conditions().adapter.driver.clone()),
-    ("gpu_unavailable", |line| {
-        line.conditions().adapter.gpu_unavailable.clone().unwrap_or_default()
+    ("program", |profile, _| profile.conditions.program.clone()),
+    ("build", |profile, _| profile.conditions.build.clone()),
+    ("date", |profile, _| profile.conditions.date.clone()),
+    ("adapter", |profile, _| adapter(profile).name.clone()),
+    ("backend", |profile, _| adapter(profile).backend.clone()),
+    ("driver", |profile, _| adapter(profile).driver.clone()),
+    ("gpu_unavailable", |profile, _| adapter(profile).gpu_unavailable.clone().unwrap_or_default()),
+    ("scene", |profile, _| profile.conditions.scene.name.clone()),
+    ("triangles", |profile, _| profile.conditions.scene.triangles.to_string()),
+    ("preset", |profile, _| profile.conditions.preset.clone()),
+    ("view", |profile, _| profile.conditions.view.clone()),
+    ("width", |profile, _| profile.conditions.viewport[0].to_string()),
+    ("height", |profile, _| profile.conditions.viewport[1].to_string()),
+    ("params", |profile, _| {
+        profile.conditions.params().map(|(name, value)| format!("{name}={value}")).join(" ")
     }),
-    ("scene", |line| line.conditions().scene.name.clone()),
-    ("triangles", |line| line.conditions().scene.triangles.to_string()),
-    ("preset", |line| line.conditions().preset.clone()),
-    ("view", |line| line.conditions().view.clone()),
-    ("width", |line| line.conditions().viewport[0].to_string()),
-    ("height", |line| line.conditions().viewport[1].to_string()),
-    ("params", |line| {
-        line.conditions().params().map(|(name, value)| format!("{name}={value}")).join(" ")
-    }),
-    ("frames", |line| line.profile.timed().to_string()),
-    ("warmup", |line| line.conditions().warmup.to_string()),
-    ("pass", |line| line.pass.map_or(String::new(), |pass| pass.name.clone())),
-    ("kind", |line| line.pass.map_or("frame".into(), |pass| pass.kind.clone())),
-    ("gpu_min_ms", |line| six_digits(line.gpu().map(|gpu| gpu.min))),
-    ("gpu_median_ms", |line| six_digits(line.gpu().map(|gpu| gpu.median))),
-    ("gpu_p95_ms", |line| six_digits(line.gpu().map(|gpu| gpu.p95))),
-    ("gpu_max_ms", |line| six_digits(line.gpu().map(|gpu| gpu.max))),
-    ("gpu_share", |line| six_digits(line.pass.and_then(|pass| pass.share))),
-    ("cpu_min_ms", |line| six_digits(Some(line.cpu().min))),
-    ("cpu_median_ms", |line| six_digits(Some(line.cpu().median))),
-    ("cpu_p95_ms", |line| six_digits(Some(line.cpu().p95))),
-    ("cpu_max_ms", |line| six_digits(Some(line.cpu().max))),
-    ("wall_median_ms", |line| {
-        six_digits(line.pass.is_none().then_some(line.profile.frame.wall_ms.median))
+    ("frames", |profile, _| profile.timed().to_string()),
+    ("warmup", |profile, _| profile.conditions.warmup.to_string()),
+    ("pass", |_, (pass, ..)| pass.map_or(String::new(), |pass| pass.name.clone())),
+    ("kind", |_, (pass, ..)| pass.map_or("frame".into(), |pass| pass.kind.clone())),
+    ("gpu_min_ms", |_, (_, gpu, _)| six_digits(gpu.map(|gpu| gpu.min))),
+    ("gpu_median_ms", |_, (_, gpu, _)| six_digits(gpu.map(|gpu| gpu.median))),
+    ("gpu_p95_ms", |_, (_, gpu, _)| six_digits(gpu.map(|gpu| gpu.p95))),
+    ("gpu_max_ms", |_, (_, gpu, _)| six_digits(gpu.map(|gpu| gpu.max))),
+    ("gpu_share", |_, (pass, ..)| six_digits(pass.and_then(|pass| pass.share))),
+    ("cpu_min_ms", |_, (.., cpu)| six_digits(Some(cpu.min))),
+    ("cpu_median_ms", |_, (.., cpu)| six_digits(Some(cpu.median))),
+    ("cpu_p95_ms", |_, (.., cpu)| six_digits(Some(cpu.p95))),
+    ("cpu_max_ms", |_, (.., cpu)| six_digits(Some(cpu.max))),
+    ("wall_median_ms", |profile, (pass, ..)| {
+        six_digits(pass.is_none().then_some(profile.frame.wall_ms.median))
     }),
 ];
 
-impl Line<'_> {
-    fn conditions(&self) -> &Conditions {
-        &self.profile.conditions
-    }
-
-    fn gpu(&self) -> Option<&Series> {
-        let frame = self.profile.frame.gpu_ms.as_ref();
-        self.pass.map_or(frame, |pass| pass.gpu_ms.as_ref())
-    }
-
-    fn cpu(&self) -> &Series {
-        self.pass
-            .map_or(&self.profile.frame.cpu_ms, |pass| &pass.cpu_ms)
-    }
+fn adapter(profile: &Profile) -> &Adapter {
+    &profile.conditions.adapter
 }
 
 fn six_digits(number: Option<f64>) -> String {
@@ -79,11 +59,14 @@ fn six_digits(number: Option<f64>) -> String {
 /// # Errors
 /// The errors of [`Table::csv`].
 pub fn to_csv(profiles: &[Profile]) -> Result<String, ::csv::Error> {
-    let lines = profiles.iter().flat_map(|profile| {
-        let passes = profile.passes.iter().map(Some).chain([None]);
-        passes.map(move |pass| Line { profile, pass })
+    let lines = profiles.iter();
+    let lines = lines.flat_map(|profile| profile.lines().map(move |line| (profile, line)));
+    let rows = lines.map(|(profile, line)| {
+        COLUMNS
+            .iter()
+            .map(|(_, cell)| cell(profile, line))
+            .collect()
     });
-    let rows = lines.map(|line| COLUMNS.iter().map(|(_, cell)| cell(&line)).collect());
     Table::new(COLUMNS.map(|(name, _)| name), 0, rows).csv()
 }
 

@@ -1,11 +1,11 @@
 //! Writes a profile as text: conditions, passes, memory, and a comparison with an older profile.
 
 use crate::notes::untimed;
-use crate::table::terminal;
+use crate::table::{or_dash, terminal};
 use skiagraph_compare::graphs::variants::MAP_SIZE;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::baseline::{Comparison, Difference, MIN_FRAMES, Ratio, Verdict};
-use skiagraph_compare::records::profile::{Conditions, Material, Profile};
+use skiagraph_compare::records::profile::{Conditions, Line, Material, PassProfile, Profile};
 use skiagraph_compare::records::statistics::Series;
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, frames, ms, size};
@@ -35,6 +35,13 @@ pub fn report(profile: &Profile) -> String {
         text.push_str(&comparison(baseline, profile));
     }
     text
+}
+
+/// Name of the line of whole frames.
+const WHOLE: &str = "whole frame";
+
+fn name_of(pass: Option<&PassProfile>) -> &str {
+    pass.map_or(WHOLE, |pass| &pass.name)
 }
 
 /// Returns several profiles as text: a table for each method, with a row for each pass and a column
@@ -71,40 +78,34 @@ fn matrix(method: &str, profiles: &[&Profile]) -> String {
     let heads = [method.to_owned()].into_iter();
     let heads = heads.chain(profiles.iter().map(head));
     let passes = profiles.iter().flat_map(|profile| &profile.passes);
-    let passes = unique(passes.map(|pass| pass.name.as_str()));
-    let cell = |series: Option<&Series>| series.map_or("–".into(), |series| ms(series.median));
-    let row = |name: &str, pick: &dyn Fn(&Profile) -> Option<&Series>| -> Vec<String> {
-        let cells = profiles.iter().map(|profile| cell(pick(profile)));
+    let names = unique(passes.map(|pass| pass.name.as_str())).into_iter();
+    let row = |name: &str| -> Vec<String> {
+        let cells = profiles.iter().map(|profile| {
+            let line = profile.lines().find(|(pass, ..)| name_of(*pass) == name);
+            or_dash(line.and_then(|(_, gpu, _)| gpu), |gpu| ms(gpu.median))
+        });
         [name.to_owned()].into_iter().chain(cells).collect()
     };
-    let rows = passes.into_iter().map(|name| {
-        row(name, &|profile| {
-            let pass = profile.passes.iter().find(|pass| pass.name == name);
-            pass.and_then(|pass| pass.gpu_ms.as_ref())
-        })
-    });
-    let whole = row("whole frame", &|profile| profile.frame.gpu_ms.as_ref());
-    terminal(&Table::new(heads, 1, rows.chain([whole])))
+    terminal(&Table::new(heads, 1, names.chain([WHOLE]).map(row)))
 }
 
 fn times(profile: &Profile) -> String {
-    let rows = profile.passes.iter().map(|pass| {
-        let share = pass.share.map(|share| format!("{:.1} %", share * 100.0));
-        let share = share.unwrap_or("–".into());
-        row(
-            [&pass.name, &pass.kind, &share],
-            pass.gpu_ms.as_ref(),
-            &pass.cpu_ms,
-        )
-    });
-    let frame = &profile.frame;
-    let whole = row(
-        ["whole frame", "", ""],
-        frame.gpu_ms.as_ref(),
-        &frame.cpu_ms,
-    );
+    let row = |(pass, gpu, cpu): Line| {
+        let gpu = |pick: fn(&Series) -> f64| or_dash(gpu, |series| ms(pick(series)));
+        let share = |share| format!("{:.1} %", share * 100.0);
+        vec![
+            name_of(pass).into(),
+            pass.map_or(String::new(), |pass| pass.kind.clone()),
+            gpu(|series| series.min),
+            gpu(|series| series.median),
+            gpu(|series| series.p95),
+            gpu(|series| series.max),
+            pass.map_or(String::new(), |pass| or_dash(pass.share, share)),
+            ms(cpu.median),
+        ]
+    };
     let heads = "pass|kind|GPU min|median|p95|max|of frame|CPU median".split('|');
-    terminal(&Table::new(heads, 2, rows.chain([whole])))
+    terminal(&Table::new(heads, 2, profile.lines().map(row)))
 }
 
 fn notes(profile: &Profile) -> impl Iterator<Item = String> {
@@ -159,20 +160,6 @@ fn conditions(profile: &Profile) -> String {
     )
 }
 
-fn row([name, kind, share]: [&str; 3], gpu: Option<&Series>, cpu: &Series) -> Vec<String> {
-    let gpu = |pick: fn(&Series) -> f64| gpu.map_or("–".into(), |series| ms(pick(series)));
-    vec![
-        name.into(),
-        kind.into(),
-        gpu(|series| series.min),
-        gpu(|series| series.median),
-        gpu(|series| series.p95),
-        gpu(|series| series.max),
-        share.into(),
-        ms(cpu.median),
-    ]
-}
-
 fn memory(materials: &[Material]) -> String {
     let row = |material: &Material| {
         let mut size = match material.format {
@@ -208,16 +195,14 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
         }
     }
     let (passes, frame) = (&baseline.passes, &baseline.frame);
-    let gpu = passes
-        .iter()
-        .map(|pass| ratio_row("GPU", &pass.name, pass.gpu.as_ref()));
-    let cpu = passes
-        .iter()
-        .map(|pass| ratio_row("CPU", &pass.name, Some(&pass.cpu)));
-    let whole = |clock, ratio| [ratio_row(clock, "whole frame", ratio)];
-    let gpu = gpu.chain(whole("GPU", frame.gpu.as_ref()));
-    let cpu = cpu.chain(whole("CPU", Some(&frame.cpu)));
-    let rows = gpu.chain(cpu).chain(whole("wall", Some(&frame.wall)));
+    let passes = passes.iter().map(|pass| (&*pass.name, pass.gpu, pass.cpu));
+    let lines = passes.chain([(WHOLE, frame.gpu, frame.cpu)]);
+    let gpu = lines
+        .clone()
+        .map(|(name, gpu, _)| ratio_row("GPU", name, gpu));
+    let cpu = lines.map(|(name, _, cpu)| ratio_row("CPU", name, Some(cpu)));
+    let wall = ratio_row("wall", WHOLE, Some(frame.wall));
+    let rows = gpu.chain(cpu).chain([wall]);
     let heads = "pass|clock|then|now|now / then|its spread|".split('|');
     text += &format!("{}\n", terminal(&Table::new(heads, 2, rows)));
     if baseline.frame.gpu.is_none() {
@@ -240,24 +225,26 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
     text
 }
 
-fn ratio_row(clock: &str, name: &str, ratio: Option<&Ratio>) -> Vec<String> {
+fn ratio_row(clock: &str, name: &str, ratio: Option<Ratio>) -> Vec<String> {
     let mut row = vec![name.to_owned(), clock.to_owned()];
-    match ratio {
-        Some(ratio) => row.extend([
-            ms(ratio.old_ms),
-            ms(ratio.new_ms),
-            format!("{:.3}", ratio.ratio),
-            format!("{:.3} … {:.3}", ratio.low, ratio.high),
-            match ratio.verdict {
+    row.extend(ratio.map_or(
+        ["–", "–", "–", "–", ""].map(str::to_owned),
+        |ratio| {
+            let verdict = match ratio.verdict {
                 Verdict::Faster => "faster",
                 Verdict::Slower => "slower",
                 Verdict::Same => "same",
                 Verdict::TooFewFrames => "too few frames",
-            }
-            .to_owned(),
-        ]),
-        None => row.extend(["–", "–", "–", "–", ""].map(str::to_owned)),
-    }
+            };
+            [
+                ms(ratio.old_ms),
+                ms(ratio.new_ms),
+                format!("{:.3}", ratio.ratio),
+                format!("{:.3} … {:.3}", ratio.low, ratio.high),
+                verdict.to_owned(),
+            ]
+        },
+    ));
     row
 }
 

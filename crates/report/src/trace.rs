@@ -25,11 +25,12 @@ pub fn trace(conditions: &Conditions, frames: &[TimedFrame]) -> String {
     let is_trusted = conditions.adapter.gpu_unavailable.is_none();
     let mut tracks = 0;
     let mut gpu_free = Duration::ZERO;
+    let first = frames.first().map_or(Duration::ZERO, |frame| frame.began);
     for (index, frame) in frames.iter().enumerate() {
         let name = format!("frame {index}");
-        let span = [frame.began, frame.wall];
+        let mut at = frame.began.saturating_sub(first);
+        let span = [at, frame.wall];
         events.push(slice(&name, "frame", FRAMES, span, index));
-        let mut at = frame.began;
         for pass in &frame.timing.passes {
             events.push(slice(&pass.name, "cpu", ENCODING, [at, pass.cpu], index));
             at += pass.cpu;

@@ -593,7 +593,6 @@ mod tests {
     use skiagraph_compare::records::figure::Clocks;
     use skiagraph_compare::records::results::{Results, Run};
     use skiagraph_compare::records::{statistics::FrameTimes, tuned::Tuned};
-    use std::time::Duration;
 
     /// A run of 100,000 pixels that face the light: method, wrong pixels outside the band, ms of a
     /// frame while the light moves, and while the camera moves; without these if they are equal.
@@ -603,9 +602,7 @@ mod tests {
         let measured = run.measured.as_mut().unwrap();
         (measured.wrong.total, measured.wrong.in_band) = (wrong + 6, 6);
         let set = |times: &mut FrameTimes, ms: f64| {
-            let gpu = [Some(Duration::from_secs_f64(ms / 1e3)); 10];
-            let wall = [Duration::from_secs_f64(ms / 1e3); 10];
-            *times = FrameTimes::new(&gpu, None, &wall).unwrap();
+            *times = FrameTimes::new(Some(vec![ms; 10]), None, vec![ms; 10]).unwrap();
         };
         set(&mut measured.frame, frame);
         if kept == frame {

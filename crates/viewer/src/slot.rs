@@ -10,6 +10,7 @@ use skiagraph_compare::graphs::planning::Capabilities;
 use skiagraph_compare::graphs::preset::{self, Preset, VISIBILITY};
 use skiagraph_compare::measuring::frame;
 use skiagraph_compare::pictures::{colours::ClipPlanes, save::Decoding};
+use skiagraph_compare::records::statistics::ms;
 use skiagraph_compare::sink::Session;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport};
 use skiagraph_graph::{Graph, LinkedPass, Origin, Plan, ResourceKind, Sources};
@@ -171,7 +172,7 @@ impl Slot {
                 Some(executor) => {
                     executor.replace_graph(plan, provider)?;
                 }
-                None => self.executor = Some(frame::executor(session, plan, provider)?),
+                None => self.executor = Some(Executor::on(session.gpu, plan, provider)?),
             }
         }
         self.planned = Some(next.clone());
@@ -287,7 +288,6 @@ fn snapshot(
     wall: Duration,
     planes: ClipPlanes,
 ) -> MethodSnapshot {
-    let ms = |time: Duration| time.as_secs_f64() * 1e3;
     let timing = report.timing.as_ref();
     let gpu_of = |name: &str| {
         let mut passes = timing?.passes.iter();

@@ -311,7 +311,7 @@ impl Stage {
         let is_stale = |(_, planned): &(_, [u32; 2])| *planned != size;
         if self.primitives.as_ref().is_none_or(is_stale) {
             let plan = PrimaryVisibility::load(sources)?.plan(session, size, provider)?;
-            let executor = frame::executor(session, plan, provider);
+            let executor = Executor::on(session.gpu, plan, provider);
             self.primitives = Some((executor.map_err(|error| wrong(explain(&error)))?, size));
         }
         let Some((executor, _)) = &mut self.primitives else {

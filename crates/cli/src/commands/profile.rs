@@ -51,40 +51,36 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let mut profiles: Vec<Profile> = Vec::new();
     let mut timed = Vec::new();
     let (mut unavailable, mut mistakes) = (Vec::new(), Vec::new());
-    for method in methods {
-        let method = method.settled(gpu.device.features());
-        for view in &views {
-            for &viewport in &viewports {
-                let method = method.at(viewport);
-                let mut profile;
-                let count = [args.warmup, args.frames];
-                (profile, timed) = match profiling::profile(session, count, &method, &scene, view) {
-                    Err(CompareError::Interrupted { .. })
-                        if !profiles.is_empty() && stop::raised() =>
-                    {
-                        return interrupted(args, &profiles, planned);
-                    }
-                    Err(error) if planned > 1 && !error.ends_all() => {
-                        let (reason, is_mistake) = refusal(&error);
-                        let place = conditions(&method, &view.name, viewport);
-                        unavailable.push(format!("n/a: {}, {place}: {reason}\n", method.name));
-                        let text = format!("`{}` cannot run: {reason}", method.name);
-                        mistakes.extend(is_mistake.then_some(text));
-                        continue;
-                    }
-                    measured => measured?,
-                };
-                let old = old.as_ref();
-                profile.baseline = old.map(|(path, old)| profile.against(path, old));
-                let is_whole = timed.len() >= args.frames as usize;
-                profiles.push(profile);
-                if is_whole {
-                    let (args, profiles) = (args.clone(), profiles.clone());
-                    interrupt::on_end_in_the_middle(move || interrupted(&args, &profiles, planned));
-                } else if stop::raised() && planned > 1 {
-                    return interrupted(args, &profiles, planned);
-                }
+    let settled = methods
+        .into_iter()
+        .map(|method| method.settled(gpu.device.features()));
+    let places = views.iter().cartesian_product(viewports);
+    for (method, (view, viewport)) in settled.collect_vec().iter().cartesian_product(places) {
+        let (method, count) = (method.at(viewport), [args.warmup, args.frames]);
+        let mut profile;
+        (profile, timed) = match profiling::profile(session, count, &method, &scene, view) {
+            Err(CompareError::Interrupted { .. }) if !profiles.is_empty() && stop::raised() => {
+                return interrupted(args, &profiles, planned);
             }
+            Err(error) if planned > 1 && !error.ends_all() => {
+                let (reason, is_mistake) = refusal(&error);
+                let place = conditions(&method, &view.name, viewport);
+                unavailable.push(format!("n/a: {}, {place}: {reason}\n", method.name));
+                let text = format!("`{}` cannot run: {reason}", method.name);
+                mistakes.extend(is_mistake.then_some(text));
+                continue;
+            }
+            measured => measured?,
+        };
+        let old = old.as_ref();
+        profile.baseline = old.map(|(path, old)| profile.against(path, old));
+        let is_whole = timed.len() >= args.frames as usize;
+        profiles.push(profile);
+        if is_whole {
+            let (args, profiles) = (args.clone(), profiles.clone());
+            interrupt::on_end_in_the_middle(move || interrupted(&args, &profiles, planned));
+        } else if stop::raised() && planned > 1 {
+            return interrupted(args, &profiles, planned);
         }
     }
     if profiles.is_empty() {

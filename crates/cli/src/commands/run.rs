@@ -10,11 +10,10 @@ use skiagraph_compare::files::write::check_writable;
 use skiagraph_compare::graphs::idle_params::IdleParams;
 use skiagraph_compare::graphs::planning::Capabilities;
 use skiagraph_compare::graphs::preset;
-use skiagraph_compare::measuring::{device, frame, poison};
-use skiagraph_compare::pictures::colours::ClipPlanes;
-use skiagraph_compare::pictures::save::{
-    Save, captures, check_encodings, decodings, names, write_all,
-};
+use skiagraph_compare::measuring::frame_sequence::FrameSequence;
+use skiagraph_compare::measuring::view_or_path::ViewOrPath;
+use skiagraph_compare::measuring::{device, poison};
+use skiagraph_compare::pictures::save::{Save, captures, check_encodings};
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::wording::bytes;
 use skiagraph_graph::Plan;
@@ -37,11 +36,8 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     }
 
     let is_sequence = args.frames.is_some() || args.path.is_some();
-    let files: Vec<Save> = if is_sequence {
-        saves.iter().map(|save| of_frame(save, 0)).collect()
-    } else {
-        saves.clone()
-    };
+    let files = saves.iter().map(|save| of_frame(save, 0, is_sequence));
+    let files: Vec<Save> = files.collect();
     let name = |save: &Save| format!("--save {}", save.capture.name());
     let files = files.iter().map(|save| (name(save), save.file.as_path()));
     check_writable(&files.collect::<Vec<_>>())?;
@@ -70,7 +66,6 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let plan = preset.plan(&request, &Terminal)?;
         idle.note_of(&Terminal, &preset.name, &plan, provider.light());
         check_encodings(&plan, saves)?;
-        let decodings = decodings(&plan, saves, ClipPlanes::new(view));
         print(&format!(
             "{} on {}, view {}, {}\n{}",
             preset.name,
@@ -82,17 +77,10 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let poisoned = args
             .poison
             .then(|| poison::check(session, &plan, &mut provider, preset));
-        if let Some(sequence) = &sequence {
-            record(sequence, session, (preset, plan), &mut provider, saves)?;
-        } else {
-            let (graph, names) = (&preset.name, names(saves));
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let (contents, growth) = frame::render(session, graph, plan, &mut provider, &names)?;
-            print(&growth.text())?;
-            for line in write_all(graph, saves, &decodings, &contents) {
-                print(&line?)?;
-            }
-        }
+        let still = ViewOrPath::Still(view.clone());
+        let still = FrameSequence::new(&still, &scene, None, None)?;
+        let frames = (sequence.as_ref().unwrap_or(&still), is_sequence);
+        record(frames, session, (preset, plan), &mut provider, saves)?;
         if let Some(verdict) = poisoned {
             print(&verdict?)?;
         }

@@ -1,12 +1,11 @@
-//! `skiagraph run --frames`: renders a sequence of frames to numbered files.
+//! `skiagraph run`: renders the frames of a view or path to files, numbered ones of a sequence.
 
 use crate::args::commands::RunArgs;
 use crate::error::CliError;
 use crate::scene_selection::paths;
-use crate::terminal::console::print;
-use crate::terminal::{Terminal, interrupt};
+use crate::terminal::{Terminal, console::print, interrupt};
 use skiagraph_compare::graphs::preset::Preset;
-use skiagraph_compare::measuring::frame::{self, Contents};
+use skiagraph_compare::measuring::frame;
 use skiagraph_compare::measuring::frame_sequence::FrameSequence;
 use skiagraph_compare::measuring::view_or_path::ViewOrPath;
 use skiagraph_compare::pictures::colours::ClipPlanes;
@@ -14,17 +13,18 @@ use skiagraph_compare::pictures::run_pictures::numbered;
 use skiagraph_compare::pictures::save::{Save, decodings, names, write_all};
 use skiagraph_compare::sink::{Session, Step};
 use skiagraph_compare::wording::frames;
-use skiagraph_gpu::{ExecuteError, Executor, Frame};
+use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{CameraPath, Scene, View};
 
-/// Returns `save` with the numbered file of a frame: `v.0003.png` for `v.png` and index 3.
-pub fn of_frame(save: &Save, index: usize) -> Save {
-    Save {
-        file: numbered(&save.file, index),
-        ..save.clone()
+/// Returns `save` with the file of a frame; a numbered one is `v.0003.png` for `v.png` and index 3.
+pub fn of_frame(save: &Save, index: usize, is_numbered: bool) -> Save {
+    let mut save = save.clone();
+    if is_numbered {
+        save.file = numbered(&save.file, index);
     }
+    save
 }
 
 /// Returns the frames of the path that the arguments name, or of the only view. `None` without
@@ -81,29 +81,30 @@ fn path(
     }
 }
 
-/// Renders the frames one after another, starting without earlier frames, and saves the requested
-/// materials of each. Files are written whole; Ctrl-C keeps those of finished frames.
+/// Renders the frames of a view or path one after another, starting without earlier frames, and
+/// saves the requested materials of each, in numbered files if `are_numbered`. Files are written
+/// whole; of numbered ones Ctrl-C keeps those of finished frames.
 ///
 /// # Errors
 /// If Ctrl-C stops the command, the executor fails, or a file cannot be written.
 pub fn record(
-    sequence: &FrameSequence,
+    (sequence, are_numbered): (&FrameSequence, bool),
     session: Session,
     (preset, plan): (&Preset, Plan),
     provider: &mut SceneProvider,
     saves: &[Save],
 ) -> Result<(), CliError> {
-    interrupt::install()?;
+    if are_numbered {
+        interrupt::install()?;
+    }
     let failed = |error| frame::failed(session, &preset.name, error);
     let viewport = plan.viewport();
     let (mut executor, growth) = frame::settled(session, plan, provider).map_err(failed)?;
     print(&growth.text())?;
-    let step = Step::begin(
-        &Terminal,
-        &preset.name,
-        sequence.poses.len() as u64,
-        "frames",
-    );
+    let names = names(saves);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let total = sequence.poses.len();
+    let step = are_numbered.then(|| Step::begin(&Terminal, &preset.name, total as u64, "frames"));
     for (index, pose) in sequence.poses.iter().enumerate() {
         if session.is_stopped() {
             let kept = format!("the pictures of {} are there", frames(index as u32));
@@ -111,39 +112,30 @@ pub fn record(
         }
         sequence.show(index, viewport, provider)?;
         let decodings = decodings(executor.plan(), saves, ClipPlanes::new(&pose.view));
-        let (names, seconds) = (names(saves), sequence.seconds(index));
-        let contents = frame(session, &mut executor, provider, &names, seconds).map_err(failed)?;
-        let files = saves.iter().map(|save| of_frame(save, index));
+        let request = Frame::new().with_read(&names);
+        let request = request.with_seconds(sequence.seconds(index));
+        let draw = |executor: &mut Executor| frame::run(session, executor, &request);
+        let drawn = frame::next(&mut executor, provider, draw).map_err(failed)?;
+        let contents = frame::contents(drawn.frame.0.readbacks);
+        let files = saves.iter().map(|save| of_frame(save, index, are_numbered));
         let files: Vec<Save> = files.collect();
-        write_all(&preset.name, &files, &decodings, &contents)
-            .try_for_each(|line| line.map(drop))?;
-        step.set_done(index as u64 + 1);
+        for line in write_all(&preset.name, &files, &decodings, &contents) {
+            let line = line?;
+            if !are_numbered {
+                print(&line)?;
+            }
+        }
+        step.iter().for_each(|step| step.set_done(index as u64 + 1));
     }
-    step.end();
-    let last = sequence.poses.len().saturating_sub(1);
-    for save in saves {
+    step.into_iter().for_each(Step::end);
+    for save in saves.iter().filter(|_| are_numbered) {
         let file = |index| numbered(&save.file, index);
         print(&format!(
             "  saved {}: {} to {}\n",
             save.capture.name(),
             file(0).display(),
-            file(last).display()
+            file(total.saturating_sub(1)).display()
         ))?;
     }
     Ok(())
-}
-
-fn frame(
-    session: Session,
-    executor: &mut Executor,
-    provider: &mut SceneProvider,
-    names: &[String],
-    seconds: f32,
-) -> Result<Contents, ExecuteError> {
-    executor.refresh(provider)?;
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let request = Frame::new().with_read(&names).with_seconds(seconds);
-    let (report, _) = frame::run(session, executor, &request)?;
-    executor.grow(provider)?;
-    Ok(frame::contents(report.readbacks))
 }

@@ -20,7 +20,9 @@
 use crate::error::CompareError;
 use crate::graphs::preset::Preset;
 use crate::graphs::shadow_method::Outputs;
+use skiagraph_gpu::Content;
 use skiagraph_reference::{Graded, GroundTruth, Statistics};
+use std::collections::BTreeMap;
 
 /// Result of comparing one frame of a method with the ground truth (the exact reference).
 pub struct Judgement {
@@ -65,13 +67,22 @@ impl Judgement {
     }
 }
 
-/// Compares a preset's decoded outputs with the ground truth of the same view and viewport, and
-/// returns both outputs and judgement.
+/// Compares the outputs of a preset, as they were read back, with the ground truth of the same view
+/// and viewport. `layer` is the layer that is judged of outputs with one for each light.
 ///
 /// # Errors
-/// [`CompareError::InvalidOutputs`] if `outputs` is an error, or their size or values are not those
-/// that a shadow method must have.
+/// [`CompareError::InvalidOutputs`] if an output is missing, or if size, format or values are not
+/// those that a shadow method must have.
 pub fn judged(
+    preset: &Preset,
+    (contents, layer): (BTreeMap<String, Content>, usize),
+    ground_truth: &GroundTruth,
+) -> Result<(Outputs, Judgement), CompareError> {
+    let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
+    compared(preset, outputs, ground_truth)
+}
+
+fn compared(
     preset: &Preset,
     outputs: Result<Outputs, String>,
     ground_truth: &GroundTruth,
@@ -91,7 +102,8 @@ pub fn judged(
     Ok((outputs, judgement))
 }
 
-/// Returns how wrong a preset's decoded outputs are, in pixels. Under a light [without an
+/// Returns how wrong the outputs of a preset are, in pixels; the arguments are those of [`judged`].
+/// Under a light [without an
 /// extent](crate#terms) it is the number of wrong pixels, without those whose right answer rounding
 /// to f32 may flip; under a light with an extent it is the sum of the squared errors of the pixels'
 /// [shares of light](crate#terms).
@@ -100,9 +112,10 @@ pub fn judged(
 /// Those of [`judged`].
 pub fn error(
     preset: &Preset,
-    outputs: Result<Outputs, String>,
+    (contents, layer): (BTreeMap<String, Content>, usize),
     ground_truth: &GroundTruth,
 ) -> Result<f64, CompareError> {
+    let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
     if let (Ok(decoded), None) = (&outputs, &ground_truth.area) {
         // The errors of shares, FLIP among them, would take the most of the time.
         let counts = Statistics::judged(&decoded.visibility, &decoded.status, &ground_truth.pixels);
@@ -110,7 +123,7 @@ pub fn error(
             return Ok(wrong.total.saturating_sub(wrong.in_band) as f64);
         }
     }
-    let (_, judgement) = judged(preset, outputs, ground_truth)?;
+    let (_, judgement) = compared(preset, outputs, ground_truth)?;
     let facing_light = judgement.counts.pixels.facing_light;
     Ok(judgement.graded.rmse.powi(2) * facing_light as f64)
 }
@@ -136,7 +149,7 @@ mod tests {
             };
             let pixels = pixels.clone();
             let ground_truth = GroundTruth { pixels, area };
-            let (_, judgement) = judged(&presets[0], Ok(outputs), &ground_truth).unwrap();
+            let (_, judgement) = compared(&presets[0], Ok(outputs), &ground_truth).unwrap();
             (judgement.is_hard, judgement.graded.mean_absolute_error)
         };
         let area = AreaVisibility {

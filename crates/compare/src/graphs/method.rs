@@ -110,6 +110,11 @@ impl Method {
         Self::on(self.preset.clone(), params, viewport, self.features).named(&self.name)
     }
 
+    /// Returns the method with these values of params in the place of those that it sets.
+    pub fn with(&self, params: ParamValues) -> Self {
+        Self::on(self.preset.clone(), params, self.viewport, self.features).named(&self.name)
+    }
+
     /// Plans the method for a viewport in pixels, an adapter and the scene of `provider`, with only
     /// the outputs by which methods are judged ([`Preset::judged`]). Other outputs would only cost
     /// time.

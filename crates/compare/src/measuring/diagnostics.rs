@@ -1,18 +1,16 @@
 //! Evaluates outputs that describe a method's shadow map, for figures and a picture. They are drawn
 //! after the method was timed and judged, by a plan of their own.
 
-use crate::error::{explain, is_fatal};
 use crate::graphs::faults::{is_mistake, reasons};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{MAP_LAYER, TEXEL_DENSITY};
 use crate::graphs::shadow_method::{Outputs, of_layer};
-use crate::measuring::frame::{self, Contents};
+use crate::measuring::frame;
 use crate::measuring::ground_truth::GroundTruthView;
-use crate::measuring::stop::Stop;
+use crate::measuring::stop::{Stop, attempt};
 use crate::sink::Session;
-use skiagraph_gpu::{Content, ExecuteError, Provider};
-use skiagraph_graph::Plan;
+use skiagraph_gpu::{Content, Provider};
 use skiagraph_reference::{Footprint, LayerJump, TexelsPerPixel};
 
 /// Findings about a method's shadow map on one view. Each is `None` if the graph lacks the output
@@ -56,10 +54,12 @@ pub fn diagnose(
         // This adapter may lack what they need.
         Ok(_) | Err(_) => return Ok(Diagnostics::default()),
     };
-    let mut contents = match contents(session, plan, provider) {
-        Ok(contents) => contents,
-        Err(error) if is_fatal(&error) => return Err(error.into()),
-        Err(error) => return none(&explain(&error)),
+    let drawn = plan.outputs();
+    let drawn: Vec<&str> = drawn.iter().map(|output| output.name.as_str()).collect();
+    let rendered = frame::render(session, plan, provider, &drawn).map_err(Stop::from);
+    let mut contents = match attempt(session, method, rendered)? {
+        Ok((contents, _)) => contents,
+        Err(reason) => return none(&reason),
     };
     let mut output = |name: &str| Some(of_layer(contents.remove(name)?, layer));
     let density = output(TEXEL_DENSITY).as_ref().and_then(Content::as_f32);
@@ -72,15 +72,4 @@ pub fn diagnose(
         footprints,
         layer_jump: layer_jump.transpose()?.flatten(),
     })
-}
-
-fn contents(
-    session: Session,
-    plan: Plan,
-    provider: &mut dyn Provider,
-) -> Result<Contents, ExecuteError> {
-    let outputs = plan.outputs();
-    let names: Vec<&str> = outputs.iter().map(|output| output.name.as_str()).collect();
-    let (mut executor, _) = frame::settled(session, plan, provider)?;
-    frame::read(session, &mut executor, &names)
 }

@@ -18,10 +18,12 @@
 //! ```
 
 use crate::error::CompareError;
+use crate::records::samples::Upkeep;
 use crate::sink::Session;
 use crate::wording::frames;
 use skiagraph_gpu::{Content, ExecuteError, Executor, Frame, FrameReport, Provider, Readback};
 use skiagraph_graph::Plan;
+use skiagraph_passes::{Built, SceneProvider};
 use std::{
     collections::BTreeMap,
     time::{Duration, Instant},
@@ -30,18 +32,6 @@ use std::{
 /// Contents that were read back from a frame, by the names of the outputs and of the captures
 /// (materials that the plan copies for the host after a pass).
 pub type Contents = BTreeMap<String, Content>;
-
-/// Creates the executor of a plan on the session's GPU.
-///
-/// # Errors
-/// The errors of the executor.
-pub fn executor(
-    session: Session,
-    plan: Plan,
-    provider: &mut dyn Provider,
-) -> Result<Executor, ExecuteError> {
-    Executor::on(session.gpu, plan, provider)
-}
 
 /// Creates the executor of a plan, with growing buffers (those whose size depends on the frame's
 /// content) as large as a frame needs: in smaller ones the items that do not fit are lost. Runs
@@ -55,33 +45,70 @@ pub fn settled(
     plan: Plan,
     provider: &mut dyn Provider,
 ) -> Result<(Executor, Growth), ExecuteError> {
-    let mut grown = executor(session, plan, provider)?;
+    let mut grown = Executor::on(session.gpu, plan, provider)?;
     let growth = grow(session, &mut grown, provider)?;
     if growth.frames == 0 || !grown.plan().remembers() {
         return Ok((grown, growth));
     }
     let plan = grown.plan().with(|_| ())?;
     drop(grown);
-    Ok((executor(session, plan, provider)?, growth))
+    Ok((Executor::on(session.gpu, plan, provider)?, growth))
 }
 
 /// Runs one frame of a plan with an executor from [`settled`]. Returns the contents of the outputs
 /// and captures that `names` lists, and the report of the frames that were run to find buffer
-/// sizes. `graph` is the graph's name for messages.
+/// sizes.
 ///
 /// # Errors
-/// [`CompareError::Gpu`] if the graph cannot run; an [early end](crate#terms).
+/// The errors of the executor.
 pub fn render(
     session: Session,
-    graph: &str,
     plan: Plan,
     provider: &mut dyn Provider,
     names: &[&str],
-) -> Result<(Contents, Growth), CompareError> {
-    let settled = settled(session, plan, provider);
-    settled
-        .and_then(|(mut executor, growth)| Ok((read(session, &mut executor, names)?, growth)))
-        .map_err(|error| failed(session, graph, error))
+) -> Result<(Contents, Growth), ExecuteError> {
+    let (mut executor, growth) = settled(session, plan, provider)?;
+    Ok((read(session, &mut executor, names)?, growth))
+}
+
+/// A frame that was drawn behind a change of the scene, and what the change cost.
+pub struct Drawn<T> {
+    /// The frame.
+    pub frame: T,
+    /// Work of the CPU between the change and the frame.
+    pub upkeep: Upkeep,
+    /// Resources of the scene that were made for the frame.
+    pub made: Vec<Built>,
+}
+
+/// Draws a frame as a host does it: brings what the executor reads of the scene up to date, lets
+/// `draw` run the frame, and lets buffers grow by the counts that have arrived.
+///
+/// # Errors
+/// The errors of the executor and of `draw`.
+pub fn next<T>(
+    executor: &mut Executor,
+    provider: &mut SceneProvider,
+    draw: impl FnOnce(&mut Executor) -> Result<T, ExecuteError>,
+) -> Result<Drawn<T>, ExecuteError> {
+    let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
+    let times = |built: &[Built], name| {
+        let earlier = built.iter().find(|earlier| earlier.name == name);
+        earlier.map_or(0, |earlier| earlier.times)
+    };
+    let began = Instant::now();
+    executor.refresh(provider)?;
+    let time = began.elapsed();
+    let is_new = |made: &&Built| made.times > times(&built, made.name);
+    let made = provider.built().iter().filter(is_new).copied().collect();
+    let frame = draw(executor)?;
+    executor.grow(provider)?;
+    let uploaded = provider.work().uploaded - uploaded;
+    Ok(Drawn {
+        frame,
+        upkeep: Upkeep { time, uploaded },
+        made,
+    })
 }
 
 /// Runs one frame and waits for its end. Returns the frame's report, and the time from the start of
@@ -266,7 +293,7 @@ mod tests {
         let mut provider = placeholder([16, 16], &preset[0].graph);
         let request = Capabilities::new(&gpu).request([16, 16], &provider);
         let plan = preset[0].graph.plan(&request).unwrap();
-        let mut executor = executor(session, plan, &mut provider).unwrap();
+        let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
         run(session, &mut executor, &Frame::default()).unwrap();
         gpu.device.destroy();
         let Err(lost) = run(session, &mut executor, &Frame::default()) else {

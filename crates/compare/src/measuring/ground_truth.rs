@@ -96,7 +96,8 @@ impl PrimaryVisibility {
         provider: &mut dyn Provider,
     ) -> Result<Vec<u32>, CompareError> {
         let plan = self.plan(session, viewport, provider)?;
-        let (contents, _) = frame::render(session, GBUFFER, plan, provider, &["primitive"])?;
+        let rendered = frame::render(session, plan, provider, &["primitive"]);
+        let (contents, _) = rendered.map_err(|error| frame::failed(session, GBUFFER, error))?;
         contents
             .get("primitive")
             .and_then(Content::as_u32)

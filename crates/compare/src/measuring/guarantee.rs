@@ -83,7 +83,7 @@ pub fn without_culling(method: &Method) -> Option<Method> {
     }
     let mut params = method.params.clone();
     params.insert(CULL.into(), none);
-    Some(Method::new(method.preset.clone(), params).named(&method.name))
+    Some(method.with(params))
 }
 
 /// Returns the guarantee that a method's document claims under the method's params, in the form for

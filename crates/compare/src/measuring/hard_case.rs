@@ -30,7 +30,7 @@
 
 use crate::error::{CompareError, with_causes};
 use crate::graphs::faults::reasons;
-use crate::graphs::ground_truth::{Judgement, judged};
+use crate::graphs::ground_truth::Judgement;
 use crate::graphs::light_kinds;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
@@ -43,15 +43,16 @@ use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
 use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
-use crate::records::stress::{Case, Casters, Cell, Column, Counts, Verdict};
+use crate::records::stress::{Case, Casters, Cell, Column, Counts, OutsideBand, Verdict};
 use crate::sink::{Session, Sink};
+use itertools::Itertools;
 use skiagraph_cases::HardCase;
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{
-    Class, Error, GroundTruth, GroundTruthPixels, Oracle, OracleMode, PixelCounts, Statistics,
-};
+use skiagraph_reference::{Class, Error, GroundTruth, Oracle, OracleMode, PixelCounts, Statistics};
 use skiagraph_scene::Scene;
 use std::{
+    borrow::Cow,
+    iter,
     path::Path,
     sync::{Arc, atomic::AtomicBool},
 };
@@ -96,51 +97,31 @@ impl MethodRun {
         }
     }
 
-    /// The ways in which it runs on such casters.
-    fn variants(&self, casters: Casters) -> Vec<Variant<'_>> {
-        let as_it_is = Variant {
-            method: &self.method,
-            set: None,
-            culls: self.without_culling.is_some(),
-        };
+    /// The ways in which it runs on such casters: each is a method, with the param that is set for
+    /// it besides.
+    fn variants(&self, casters: Casters) -> impl Iterator<Item = (&Method, Option<&'static str>)> {
         let is_judged = casters == Casters::Open && self.column.guarantee.is_some();
-        let judged = self.without_culling.iter().filter(|_| is_judged);
-        let judged = judged.map(|method| Variant {
-            method,
-            set: Some(WITHOUT_CULLING),
-            culls: false,
-        });
-        [as_it_is].into_iter().chain(judged).collect()
+        let judged = self.without_culling.iter().filter(move |_| is_judged);
+        let judged = judged.map(|method| (method, Some(WITHOUT_CULLING)));
+        iter::once((&self.method, None)).chain(judged)
     }
 
     /// Returns pairs of the beginning of the file names of the method's pictures of a case, and the
     /// text by which messages name the method and case. There are two pairs if the case is also run
     /// with `cull=none`, otherwise one.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
-        let variants = self.variants(case.casters).into_iter();
         let owner = format!("`{}` on `{}`", self.method.name, case.name);
+        let variants = self.variants(case.casters);
         variants
-            .map(|variant| (variant.stem(case, viewport), owner.clone()))
+            .map(|variant| (stem_of(variant, case, viewport), owner.clone()))
             .collect()
     }
 }
 
-/// A way to run a method on a case.
-struct Variant<'a> {
-    method: &'a Method,
-    /// The param set for it besides.
-    set: Option<&'static str>,
-    /// True if not all faces cast shadows.
-    culls: bool,
-}
-
-impl Variant<'_> {
-    /// Returns the beginning of the names of its pictures.
-    fn stem(&self, case: &HardCase, viewport: [u32; 2]) -> String {
-        let with_set = |set| format!("{} {set}", case.name);
-        let place = self.set.map_or(case.name.into(), with_set);
-        stem(self.method, &place, viewport)
-    }
+/// Returns the beginning of the names of a variant's pictures.
+fn stem_of((method, set): (&Method, Option<&str>), case: &HardCase, viewport: [u32; 2]) -> String {
+    let place = [case.name].into_iter().chain(set).join(" ");
+    stem(method, &place, viewport)
 }
 
 /// Hears remarks and is asked for an early end, but not of steps: a case is one.
@@ -213,33 +194,34 @@ impl HardCaseContext<'_> {
             run.column.unavailable.is_none() && light_kinds::takes(&run.method.preset.graph, light)
         };
         for run in self.methods.iter().filter(can_run) {
-            for variant in run.variants(case.casters) {
+            for (method, set) in run.variants(case.casters) {
                 self.session.check_stopped()?;
                 let mut cell = Cell {
-                    preset: variant.method.name.clone(),
-                    map_size: variant.method.map_size,
-                    set: variant.set.map(Into::into),
+                    preset: method.name.clone(),
+                    map_size: method.map_size,
+                    set: set.map(Into::into),
                     verdict: Verdict::Fail,
                     counts: None,
                     failed: None,
                     images: None,
                 };
-                match self.count(variant.method, &mut provider, ground_truth) {
-                    Ok((outputs, whole, counts)) => {
-                        let guarantee = run.column.guarantee;
+                match self.count(method, &mut provider, ground_truth) {
+                    Ok((outputs, judgement, counts)) => {
                         let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
-                        let (culls, outside) = (variant.culls, &counts.outside_band);
+                        let culls = set.is_none() && run.without_culling.is_some();
+                        let (guarantee, outside) = (run.column.guarantee, &counts.outside_band);
                         cell.verdict =
                             Verdict::new(guarantee, culls, case.casters, certain, outside);
                         cell.counts = Some(counts);
                         if let Some(folder) = self.pictures {
                             let place = PicturePlace {
-                                stem: variant.stem(hard, self.viewport),
+                                stem: stem_of((method, set), hard, self.viewport),
                                 view: hard.name,
                                 frame: None,
                             };
+                            let answers = (&outputs, &judgement);
                             let (images, files) =
-                                draw_pictures(&place, ground_truth, (&outputs, &whole), None)?;
+                                draw_pictures(&place, ground_truth, answers, None)?;
                             write_pictures(folder, &files)?;
                             cell.images = Some(images);
                         }
@@ -281,43 +263,42 @@ impl HardCaseContext<'_> {
         provider: &mut SceneProvider,
         ground_truth: &GroundTruth,
     ) -> Result<(Outputs, Judgement, Counts), CompareError> {
-        let preset = &*method.preset;
-        let plan = method.plan(self.viewport, Capabilities::new(self.session.gpu), provider);
+        let (session, preset, truth) = (self.session, &*method.preset, &ground_truth.pixels);
+        let plan = method.plan(self.viewport, Capabilities::new(session.gpu), provider);
         let plan = plan.map_err(|faults| CompareError::Input(reasons(faults.iter())))?;
-        let names = preset.judged();
-        // A case has one light.
-        let (truth, layer) = (&ground_truth.pixels, 0);
-        let judge = |contents| {
-            let outputs = Outputs::from_contents(contents, layer, truth);
-            judged(preset, outputs, ground_truth)
-        };
-        let (outputs, judgement) = if plan.remembers() {
-            let executor = frame::executor(self.session, plan, provider);
-            let worst = executor.map_err(Stop::from).and_then(|mut executor| {
-                frame::grow(self.session, &mut executor, provider)?;
-                let mut steady = steady::settle(self.session, &mut executor, &names, judge)?;
-                steady::judge(self.session, &mut executor, &names, &mut steady, judge)
-            });
-            worst.map_err(|stop| stop.into_error(self.session, &preset.name))?
-        } else {
-            let (contents, _) = frame::render(self.session, &preset.name, plan, provider, &names)?;
-            judge(contents)?
-        };
+        let settled = frame::settled(session, plan, provider).map_err(Stop::from);
+        let shown = settled.and_then(|(mut executor, _)| {
+            // A case has one light.
+            let truth = (ground_truth, 0);
+            let mut steady = steady::settle(session, (preset, &mut executor), truth)?;
+            steady::judge(session, (preset, &mut executor), steady.as_mut(), truth)
+        });
+        let (outputs, judgement) = shown.map_err(|stop| stop.into_error(session, &preset.name))?;
         let broken = |error: Error| CompareError::InvalidOutputs(error.to_string());
         let (visibility, status) = (strict(&outputs, ground_truth), &outputs.status);
         let whole = Statistics::judged(&visibility, status, truth).map_err(broken)?;
-        let settled = right_in_band(&visibility, truth);
-        let outside = Statistics::judged(&settled, status, truth).map_err(broken)?;
-        let counts = Counts::new(&whole, &outside, outputs.rays);
+        let outside = Statistics::wrong_outside_band(&visibility, status, truth);
+        let outside = outside.map_err(broken)?;
+        let counts = Counts {
+            wrong: whole.wrong,
+            outside_band: OutsideBand {
+                lit: outside.lit,
+                shadow: outside.shadow,
+                certain: outside.certain,
+            },
+            uncertain: whole.uncertain,
+            uncertain_share: whole.uncertain_share(),
+            rays: outputs.rays,
+        };
         Ok((outputs, judgement, counts))
     }
 }
 
 /// The picture as 0 and 1. A share that is off by more than 8 bits can tell is as wrong as it can
 /// be: what is guaranteed is guaranteed of shares, too.
-fn strict(outputs: &Outputs, ground_truth: &GroundTruth) -> Vec<u32> {
+fn strict<'o>(outputs: &'o Outputs, ground_truth: &GroundTruth) -> Cow<'o, [u32]> {
     let Some(shown) = &outputs.shares else {
-        return outputs.visibility.clone();
+        return Cow::Borrowed(&outputs.visibility);
     };
     let shares = ground_truth.shares();
     let answers = ground_truth.pixels.classes.iter().zip(&*shares);
@@ -329,26 +310,10 @@ fn strict(outputs: &Outputs, ground_truth: &GroundTruth) -> Vec<u32> {
     pixels.map(strict).collect()
 }
 
-/// The picture with the reference's answer wherever that is in the band.
-fn right_in_band(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
-    let answers = truth.classes.iter().zip(&truth.indeterminate);
-    let pixels = visibility.iter().zip(answers);
-    pixels
-        .map(|(&shown, (&class, &in_band))| {
-            if in_band {
-                u32::from(class == Class::Lit)
-            } else {
-                shown
-            }
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::graphs::preset;
-    use crate::records::stress::OutsideBand;
     use std::collections::BTreeMap;
 
     #[test]
@@ -358,46 +323,14 @@ mod tests {
         let runs = |index: usize, casters, exact: &[String]| {
             let method = Method::new(presets[index].clone(), BTreeMap::new());
             let run = MethodRun::new(method, exact);
-            let variants = run.variants(casters).into_iter();
-            let keys = variants.map(|variant| (variant.set, variant.culls));
-            keys.collect::<Vec<_>>()
+            let sets = run.variants(casters).map(|(_, set)| set);
+            (sets.collect::<Vec<_>>(), run.without_culling.is_some())
         };
-        let again = vec![(None, true), (Some("cull=none"), false)];
-        assert_eq!(runs(0, Casters::Closed, &[]), [(None, true)]);
+        let again = (vec![None, Some("cull=none")], true);
+        assert_eq!(runs(0, Casters::Closed, &[]), (vec![None], true));
         assert_eq!(runs(0, Casters::Open, &[]), again);
-        assert_eq!(runs(1, Casters::Open, &[]), [(None, true)]);
+        assert_eq!(runs(1, Casters::Open, &[]), (vec![None], true));
         assert_eq!(runs(1, Casters::Open, &names), again);
-        assert_eq!(runs(2, Casters::Open, &[]), [(None, false)]);
-    }
-
-    #[test]
-    fn pixels_in_the_band_are_settled_by_the_reference_and_no_others() {
-        use Class::{Background, FacingAway, Lit, Shadow};
-        let truth = GroundTruthPixels {
-            viewport: [6, 1],
-            classes: vec![Background, FacingAway, Lit, Lit, Shadow, Shadow],
-            indeterminate: vec![false, true, true, false, true, false],
-            n_dot_l: vec![0.5; 6],
-            base_colors: Vec::new(),
-        };
-        let wrong = [0, 1, 0, 0, 1, 1];
-        assert_eq!(right_in_band(&wrong, &truth), [0, 0, 1, 0, 0, 1]);
-        let status = [0u32, 4, 3, 3, 2, 4];
-        let count = |visibility: &[u32]| Statistics::judged(visibility, &status, &truth);
-        let whole = count(&wrong).unwrap();
-        let counts = Counts::new(
-            &whole,
-            &count(&right_in_band(&wrong, &truth)).unwrap(),
-            None,
-        );
-        assert_eq!((counts.wrong.lit, counts.wrong.shadow), (3, 2));
-        assert_eq!(counts.wrong.in_band, 3);
-        let OutsideBand {
-            lit,
-            shadow,
-            certain,
-        } = counts.outside_band;
-        assert_eq!((lit, shadow, certain), (1, 1, 1));
-        assert_eq!(certain, counts.wrong.certain);
+        assert_eq!(runs(2, Casters::Open, &[]), (vec![None], false));
     }
 }

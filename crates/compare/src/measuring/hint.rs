@@ -1,13 +1,13 @@
 //! Finds a setting that makes most of a method's wrong pixels right, by the casters that block
 //! their light.
 
-use crate::error::{CompareError, is_fatal};
+use crate::error::CompareError;
 use crate::graphs::ground_truth;
 use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
-use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
 use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::stop::{Stop, attempt};
 use crate::records::hint::{Cause, Hint};
 use crate::records::tuned::named;
 use crate::sink::Session;
@@ -56,13 +56,8 @@ pub fn find(
         let set = set.map(|(name, value)| format!("{name}={value}")).join(",");
         let mut params = method.params.clone();
         params.extend(changes);
-        let other = Method::on(
-            method.preset.clone(),
-            params,
-            method.viewport,
-            method.features,
-        );
-        let Some(wrong_then) = wrong_with(session, &other, (truth_view, layer), provider)? else {
+        let seen = (truth_view, layer);
+        let Some(wrong_then) = wrong_with(session, &method.with(params), seen, provider)? else {
             continue;
         };
         if 2 * wrong_then < wrong {
@@ -120,17 +115,11 @@ fn wrong_with(
     let Ok(plan) = method.plan(truth.pixels.viewport, capabilities, provider) else {
         return Ok(None);
     };
-    let contents = frame::settled(session, plan, provider)
-        .and_then(|(mut executor, _)| frame::read(session, &mut executor, &names));
-    let contents = match contents {
-        Ok(contents) => contents,
-        Err(error) if is_fatal(&error) => {
-            return Err(frame::failed(session, &method.name, error));
-        }
-        Err(_) => return Ok(None),
+    let rendered = frame::render(session, plan, provider, &names).map_err(Stop::from);
+    let Ok((contents, _)) = attempt(session, method, rendered)? else {
+        return Ok(None);
     };
-    let outputs = Outputs::from_contents(contents, layer, &truth.pixels);
     // A setting whose outputs are not those of a shadow method is no way out.
-    let wrong = ground_truth::error(&method.preset, outputs, truth).ok();
+    let wrong = ground_truth::error(&method.preset, (contents, layer), truth).ok();
     Ok(wrong.map(|wrong| wrong as u64))
 }

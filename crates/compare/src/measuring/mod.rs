@@ -15,7 +15,7 @@
 //! let method = Method::new(preset, params).settled(gpu.device.features());
 //! let plan = method.plan([512, 512], Capabilities::new(&gpu), &provider)?;
 //! let session = Session::new(&gpu, &Silent);
-//! let (contents, _) = frame::render(session, "nsm", plan, &mut provider, &["visibility"])?;
+//! let (contents, _) = frame::render(session, plan, &mut provider, &["visibility"])?;
 //! println!("{:?}", contents["visibility"].size());
 //! # Ok(())
 //! # }

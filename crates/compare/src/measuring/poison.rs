@@ -56,8 +56,9 @@ pub fn check(
             .with(|request| request.poison = Some(pattern))
             .map_err(|diagnostics| GraphFaults::one(&preset.name, &diagnostics))?;
         // Which items of a buffer that is too small have room is chance.
-        let (contents, _) = frame::render(session, &preset.name, plan, provider, &outputs)?;
-        Ok(contents)
+        let rendered = frame::render(session, plan, provider, &outputs);
+        let rendered = rendered.map_err(|error| frame::failed(session, &preset.name, error));
+        rendered.map(|(contents, _)| contents)
     };
     let [low, high] = [render(PATTERNS[0])?, render(PATTERNS[1])?];
     let mut differing = differences(&low, &high);

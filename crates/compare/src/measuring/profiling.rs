@@ -18,8 +18,10 @@
 use crate::error::CompareError;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::timing;
-use crate::measuring::{date, device, frame};
+use crate::measuring::frame_sequence::FrameSequence;
+use crate::measuring::stop::Stop;
+use crate::measuring::view_or_path::ViewOrPath;
+use crate::measuring::{date, device, frame, timing};
 use crate::pictures::run_pictures::conditions as conditions_in_words;
 use crate::records::profile::{Conditions, Memory, Profile};
 use crate::records::results::PROGRAM;
@@ -68,20 +70,22 @@ pub fn profile(
         frames,
         warmup,
     };
-    let failed = |error| frame::failed(session, &method.name, error);
-    let mut executor = frame::executor(session, plan, &mut provider).map_err(failed)?;
-    frame::grow(session, &mut executor, &mut provider).map_err(failed)?;
+    let failed = |stop: Stop| stop.into_error(session, &method.name);
+    let settled = frame::settled(session, plan, &mut provider);
+    let (mut executor, _) = settled.map_err(|error| failed(error.into()))?;
     let (passes, memory) = (executor.plan().passes(), memory(executor.plan()));
     let name = conditions_in_words(method, &view.name, viewport);
     let name = format!("{}, {name}", method.name);
     let total = u64::from(warmup) + u64::from(frames);
     let step = Step::begin(session.sink, &name, total, "frames");
-    let count = [warmup, frames];
-    let set_done = |frames| step.set_done(frames);
-    let timed = timing::sample(session, &mut executor, count, set_done).map_err(failed)?;
+    let still = FrameSequence::new(&ViewOrPath::Still(view.clone()), scene, None, None)?;
+    let (drawn, set_done) = ((&mut executor, &provider), |frames| step.set_done(frames));
+    let timed = timing::sample(session, &still, drawn, [warmup, frames], set_done);
+    let timed = timed.map_err(failed)?;
     step.end();
 
-    match Profile::new(conditions, &passes, &Samples::new(&timed), memory) {
+    let samples = Samples::new(&timed, conditions.adapter.gpu_unavailable.is_none());
+    match Profile::new(conditions, &passes, samples, memory) {
         Some(profile) => Ok((profile, timed)),
         None => Err(CompareError::Interrupted {
             kept: "no frame was timed".into(),

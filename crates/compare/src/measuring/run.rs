@@ -7,32 +7,27 @@ use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::diagnostics::{Diagnostics, diagnose};
-use crate::measuring::frame::{self, Contents};
+use crate::measuring::frame;
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView};
-use crate::measuring::sequence::{Account, WorstSecond, cost, ms};
+use crate::measuring::sequence::{Account, WorstSecond, cost};
 use crate::measuring::steady;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{
-    self, Kind, Takes, TimedKinds, Times, Turn, made_since, timed_frame,
-};
+use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Turn};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
 use crate::records::regimes::RegimeTimes;
 use crate::records::results::{AreaReference, Images, Measured, Run};
-use crate::records::samples::{TimedFrame, Upkeep};
+use crate::records::samples::TimedFrame;
 use crate::records::sequence::Remade;
-use crate::records::statistics::FrameTimes;
+use crate::records::statistics::{FrameTimes, ms};
 use crate::records::turns::Turns;
 use crate::sink::{Session, Step};
-use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider};
+use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{GroundTruth, Statistics};
-use std::{
-    cell::RefCell,
-    time::{Duration, Instant},
-};
+use std::cell::RefCell;
 
 /// Data that all methods share when they are measured on one view or path in one viewport.
 pub struct MeasureContext<'a> {
@@ -103,28 +98,29 @@ impl MeasureContext<'_> {
         let plan = executor.plan();
         let (memory_bytes, saved_bytes) = (plan.memory_bytes(), plan.saved_bytes());
         let (scene_bytes, layer) = (scene_bytes(session, plan, provider)?, self.layer(plan));
-        let settle = plan.remembers();
-        let names = method.preset.judged();
-        let judge = |contents| self.judgement(method, 0, layer, contents);
-        let settled = settle.then(|| steady::settle(session, &mut executor, &names, judge));
-        let mut steady = settled.transpose()?;
+        let truth = (&self.truth_view.ground_truth, layer);
+        let mut steady = steady::settle(session, (&method.preset, &mut executor), truth)?;
         let mut account = Account::default();
         let timed = match self.view {
             ViewOrPath::Still(_) => {
-                let (outputs, judgement) = match &mut steady {
-                    Some(steady) => steady::judge(session, &mut executor, &names, steady, judge)?,
-                    None => judge(frame::read(session, &mut executor, &names)?)?,
-                };
+                let drawn = (&*method.preset, &mut executor);
+                let (outputs, judgement) = steady::judge(session, drawn, steady.as_mut(), truth)?;
                 account.add(self.path, 0, outputs, judgement)?;
                 step.set_done(1);
-                timing::sample(session, &mut executor, [0, 1], |_| ())?
+                timing::sample(
+                    session,
+                    self.path.frames,
+                    (&mut executor, provider),
+                    [0, 1],
+                    |_| (),
+                )?
             }
             ViewOrPath::Path(_) => {
                 let walked = (method, steady.is_some());
                 self.follow(walked, &mut executor, provider, (&mut account, step))?
             }
         };
-        let times = Times::new(&timed)?;
+        let (frame, passes) = timing::times(&timed, self.timestamps)?;
         let (index, outputs, judgement) = account.worst.take().ok_or_else(|| {
             CompareError::Input(format!("the path {} has no frames", self.view.name()))
         })?;
@@ -146,15 +142,14 @@ impl MeasureContext<'_> {
         let pictures = self.pictures.as_ref();
         let mut pictures = pictures.map(RefCell::take).unwrap_or_default();
         if let Some(images) = &mut images {
-            let second = std::mem::take(&mut account.second).into_iter();
-            for picture in second {
+            for picture in account.second.drain(..) {
                 images.worst_second.push(picture.name.clone());
                 if images.shaded != picture.name {
                     pictures.push(picture);
                 }
             }
         }
-        let mut measured = Measured {
+        let measured = Measured {
             certain: counts.certain,
             uncertain: counts.uncertain,
             split: counts.split,
@@ -174,9 +169,10 @@ impl MeasureContext<'_> {
             layer_jump: diagnostics.layer_jump,
             sequence: is_path.then(|| account.sequence()),
             images,
+            frame,
+            passes,
             ..Measured::default()
         };
-        self.set_times(&mut measured, times);
         Ok(Judged {
             method: method.clone(),
             planned: planned.clone(),
@@ -201,31 +197,39 @@ impl MeasureContext<'_> {
         (account, step): (&mut Account, &Step),
     ) -> Result<Vec<TimedFrame>, Stop> {
         let (warmup, layer) = (self.protocol.warmup, self.layer(executor.plan()));
-        let request = Frame::new().with_all(true);
+        let (frames, viewport) = (self.path.frames, executor.plan().viewport());
+        let names = method.preset.judged();
+        let mut takes = Takes::new(self.session, frames, viewport, provider, [executor]);
         for _ in 0..if remembered { 0 } else { warmup } {
-            frame::run(self.session, executor, &request)?;
+            takes.take(Turn::new(Kind::EveryPass, 0, false))?;
         }
         let has_pictures = self.pictures.is_some() && self.protocol.pictures;
-        let mut second = WorstSecond::new(self.path.frames.second());
-        let mut times = Vec::new();
-        for index in 0..self.path.frames.poses.len() {
-            let (contents, timed, remade) = self.frame(method, executor, provider, index)?;
-            let (outputs, judgement) = self.judgement(method, index, layer, contents)?;
-            account.add(self.path, index, outputs, judgement)?;
-            if let Some(frame) = account.frames.last_mut() {
-                frame.cost = cost(&timed, self.timestamps);
-                (frame.skipped, frame.remade) = (timed.skipped.clone(), remade);
-                if let Some(shown) = account.shown.as_ref().filter(|_| has_pictures) {
-                    let truth = &self.path.truth_views[index].ground_truth.pixels;
-                    let place = self.place(method, Some(index), truth.viewport);
-                    let changed = frame.shimmer.map_or(0, |shimmer| shimmer.changed);
-                    second.add(changed, place.shaded(shown, truth)?);
-                }
+        let mut second = WorstSecond::new(frames.second());
+        takes.read(&names);
+        for (frame, truth_view) in self.path.truth_views.iter().enumerate() {
+            takes.take(Turn::new(Kind::Path, frame, true))?;
+            let Some((contents, made)) = takes.shown() else {
+                break;
+            };
+            let truth = &truth_view.ground_truth;
+            let (outputs, judgement) = judged(&method.preset, (contents, layer), truth)?;
+            account.add(self.path, frame, outputs, judgement)?;
+            let judged = &mut account.frames[frame];
+            judged.remade = made.iter().map(remade).collect();
+            if let Some(shown) = account.shown.as_ref().filter(|_| has_pictures) {
+                let place = self.place(method, Some(frame), viewport);
+                let changed = judged.shimmer.map_or(0, |shimmer| shimmer.changed);
+                second.add(changed, place.shaded(shown, &truth.pixels)?);
             }
-            times.push(timed);
-            step.set_done(u64::from(warmup) + index as u64 + 1);
+            step.set_done(u64::from(warmup) + frame as u64 + 1);
         }
         account.second = second.pictures;
+        let kinds = takes.end().pop().transpose()?.unwrap_or_default();
+        let times: Vec<TimedFrame> = kinds.into_values().flatten().collect();
+        for (frame, timed) in account.frames.iter_mut().zip(&times) {
+            frame.cost = cost(timed, self.timestamps);
+            frame.skipped.clone_from(&timed.skipped);
+        }
         Ok(times)
     }
 
@@ -238,60 +242,10 @@ impl MeasureContext<'_> {
         }
     }
 
-    /// Runs a frame of a path; returns its outputs, its times, and the resources that were made for
-    /// it.
-    fn frame(
-        &self,
-        method: &Method,
-        executor: &mut Executor,
-        provider: &mut SceneProvider,
-        index: usize,
-    ) -> Result<(Contents, TimedFrame, Vec<Remade>), Stop> {
-        let (session, frames) = (self.session, self.path.frames);
-        session.check_stopped()?;
-        frames.show(index, executor.plan().viewport(), provider)?;
-        let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
-        let began = Instant::now();
-        executor.refresh(provider)?;
-        let upkeep = Upkeep {
-            time: began.elapsed(),
-            uploaded: provider.work().uploaded - uploaded,
-        };
-        let remade = made_since(&built, provider.built()).map(remade).collect();
-        let read = method.preset.judged();
-        let request = Frame::new()
-            .with_timing(true)
-            .with_read(&read)
-            .with_seconds(frames.seconds(index));
-        let (mut report, wall) = frame::run(session, executor, &request)?;
-        // As a host does it: between frames, by the counts that have arrived.
-        executor.grow(provider)?;
-        let contents = frame::contents(std::mem::take(&mut report.readbacks));
-        let mut timed = timed_frame(report, Duration::ZERO, wall)?;
-        timed.upkeep = Some(upkeep);
-        Ok((contents, timed, remade))
-    }
-
-    /// Judges what a method shows in the frame with the index `index`.
-    ///
-    /// # Errors
-    /// Outputs of another size, format or range than a shadow method's.
-    pub fn judgement(
-        &self,
-        method: &Method,
-        index: usize,
-        layer: usize,
-        contents: Contents,
-    ) -> Result<(Outputs, Judgement), CompareError> {
-        let ground_truth = &self.path.truth_views[index].ground_truth;
-        let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
-        judged(&method.preset, outputs, ground_truth)
-    }
-
     /// Returns the run of a judged method with its provisional times: it stays in the results if
     /// the work ends before [`times`](Self::times).
     pub fn judged_run(&self, judged: &Judged) -> Run {
-        self.run(&judged.method, &judged.planned, judged.measured.clone())
+        self.run(&judged.method, &judged.planned, Ok(judged.measured.clone()))
     }
 
     /// Times judged methods in turns, frame by frame, and returns the run of each, in order.
@@ -334,10 +288,8 @@ impl MeasureContext<'_> {
                 });
                 Ok(measured)
             });
-            runs.push(match attempt(self.session, &judged.method, measured)? {
-                Ok(measured) => self.run(&judged.method, &judged.planned, measured),
-                Err(reason) => self.unavailable(&judged.method, &judged.planned, reason),
-            });
+            let outcome = attempt(self.session, &judged.method, measured)?;
+            runs.push(self.run(&judged.method, &judged.planned, outcome));
         }
         Ok(runs)
     }
@@ -360,44 +312,30 @@ impl MeasureContext<'_> {
             None => Kind::EveryPass,
         };
         let frames = timed.get(&kind).map_or(&[][..], Vec::as_slice);
-        self.set_times(measured, Times::new(frames)?);
-        measured.regimes = timing::regime_times(timed)?;
-        let regimes = measured.regimes.iter_mut();
-        regimes.for_each(|times| self.distrust(&mut times.frame));
+        (measured.frame, measured.passes) = timing::times(frames, self.timestamps)?;
+        measured.regimes = timing::regime_times(timed, self.timestamps)?;
         Ok(())
     }
 
-    /// Writes the times of frames and their passes into a method's measurements.
-    fn set_times(&self, measured: &mut Measured, mut times: Times) {
-        self.distrust(&mut times.frame);
-        if !self.timestamps {
-            times.passes.iter_mut().for_each(|pass| pass.gpu_ms = None);
-        }
-        (measured.frame, measured.passes) = (times.frame, times.passes);
-    }
-
-    /// Sets the GPU times in `frame` to `None` if timestamps cannot be trusted.
-    pub fn distrust(&self, frame: &mut FrameTimes) {
-        if !self.timestamps {
-            frame.without_gpu();
-        }
-    }
-
     /// Creates the run of a method from `planned`, its [`Run`] without measurements, and its
-    /// measurements.
-    pub fn run(&self, method: &Method, planned: &Run, measured: Measured) -> Run {
+    /// measurements or the reason why there are none.
+    pub fn run(&self, method: &Method, planned: &Run, outcome: Result<Measured, String>) -> Run {
+        let ground_truth = &self.truth_view.ground_truth;
+        let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
+        let (measured, unavailable) = match outcome {
+            Ok(measured) => (Some(measured), None),
+            Err(reason) => (None, Some(reason)),
+        };
         Run {
-            measured: Some(measured),
-            ..self.empty(method, planned)
-        }
-    }
-
-    /// Creates the run of a method from `planned`, its [`Run`] without measurements, and the reason
-    /// why there are none.
-    pub fn unavailable(&self, method: &Method, planned: &Run, reason: String) -> Run {
-        Run {
-            unavailable: Some(reason),
-            ..self.empty(method, planned)
+            date: date::today(),
+            promise: guarantee::promise(method),
+            pixels: self.own.pixels,
+            band: self.own.band,
+            wrong_surface: self.path.wrong_surfaces(),
+            area: area.map(|area| AreaReference::new(area, truth)),
+            measured,
+            unavailable,
+            ..planned.clone()
         }
     }
 
@@ -435,22 +373,6 @@ impl MeasureContext<'_> {
         }
         pictures.replace(files);
         Ok(images)
-    }
-
-    /// The run with nothing measured.
-    fn empty(&self, method: &Method, planned: &Run) -> Run {
-        let ground_truth = &self.truth_view.ground_truth;
-        let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
-        Run {
-            date: date::today(),
-            promise: guarantee::promise(method),
-            pixels: self.own.pixels,
-            band: self.own.band,
-            wrong_surface: self.path.wrong_surfaces(),
-            area: area.map(|area| AreaReference::new(area, truth)),
-            unavailable: None,
-            ..planned.clone()
-        }
     }
 }
 

@@ -8,15 +8,11 @@ use crate::pictures::run_pictures::PictureFile;
 use crate::records::results::Answer;
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Sequence, SequenceFrame};
+use crate::records::statistics::ms;
 use skiagraph_reference::{
     BlockerCounts, EdgeDistances, Graded, JudgedPixels, Shimmer, Statistics, shimmer::shimmer,
 };
-use std::{collections::VecDeque, time::Duration};
-
-/// Milliseconds of a time.
-pub fn ms(time: Duration) -> f64 {
-    time.as_secs_f64() * 1e3
-}
+use std::collections::VecDeque;
 
 /// The times of a frame; `has_gpu` is false if GPU times cannot be trusted.
 pub fn cost(frame: &TimedFrame, has_gpu: bool) -> FrameCost {

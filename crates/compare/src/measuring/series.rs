@@ -411,7 +411,7 @@ impl<'a> Series<'a> {
     ) -> Result<Result<Judged, Box<Run>>, CompareError> {
         let (planned, path) = (&self.planned[place], context.path.frames);
         path.show(0, planned.viewport, &mut self.provider)?;
-        let unavailable = |reason| Box::new(context.unavailable(method, planned, reason));
+        let unavailable = |reason| Box::new(context.run(method, planned, Err(reason)));
         let plan = match self.plan(method, planned.viewport) {
             Ok(plan) => plan,
             Err(refusal) => {

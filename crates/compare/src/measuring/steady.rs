@@ -2,14 +2,15 @@
 //! still view that it repeats.
 
 use crate::error::CompareError;
-use crate::graphs::ground_truth::Judgement;
-use crate::graphs::preset::VISIBILITY;
+use crate::graphs::ground_truth::{Judgement, judged};
+use crate::graphs::preset::{Preset, VISIBILITY};
 use crate::graphs::shadow_method::Outputs;
-use crate::measuring::frame::{self, Contents};
+use crate::measuring::frame;
 use crate::measuring::stop::Stop;
 use crate::records::steady::{Cycle, EarlyPicture, Steady};
 use crate::sink::Session;
 use skiagraph_gpu::{Content, Executor};
+use skiagraph_reference::GroundTruth;
 use std::{
     collections::VecDeque,
     hash::{DefaultHasher, Hash, Hasher},
@@ -28,26 +29,28 @@ const SAME: f32 = 1.0 / 1024.0;
 
 /// Runs frames of a new executor until its output `visibility` repeats with a period of at most 16
 /// frames, for 32 frames in a row; after 256 frames it gives up. Answers 0 and 1 must repeat to the
-/// bit, shares of light within 1/1024. `judge` gets the contents of the outputs `names` after 1, 4,
-/// 16 … frames.
+/// bit, shares of light within 1/1024. The pictures after 1, 4, 16 … frames are judged. Runs no
+/// frame and returns `None` if the method reuses no results of earlier frames.
 ///
 /// # Errors
-/// An early end; the errors of the executor and of `judge`.
+/// The errors of [`judge`].
 pub fn settle(
     session: Session,
-    executor: &mut Executor,
-    names: &[&str],
-    judge: impl Fn(Contents) -> Result<(Outputs, Judgement), CompareError>,
-) -> Result<Steady, Stop> {
+    (preset, executor): (&Preset, &mut Executor),
+    (ground_truth, layer): (&GroundTruth, usize),
+) -> Result<Option<Steady>, Stop> {
+    if !executor.plan().remembers() {
+        return Ok(None);
+    }
     let (mut pictures, mut begin) = (Pictures::default(), Vec::new());
     while pictures.period.is_none() && pictures.frames < MOST {
         session.check_stopped()?;
-        let mut contents = frame::read(session, executor, names)?;
+        let contents = frame::read(session, executor, &preset.judged())?;
         let shown = contents.get(VISIBILITY);
         pictures.add(shown.map_or(Shown::Bits(0), Shown::new));
         let frames = pictures.frames as u32;
         if frames.is_power_of_two() && frames.trailing_zeros() % 2 == 0 {
-            let (_, judgement) = judge(std::mem::take(&mut contents))?;
+            let (_, judgement) = judged(preset, (contents, layer), ground_truth)?;
             begin.push(EarlyPicture {
                 frames,
                 wrong_outside_band: judgement.counts.wrong.total - judgement.counts.wrong.in_band,
@@ -56,12 +59,12 @@ pub fn settle(
             });
         }
     }
-    Ok(Steady {
+    Ok(Some(Steady {
         frames: pictures.frames as u32,
         period: pictures.period.map(|period| period as u32),
         begin,
         judged: None,
-    })
+    }))
 }
 
 /// A picture, as far as it is compared with others.
@@ -98,6 +101,7 @@ impl Shown {
 }
 
 /// The pictures so far.
+#[derive(Default)]
 struct Pictures {
     /// As many of the last ones as the longest period has.
     last: VecDeque<Rc<Shown>>,
@@ -109,22 +113,11 @@ struct Pictures {
 
 /// A period that is looked for: all pictures are held against those of its first turn, so that one
 /// that creeps is not steady.
-#[derive(Clone, Default)]
+#[derive(Default)]
 struct Period {
     first_turn: Vec<Rc<Shown>>,
     /// How many pictures in a row were like theirs in the first turn.
     repeated: usize,
-}
-
-impl Default for Pictures {
-    fn default() -> Self {
-        Self {
-            last: VecDeque::new(),
-            frames: 0,
-            periods: std::array::from_fn(|_| Period::default()),
-            period: None,
-        }
-    }
 }
 
 impl Pictures {
@@ -155,47 +148,49 @@ impl Pictures {
     }
 }
 
-/// Draws the pictures of one period of a steady state (16 if it has none), and judges each by
-/// `judge`, which gets the contents of the outputs `names`. The state must be reached already.
-/// Returns the worst by [`Judgement::is_worse_than`], and writes the means of all into `steady`.
+/// Judges the next frame of a method on a still view. Of one in its steady state, those of one
+/// period are judged (16 if it has none): their means are written into `steady`, and the worst by
+/// [`Judgement::is_worse_than`] is returned. `layer` is the layer of the outputs that is judged.
 ///
 /// # Errors
-/// An early end; the errors of the executor and of `judge`.
+/// An early end; the errors of the executor; outputs that are not those of a shadow method.
 pub fn judge(
     session: Session,
-    executor: &mut Executor,
-    names: &[&str],
-    steady: &mut Steady,
-    judge: impl Fn(Contents) -> Result<(Outputs, Judgement), CompareError>,
+    (preset, executor): (&Preset, &mut Executor),
+    steady: Option<&mut Steady>,
+    (ground_truth, layer): (&GroundTruth, usize),
 ) -> Result<(Outputs, Judgement), Stop> {
-    let pictures = steady.period.unwrap_or(LONGEST as u32);
-    let mut sums = Cycle::default();
-    let mut worst: Option<(Outputs, Judgement)> = None;
+    let period = |steady: &Steady| steady.period.unwrap_or(LONGEST as u32);
+    let pictures = steady.as_deref().map_or(1, period);
+    let mut judgements: Vec<Judgement> = Vec::new();
+    let mut worst: Option<(usize, Outputs)> = None;
     for _ in 0..pictures {
         session.check_stopped()?;
-        let (outputs, judgement) = judge(frame::read(session, executor, names)?)?;
-        let wrong = &judgement.counts.wrong;
-        sums.wrong_mean += wrong.total as f64;
-        sums.wrong_outside_band_mean += (wrong.total - wrong.in_band) as f64;
-        sums.rmse_mean += judgement.graded.rmse;
-        sums.flip_mean += judgement.graded.flip;
-        if worst
-            .as_ref()
-            .is_none_or(|(_, worst)| judgement.is_worse_than(worst))
-        {
-            worst = Some((outputs, judgement));
+        let contents = frame::read(session, executor, &preset.judged())?;
+        let (outputs, judgement) = judged(preset, (contents, layer), ground_truth)?;
+        let is_worse = |(worst, _): &(usize, _)| judgement.is_worse_than(&judgements[*worst]);
+        if worst.as_ref().is_none_or(is_worse) {
+            worst = Some((judgements.len(), outputs));
         }
+        judgements.push(judgement);
     }
-    let mean = |sum: f64| sum / f64::from(pictures);
-    steady.judged = Some(Cycle {
-        pictures,
-        wrong_mean: mean(sums.wrong_mean),
-        wrong_outside_band_mean: mean(sums.wrong_outside_band_mean),
-        rmse_mean: mean(sums.rmse_mean),
-        flip_mean: mean(sums.flip_mean),
-    });
-    let none = || CompareError::Input("no picture of the steady state".into()).into();
-    worst.ok_or_else(none)
+    if let Some(steady) = steady {
+        let mean = |figure: fn(&Judgement) -> f64| {
+            judgements.iter().map(figure).sum::<f64>() / f64::from(pictures)
+        };
+        steady.judged = Some(Cycle {
+            pictures,
+            wrong_mean: mean(|judged| judged.counts.wrong.total as f64),
+            wrong_outside_band_mean: mean(|judged| {
+                (judged.counts.wrong.total - judged.counts.wrong.in_band) as f64
+            }),
+            rmse_mean: mean(|judged| judged.graded.rmse),
+            flip_mean: mean(|judged| judged.graded.flip),
+        });
+    }
+    let none = || CompareError::Input("no picture of the steady state".into());
+    let (index, outputs) = worst.ok_or_else(none)?;
+    Ok((outputs, judgements.swap_remove(index)))
 }
 
 #[cfg(test)]

@@ -3,9 +3,10 @@
 
 use crate::comparison::Protocol;
 use crate::error::CompareError;
-use crate::measuring::frame;
+use crate::measuring::frame::{self, Contents};
 use crate::measuring::frame_sequence::FrameSequence;
 use crate::measuring::scene_motion::{self, regimes};
+use crate::measuring::stop::Stop;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::records::regimes::{Regime, RegimeTimes};
 use crate::records::results::Pass;
@@ -39,6 +40,17 @@ pub struct Turn {
     pub is_kept: bool,
 }
 
+impl Turn {
+    /// Creates a turn from the values of its fields.
+    pub fn new(kind: Kind, frame: usize, is_kept: bool) -> Self {
+        Self {
+            kind,
+            frame,
+            is_kept,
+        }
+    }
+}
+
 /// Returns the turns of a view or path: of a view, frames in which every pass runs, and after each
 /// of them a frame of each regime; of a path, all its frames, then frames of each regime at places
 /// spread over it.
@@ -49,17 +61,9 @@ pub fn schedule(view: &ViewOrPath, frames: &FrameSequence, protocol: &Protocol) 
         regime_frames,
         ..
     } = *protocol;
-    let every_pass = |frame, is_kept| Turn {
-        kind: Kind::EveryPass,
-        frame,
-        is_kept,
-    };
+    let every_pass = |frame, is_kept| Turn::new(Kind::EveryPass, frame, is_kept);
     let regimes = |frame| {
-        let moved = move |regime: &Regime| Turn {
-            kind: Kind::Moved(*regime),
-            frame,
-            is_kept: true,
-        };
+        let moved = move |regime: &Regime| Turn::new(Kind::Moved(*regime), frame, true);
         regimes(frames).iter().map(moved)
     };
     let mut turns: Vec<Turn> = (0..warmup).map(|_| every_pass(0, false)).collect();
@@ -72,12 +76,7 @@ pub fn schedule(view: &ViewOrPath, frames: &FrameSequence, protocol: &Protocol) 
             }
         }
         ViewOrPath::Path(_) => {
-            let path = |frame| Turn {
-                kind: Kind::Path,
-                frame,
-                is_kept: true,
-            };
-            turns.extend((0..count).map(path));
+            turns.extend((0..count).map(|frame| Turn::new(Kind::Path, frame, true)));
             for round in 0..regime_frames as usize {
                 let frame = round * count / regime_frames as usize;
                 turns.push(every_pass(frame, false));
@@ -98,6 +97,12 @@ pub struct Takes<'t, 'e> {
     viewport: [u32; 2],
     provider: SceneProvider,
     takes: Vec<Take<'e>>,
+    /// Names of the outputs that are read back.
+    read: &'t [&'t str],
+    /// Contents of these, of the frame that was drawn last.
+    shown: Option<Contents>,
+    /// Resources of the scene that were made in the last turn.
+    made: Vec<Built>,
     first: Instant,
     turns: usize,
 }
@@ -128,9 +133,23 @@ impl<'t, 'e> Takes<'t, 'e> {
             viewport,
             provider: provider.branch(),
             takes: executors.into_iter().map(take).collect(),
+            read: &[],
+            shown: None,
+            made: Vec::new(),
             first: Instant::now(),
             turns: 0,
         }
+    }
+
+    /// Has frames from now on read back outputs.
+    pub fn read(&mut self, names: &'t [&'t str]) {
+        self.read = names;
+    }
+
+    /// Returns what the frame that was drawn last has shown, and the resources of the scene that
+    /// were made in its turn; `None` behind an error.
+    pub fn shown(&mut self) -> Option<(Contents, &[Built])> {
+        Some((self.shown.take()?, &self.made))
     }
 
     /// Has each executor draw a frame. Each turn begins with another of them, so that none always
@@ -153,14 +172,14 @@ impl<'t, 'e> Takes<'t, 'e> {
             }
         }
         let count = self.takes.len();
-        let mut made = Vec::new();
+        self.made.clear();
         for place in 0..count {
             self.session.check_stopped()?;
             let index = (place + self.turns) % count;
             if self.takes[index].timed.is_err() {
                 continue;
             }
-            let frame = self.frame(index, turn, &mut made);
+            let frame = self.frame(index, turn);
             let take = &mut self.takes[index];
             match (frame, &mut take.timed) {
                 (Err(ExecuteError::Unfinished { .. }), _) if self.session.is_stopped() => {
@@ -176,54 +195,44 @@ impl<'t, 'e> Takes<'t, 'e> {
         self.turns += 1;
         if turn.is_kept && turn.kind != Kind::EveryPass {
             for take in &mut self.takes {
-                take.charge(turn.kind, &made);
+                take.charge(turn.kind, &self.made);
             }
         }
         Ok(())
     }
 
-    /// Times a frame of one executor, and adds what was made for it of the scene to `made`.
-    fn frame(
-        &mut self,
-        index: usize,
-        turn: Turn,
-        made: &mut Vec<Built>,
-    ) -> Result<TimedFrame, ExecuteError> {
+    /// Times a frame of one executor.
+    fn frame(&mut self, index: usize, turn: Turn) -> Result<TimedFrame, ExecuteError> {
         let (executor, provider) = (&mut *self.takes[index].executor, &mut self.provider);
-        let began = self.first.elapsed();
-        let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
-        let refresh = Instant::now();
-        executor.refresh(provider)?;
-        let mut refresh = refresh.elapsed();
+        let (session, first) = (self.session, self.first);
+        let request = Frame::new().with_seconds(self.frames.seconds(turn.frame));
+        let request = request.with_read(self.read);
+        let draw = |executor: &mut Executor| {
+            // A frame with timing is never left out.
+            let is_rest = turn.kind == Kind::Moved(Regime::Nothing);
+            let rest = is_rest.then(|| rest(session, executor, &request));
+            if let Some((frame, cpu)) = rest.transpose()?.flatten() {
+                return Ok((frame, cpu, Contents::new()));
+            }
+            let is_whole = turn.kind == Kind::EveryPass;
+            let request = request.with_timing(true).with_all(is_whole);
+            let began = first.elapsed();
+            let (mut report, wall) = frame::run(session, executor, &request)?;
+            let contents = frame::contents(std::mem::take(&mut report.readbacks));
+            Ok((timed_frame(report, began, wall)?, Duration::ZERO, contents))
+        };
+        let drawn = frame::next(executor, provider, draw)?;
+        let ((frame, rested, shown), upkeep) = (drawn.frame, drawn.upkeep);
         // Resources that no pass reads, made for others that one does, stay this method's own.
         let read = executor.plan().provided();
-        let own = made_since(&built, provider.built()).filter(|built| is_read(built, &read));
-        let own: Vec<Built> = own.copied().collect();
-        let request = Frame::new().with_seconds(self.frames.seconds(turn.frame));
-        // A frame with timing is never left out.
-        let is_rest = turn.kind == Kind::Moved(Regime::Nothing);
-        let rest = is_rest.then(|| rest(self.session, executor, &request));
-        let frame = match rest.transpose()?.flatten() {
-            Some((frame, cpu)) => {
-                refresh += cpu;
-                frame
-            }
-            None => {
-                let is_whole = turn.kind == Kind::EveryPass;
-                let request = request.with_timing(true).with_all(is_whole);
-                let (report, wall) = frame::run(self.session, executor, &request)?;
-                timed_frame(report, began, wall)?
-            }
-        };
-        // As a host does it: between frames, by the counts that have arrived.
-        executor.grow(provider)?;
-        let shared: Duration = own.iter().map(|built| built.time).sum();
-        let shared_bytes: u64 = own.iter().map(|built| built.uploaded).sum();
-        let uploaded = provider.work().uploaded - uploaded;
-        made.extend(own);
+        let own = drawn.made.iter().filter(|built| is_read(built, &read));
+        let shared: Duration = own.clone().map(|built| built.time).sum();
+        let shared_bytes: u64 = own.clone().map(|built| built.uploaded).sum();
+        self.shown = Some(shown);
+        self.made.extend(&drawn.made);
         let upkeep = (turn.kind != Kind::EveryPass).then(|| Upkeep {
-            time: refresh.saturating_sub(shared),
-            uploaded: uploaded.saturating_sub(shared_bytes),
+            time: (upkeep.time + rested).saturating_sub(shared),
+            uploaded: upkeep.uploaded.saturating_sub(shared_bytes),
         });
         Ok(TimedFrame { upkeep, ..frame })
     }
@@ -277,51 +286,32 @@ fn rest(
     Ok((report.skipped.len() == passes).then(|| (frame(), cpu)))
 }
 
-/// Returns the resources that were made between two moments.
-pub fn made_since<'b>(before: &[Built], now: &'b [Built]) -> impl Iterator<Item = &'b Built> {
-    let times = |built: &Built| {
-        let earlier = before.iter().find(|earlier| earlier.name == built.name);
-        earlier.map_or(0, |earlier| earlier.times)
-    };
-    now.iter().filter(move |built| built.times > times(built))
-}
-
-/// Runs `warmup` frames, then `frames` timed ones, with every pass. `done` is called with the
-/// number of finished frames. If the session's sink asks for an early end, the frames timed until
-/// then are returned.
+/// Runs `warmup` frames of one method, then `timed` timed ones, with every pass, on the first of
+/// `frames`. `done` is called with the number of finished frames. If the session's sink asks for an
+/// early end, the frames timed until then are returned.
 ///
 /// # Errors
 /// Those of the executor.
 pub fn sample(
     session: Session,
-    executor: &mut Executor,
-    [warmup, frames]: [u32; 2],
+    frames: &FrameSequence,
+    (executor, provider): (&mut Executor, &SceneProvider),
+    [warmup, timed]: [u32; 2],
     done: impl Fn(u64),
-) -> Result<Vec<TimedFrame>, ExecuteError> {
-    let mut timed = Vec::new();
-    let mut first = Instant::now();
-    let request = Frame::new().with_timing(true).with_all(true);
-    for index in 0..u64::from(warmup) + u64::from(frames) {
-        if session.is_stopped() {
-            break;
-        }
-        if index == u64::from(warmup) {
-            first = Instant::now();
-        }
-        // Warm-up frames are timed too: they then do the same work, only their figures are not
-        // kept.
-        let began = first.elapsed();
-        let (report, wall) = match frame::run(session, executor, &request) {
-            Err(ExecuteError::Unfinished { .. }) if session.is_stopped() => break,
-            frame => frame?,
-        };
-        let frame = timed_frame(report, began, wall)?;
-        if index >= u64::from(warmup) {
-            timed.push(frame);
+) -> Result<Vec<TimedFrame>, Stop> {
+    let viewport = executor.plan().viewport();
+    let mut takes = Takes::new(session, frames, viewport, provider, [executor]);
+    for index in 0..u64::from(warmup) + u64::from(timed) {
+        // Warm-up frames are timed too: they then do the same work.
+        let is_kept = index >= u64::from(warmup);
+        match takes.take(Turn::new(Kind::EveryPass, 0, is_kept)) {
+            Err(CompareError::Interrupted { .. }) => break,
+            taken => taken?,
         }
         done(index + 1);
     }
-    Ok(timed)
+    let kinds = takes.end().pop().transpose()?.unwrap_or_default();
+    Ok(kinds.into_values().flatten().collect())
 }
 
 /// Returns the times of a frame that was run with timing. `began` is the time from the start of the
@@ -347,39 +337,28 @@ pub fn timed_frame(
     })
 }
 
-/// Order statistics of the times of some frames, of each pass and of whole frames.
-pub struct Times {
-    /// Order statistics of the times of each pass, in the order in which the passes ran.
-    pub passes: Vec<Pass>,
-    /// Order statistics of the times of whole frames, and the time of each frame.
-    pub frame: FrameTimes,
+/// Summarises the times of some frames, of whole ones and of each pass in the order in which they
+/// ran; without GPU times unless `has_gpu`.
+///
+/// # Errors
+/// [`CompareError::Interrupted`] if there are no frames.
+pub fn times(timed: &[TimedFrame], has_gpu: bool) -> Result<(FrameTimes, Vec<Pass>), CompareError> {
+    let samples = Samples::new(timed, has_gpu);
+    let frame = FrameTimes::new(samples.gpu, samples.upkeep, samples.wall);
+    let pass = |PassSamples { name, gpu, cpu }| Pass {
+        name,
+        gpu_ms: gpu.and_then(Spread::new),
+        cpu_ms: Spread::new(cpu).expect("a pass is named by its first sample"),
+    };
+    let passes = samples.passes.into_iter().map(pass).collect();
+    Ok((frame.ok_or_else(CompareError::interrupted)?, passes))
 }
 
-impl Times {
-    /// Summarises the times of some frames.
-    ///
-    /// # Errors
-    /// [`CompareError::Interrupted`] if there are no frames.
-    pub fn new(timed: &[TimedFrame]) -> Result<Self, CompareError> {
-        let samples = Samples::new(timed);
-        let frame = FrameTimes::new(&samples.gpu, samples.upkeep.as_deref(), &samples.wall);
-        let pass = |PassSamples { name, gpu, cpu }| Pass {
-            name,
-            gpu_ms: Spread::from_all(&gpu),
-            cpu_ms: Spread::new(&cpu).expect("a pass is named by its first sample"),
-        };
-        Ok(Self {
-            frame: frame.ok_or_else(CompareError::interrupted)?,
-            passes: samples.passes.into_iter().map(pass).collect(),
-        })
-    }
-}
-
-/// Summarises the frames of each regime.
+/// Summarises the frames of each regime; without GPU times unless `has_gpu`.
 ///
 /// # Errors
 /// [`CompareError::Interrupted`] for a regime without frames.
-pub fn regime_times(timed: &TimedKinds) -> Result<Vec<RegimeTimes>, CompareError> {
+pub fn regime_times(timed: &TimedKinds, has_gpu: bool) -> Result<Vec<RegimeTimes>, CompareError> {
     let of_regimes = timed.iter().filter_map(|(kind, frames)| match kind {
         Kind::Moved(regime) => Some((*regime, frames)),
         Kind::EveryPass | Kind::Path => None,
@@ -390,7 +369,7 @@ pub fn regime_times(timed: &TimedKinds) -> Result<Vec<RegimeTimes>, CompareError
         uploaded.sort_unstable();
         Ok(RegimeTimes {
             regime,
-            frame: Times::new(frames)?.frame,
+            frame: times(frames, has_gpu)?.0,
             uploaded_bytes: uploaded
                 .get(uploaded.len() / 2)
                 .copied()

@@ -6,20 +6,21 @@ use crate::graphs::ground_truth;
 use crate::graphs::light_kinds::{self, kind_and_number};
 use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
-use crate::graphs::shadow_method::Outputs;
 use crate::measuring::frame;
+use crate::measuring::frame_sequence::FrameSequence;
 use crate::measuring::ground_truth::GroundTruthView;
 use crate::measuring::run::scene_bytes;
 use crate::measuring::search::Trial;
 use crate::measuring::stop::{Stop, attempt};
-use crate::measuring::timing::{self, Times};
+use crate::measuring::timing;
+use crate::measuring::view_or_path::ViewOrPath;
 use crate::records::budgets::Budgets;
 use crate::sink::Session;
 use itertools::Itertools;
 use skiagraph_gpu::{Executor, Frame};
+use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{LightKind, View};
-use std::collections::BTreeMap;
 
 /// A view on which settings are tried, with its ground truth.
 pub struct TrialView<'a> {
@@ -67,8 +68,6 @@ pub struct Trials<'a> {
     limits: Limits,
     /// True if settings that need too much memory are refused: the defaults need less.
     holds_memory: bool,
-    /// Bytes of the scene data that plans read, by its names.
-    scene_bytes: BTreeMap<Vec<String>, u64>,
     /// Executor of the last setting.
     executor: Option<Executor>,
     /// Pixels facing the light, over all views.
@@ -103,7 +102,6 @@ impl<'a> Trials<'a> {
             provider,
             limits,
             holds_memory: false,
-            scene_bytes: BTreeMap::new(),
             executor: None,
             left: limits.work,
         }
@@ -136,7 +134,7 @@ impl<'a> Trials<'a> {
         if self.left < 1 + self.views.len() as u64 {
             return Ok(Trial::Ended);
         }
-        let set = self.set(params);
+        let set = self.method.with(params.clone());
         if self.has_idle_param(&set) {
             return Ok(Trial::Same);
         }
@@ -160,15 +158,6 @@ impl<'a> Trials<'a> {
         Ok(())
     }
 
-    /// The method with `params`.
-    fn set(&self, params: &ParamValues) -> Method {
-        let Method {
-            preset, features, ..
-        } = self.method;
-        let set = Method::on(preset.clone(), params.clone(), self.viewport, *features);
-        set.named(&self.method.name)
-    }
-
     /// True if the method with `params` keeps to the limit of memory under each kind of light, or
     /// if there is none.
     ///
@@ -178,27 +167,16 @@ impl<'a> Trials<'a> {
         let Some(most) = self.limits.budgets.memory_bytes else {
             return Ok(true);
         };
-        let set = self.set(params);
+        let set = self.method.with(params.clone());
         for view in self.one_of_each_light() {
             self.provider.set_view(&view.view, self.viewport);
-            let capabilities = Capabilities::new(self.session.gpu);
-            let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
+            let Some(plan) = self.planned(&set) else {
                 return Ok(false);
             };
-            let names = plan.provided().into_iter().map(str::to_owned).collect();
-            let scene = match self.scene_bytes.get(&names) {
-                Some(bytes) => Ok(Ok(*bytes)),
-                None => {
-                    let bytes = scene_bytes(self.session, &plan, self.provider);
-                    attempt(self.session, &set, bytes.map_err(Stop::from))
-                }
-            };
-            let Ok(scene) = scene? else {
-                return Ok(false);
-            };
-            self.scene_bytes.insert(names, scene);
-            if plan.memory_bytes() + scene > most {
-                return Ok(false);
+            let scene = scene_bytes(self.session, &plan, self.provider).map_err(Stop::from);
+            match attempt(self.session, &set, scene)? {
+                Ok(scene) if plan.memory_bytes() + scene <= most => {}
+                _ => return Ok(false),
             }
         }
         Ok(true)
@@ -213,9 +191,9 @@ impl<'a> Trials<'a> {
         let (Some(most), Some(view)) = (self.limits.budgets.frame_ms, self.views.first()) else {
             return Ok(true);
         };
-        let set = self.set(params);
+        let set = self.method.with(params.clone());
         self.provider.set_view(&view.view, self.viewport);
-        let timed = self.timed(&set);
+        let timed = self.timed(&set, &view.view);
         Ok(match attempt(self.session, &set, timed)? {
             Ok(Some(ms)) => ms <= MARGIN * most,
             Ok(None) | Err(_) => false,
@@ -232,7 +210,7 @@ impl<'a> Trials<'a> {
     }
 
     /// Median milliseconds of a frame with every pass; `None` if it cannot be planned.
-    fn timed(&mut self, set: &Method) -> Result<Option<f64>, Stop> {
+    fn timed(&mut self, set: &Method, view: &View) -> Result<Option<f64>, Stop> {
         if !self.plan(set)? {
             return Ok(None);
         }
@@ -241,10 +219,12 @@ impl<'a> Trials<'a> {
         };
         executor.refresh(self.provider)?;
         frame::grow(self.session, executor, self.provider)?;
-        let timed = timing::sample(self.session, executor, TIMED, |_| ())?;
-        let frame = Times::new(&timed)?.frame;
-        let spread = frame.spread(!self.limits.has_timestamps);
-        let spread = spread.or_else(|| frame.spread(true));
+        let still = ViewOrPath::Still(view.clone());
+        let frames = FrameSequence::new(&still, self.provider.scene(), None, None)?;
+        let drawn = (executor, &*self.provider);
+        let timed = timing::sample(self.session, &frames, drawn, TIMED, |_| ())?;
+        let (frame, _) = timing::times(&timed, self.limits.has_timestamps)?;
+        let spread = frame.spread(false).or_else(|| frame.spread(true));
         Ok(spread.map(|spread| spread.median))
     }
 
@@ -260,8 +240,7 @@ impl<'a> Trials<'a> {
                 return false;
             }
             self.provider.set_view(&view.view, self.viewport);
-            let capabilities = Capabilities::new(self.session.gpu);
-            let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
+            let Some(plan) = self.planned(set) else {
                 return false;
             };
             let names = plan.idle_params();
@@ -306,24 +285,25 @@ impl<'a> Trials<'a> {
                 .max(1.0)
     }
 
+    /// The plan of a setting under the light of the provider; `None` if there is none.
+    fn planned(&self, set: &Method) -> Option<Plan> {
+        let capabilities = Capabilities::new(self.session.gpu);
+        set.plan(self.viewport, capabilities, self.provider).ok()
+    }
+
     /// Plans a setting under the light of the provider; false if it cannot run, or if it remembers
-    /// earlier frames.
+    /// earlier frames: one frame shows nothing of a method that needs many.
     fn plan(&mut self, set: &Method) -> Result<bool, Stop> {
         self.left = self.left.saturating_sub(1);
-        let capabilities = Capabilities::new(self.session.gpu);
-        let Ok(plan) = set.plan(self.viewport, capabilities, self.provider) else {
+        let Some(plan) = self.planned(set).filter(|plan| !plan.remembers()) else {
             return Ok(false);
         };
-        // One frame shows nothing of a method that needs many.
-        if plan.remembers() {
-            return Ok(false);
-        }
         self.executor = Some(match self.executor.take() {
             Some(mut executor) => {
                 executor.replace_graph(plan, self.provider)?;
                 executor
             }
-            None => frame::executor(self.session, plan, self.provider)?,
+            None => Executor::on(self.session.gpu, plan, self.provider)?,
         });
         Ok(true)
     }
@@ -340,10 +320,9 @@ impl<'a> Trials<'a> {
         let request = Frame::new().with_all(true).with_read(&names);
         let (report, _) = frame::run(self.session, executor, &request)?;
         self.left = self.left.saturating_sub(1 + u64::from(growth.frames));
-        let contents = frame::contents(report.readbacks);
+        let layer = layer_of(executor.plan(), self.provider.light_number()).unwrap_or_default();
+        let shown = (frame::contents(report.readbacks), layer);
         let truth = &view.truth.ground_truth;
-        let layer = layer_of(executor.plan(), self.provider.light_number());
-        let outputs = Outputs::from_contents(contents, layer.unwrap_or_default(), &truth.pixels);
-        Ok(ground_truth::error(&set.preset, outputs, truth)?)
+        Ok(ground_truth::error(&set.preset, shown, truth)?)
     }
 }

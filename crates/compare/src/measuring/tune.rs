@@ -408,12 +408,7 @@ fn best(
         return Ok(None);
     };
     let (params, error) = chosen.unwrap_or((method.params.clone(), default_error));
-    let set = Method::on(
-        method.preset.clone(),
-        params.clone(),
-        method.viewport,
-        method.features,
-    );
+    let set = method.with(params.clone());
     let (now, before) = (set.all_params(), method.all_params());
     let changed = now
         .into_iter()

@@ -25,7 +25,6 @@ use skiagraph_graph::{MemoryEntry, PassSummary};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
-    time::Duration,
 };
 
 /// Value of [`Profile::kind`], which tells a profile from the results of `compare`.
@@ -152,6 +151,9 @@ pub struct FrameProfile {
     pub wall_ms: Series,
 }
 
+/// Times of a pass, or of whole frames without one: of the GPU, if there are any, and of the CPU.
+pub type Line<'a> = (Option<&'a PassProfile>, Option<&'a Series>, &'a Series);
+
 /// Memory of the graph's own textures and buffers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
@@ -190,31 +192,33 @@ impl Profile {
     pub fn new(
         conditions: Conditions,
         kinds: &[PassSummary],
-        samples: &Samples,
+        samples: Samples,
         memory: Memory,
     ) -> Option<Self> {
-        let is_trusted = conditions.adapter.gpu_unavailable.is_none();
-        let gpu = |times: &[Option<Duration>]| Series::from_all(times).filter(|_| is_trusted);
         let frame = FrameProfile {
-            gpu_ms: gpu(&samples.gpu),
-            cpu_ms: Series::from_times(&samples.cpu)?,
-            wall_ms: Series::from_times(&samples.wall)?,
+            gpu_ms: samples.gpu.and_then(Series::new),
+            cpu_ms: Series::new(samples.cpu)?,
+            wall_ms: Series::new(samples.wall)?,
         };
-        let pass = |pass: &PassSamples| {
-            let gpu_ms = gpu(&pass.gpu);
+        let pass = |pass: PassSamples| {
+            let gpu_ms = pass.gpu.and_then(Series::new);
             let kind = kinds.iter().find(|kind| kind.name == pass.name);
             Some(PassProfile {
-                name: pass.name.clone(),
+                name: pass.name,
                 kind: kind.map_or_else(String::new, |kind| kind.kind.clone()),
                 share: share(gpu_ms.as_ref(), frame.gpu_ms.as_ref()),
                 gpu_ms,
-                cpu_ms: Series::from_times(&pass.cpu)?,
+                cpu_ms: Series::new(pass.cpu)?,
             })
         };
         Some(Self {
             schema: 1,
             kind: KIND.into(),
-            passes: samples.passes.iter().map(pass).collect::<Option<_>>()?,
+            passes: samples
+                .passes
+                .into_iter()
+                .map(pass)
+                .collect::<Option<_>>()?,
             conditions,
             frame,
             memory,
@@ -254,6 +258,13 @@ impl Profile {
         }
     }
 
+    /// Returns the times of each pass, then those of whole frames.
+    pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+        let passes = self.passes.iter();
+        let passes = passes.map(|pass| (Some(pass), pass.gpu_ms.as_ref(), &pass.cpu_ms));
+        passes.chain([(None, self.frame.gpu_ms.as_ref(), &self.frame.cpu_ms)])
+    }
+
     /// Returns the number of timed frames.
     pub fn timed(&self) -> usize {
         self.frame.wall_ms.samples.len()
@@ -263,7 +274,7 @@ impl Profile {
 fn share(pass: Option<&Series>, frame: Option<&Series>) -> Option<f64> {
     let frames = pass?.samples.iter().zip(&frame?.samples);
     let shares = frames.filter(|(_, frame)| **frame > 0.0);
-    Some(Spread::from_ms(shares.map(|(pass, frame)| pass / frame))?.median)
+    Some(Spread::new(shares.map(|(pass, frame)| pass / frame))?.median)
 }
 
 impl From<MemoryEntry> for Material {
@@ -289,10 +300,9 @@ pub(crate) mod tests {
 
     /// A profile with every field in use: one pass with all times, one without a GPU time.
     pub(crate) fn sample() -> Profile {
-        let ms = |list: &[u64]| -> Vec<Duration> {
-            list.iter().map(|&us| Duration::from_micros(us)).collect()
-        };
-        let some = |list: &[u64]| ms(list).into_iter().map(Some).collect::<Vec<_>>();
+        let ms =
+            |list: &[u32]| -> Vec<f64> { list.iter().map(|&us| f64::from(us) / 1e3).collect() };
+        let some = |list: &[u32]| Some(ms(list));
         let samples = Samples {
             upkeep: None,
             passes: vec![
@@ -303,7 +313,7 @@ pub(crate) mod tests {
                 },
                 PassSamples {
                     name: "clear".into(),
-                    gpu: vec![None; 3],
+                    gpu: None,
                     cpu: ms(&[2, 3, 1]),
                 },
             ],
@@ -355,7 +365,7 @@ pub(crate) mod tests {
                 },
             ],
         };
-        Profile::new(conditions, &kinds, &samples, memory).unwrap()
+        Profile::new(conditions, &kinds, samples, memory).unwrap()
     }
 
     #[test]
@@ -375,34 +385,11 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn untrusted_timestamps_leave_no_gpu_time() {
-        let mut conditions = sample().conditions;
-        conditions.adapter.gpu_unavailable = Some("they lie".into());
-        let samples = Samples {
-            upkeep: None,
-            gpu: vec![Some(Duration::from_millis(1))],
-            cpu: vec![Duration::ZERO],
-            wall: vec![Duration::ZERO],
-            passes: vec![PassSamples {
-                name: "primitive".into(),
-                gpu: vec![Some(Duration::from_millis(1))],
-                cpu: vec![Duration::ZERO],
-            }],
-        };
-        let profile = Profile::new(conditions, &[], &samples, sample().memory).unwrap();
-        assert_eq!(
-            (&profile.frame.gpu_ms, &profile.passes[0].gpu_ms),
-            (&None, &None)
-        );
-        assert_eq!(profile.passes[0].share, None);
-    }
-
-    #[test]
     fn no_frames_make_no_profile() {
         let none = Profile::new(
             sample().conditions,
             &[],
-            &Samples::default(),
+            Samples::default(),
             sample().memory,
         );
         assert!(none.is_none());

@@ -16,7 +16,7 @@
 
 use crate::error::CompareError;
 use crate::files::json::{Mistake, check_schema};
-use crate::records::profile::{KIND, Profile};
+use crate::records::profile::{KIND, Line, PassProfile, Profile};
 use crate::records::results::{Results, Run, SCHEMA};
 use crate::records::statistics::Series;
 use crate::records::stress::Report;
@@ -230,16 +230,12 @@ fn without_times(profile: &Profile) -> Option<String> {
         let samples = &series.samples;
         !samples.is_empty() && samples.iter().all(|ms| ms.is_finite() && *ms >= 0.0)
     };
-    let pass = profile.passes.iter().find(|pass| {
-        let mut series = pass.gpu_ms.iter().chain([&pass.cpu_ms]);
-        !series.all(are_times)
-    });
-    if let Some(pass) = pass {
-        return Some(format!("\"name\": \"{}\"", pass.name));
-    }
-    let frame = &profile.frame;
-    let mut series = frame.gpu_ms.iter().chain([&frame.cpu_ms, &frame.wall_ms]);
-    (!series.all(are_times)).then(|| "\"frame\": {".to_owned())
+    let frame = || "\"frame\": {".to_owned();
+    let is_broken = |(_, gpu, cpu): &Line| !gpu.iter().chain([cpu]).all(|series| are_times(series));
+    let line = profile.lines().find(is_broken);
+    let named = |pass: &PassProfile| format!("\"name\": \"{}\"", pass.name);
+    let place = line.map(|(pass, ..)| pass.map_or_else(frame, named));
+    place.or_else(|| (!are_times(&profile.frame.wall_ms)).then(frame))
 }
 
 fn parse_results(text: &str) -> Result<Results, Mistake> {

@@ -354,7 +354,7 @@ impl TimeChange {
     /// Compares two lists of frames; `None` where nothing moves and both cost next to nothing, or
     /// one list is too short.
     fn new(regime: Option<Regime>, then: &[f64], now: &[f64]) -> Option<Self> {
-        let median = |ms: &[f64]| Some(Spread::from_ms(ms.iter().copied())?.median);
+        let median = |ms: &[f64]| Some(Spread::new(ms.to_vec())?.median);
         let change = Self {
             regime,
             then: median(then)?,
@@ -527,7 +527,7 @@ mod tests {
     use super::*;
     use crate::records::regimes::RegimeTimes;
     use crate::records::results::{Answer, tests::sample};
-    use std::time::Duration;
+    use crate::records::statistics::FrameTimes;
 
     /// `sample()` with ten frames of around so many milliseconds.
     fn timed(ms: f64) -> Results {
@@ -537,11 +537,9 @@ mod tests {
             .iter_mut()
             .filter_map(|run| run.measured.as_mut())
         {
-            let frame =
-                |turn: u32| Duration::from_secs_f64((ms + f64::from(turn % 3) * 0.01) / 1e3);
-            let frames: Vec<Duration> = (0..10).map(frame).collect();
-            let gpu: Vec<Option<Duration>> = frames.iter().copied().map(Some).collect();
-            measured.frame = FrameTimes::new(&gpu, None, &frames).unwrap();
+            let frame = |turn: u32| ms + f64::from(turn % 3) * 0.01;
+            let frames: Vec<f64> = (0..10).map(frame).collect();
+            measured.frame = FrameTimes::new(Some(frames.clone()), None, frames).unwrap();
         }
         results
     }

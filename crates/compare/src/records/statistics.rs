@@ -2,13 +2,12 @@
 //!
 //! ```
 //! use skiagraph_compare::records::statistics::{Series, Spread};
-//! use std::time::Duration;
 //!
-//! let times = [7, 5, 6, 20].map(Duration::from_millis);
-//! let spread = Spread::new(&times).ok_or("no samples")?;
+//! let times = [7.0, 5.0, 6.0, 20.0];
+//! let spread = Spread::new(times).ok_or("no samples")?;
 //! assert_eq!((spread.min, spread.median, spread.p95), (5.0, 6.5, 20.0));
 //! assert_eq!([spread.q1, spread.q3], [5.75, 10.25]);
-//! assert_eq!(Series::from_times(&times).ok_or("no samples")?.max, 20.0);
+//! assert_eq!(Series::new(times.to_vec()).ok_or("no samples")?.max, 20.0);
 //! # Ok::<(), &str>(())
 //! ```
 
@@ -57,21 +56,16 @@ pub struct FrameTimes {
 
 impl FrameTimes {
     /// Creates the times of frames from the GPU time, the CPU time of the upkeep, and the wall time
-    /// of each frame, in order. GPU times are left out if any is missing. Returns `None` if there
-    /// are no frames.
+    /// of each frame in milliseconds, in order. Returns `None` if there are no frames.
     pub fn new(
-        gpu: &[Option<Duration>],
-        cpu: Option<&[Duration]>,
-        wall: &[Duration],
+        gpu_frames: Option<Vec<f64>>,
+        cpu_frames: Option<Vec<f64>>,
+        wall_frames: Vec<f64>,
     ) -> Option<Self> {
-        let gpu_frames = all(gpu)
-            .map(|gpu| in_ms(&gpu))
-            .filter(|gpu| !gpu.is_empty());
-        let (cpu_frames, wall_frames) = (cpu.map(in_ms), in_ms(wall));
-        let spread = |frames: &[f64]| Spread::from_ms(frames.iter().copied());
+        let spread = |frames: &Vec<f64>| Spread::new(frames.iter().copied());
         Some(Self {
-            gpu_ms: gpu_frames.as_deref().and_then(spread),
-            cpu_ms: cpu_frames.as_deref().and_then(spread),
+            gpu_ms: gpu_frames.as_ref().and_then(spread),
+            cpu_ms: cpu_frames.as_ref().and_then(spread),
             wall_ms: spread(&wall_frames)?,
             gpu_frames,
             cpu_frames,
@@ -96,7 +90,7 @@ impl FrameTimes {
 
     /// Returns the order statistics of [`costs`](Self::costs); `None` if GPU times are missing.
     pub fn spread(&self, by_wall: bool) -> Option<Spread> {
-        Spread::from_ms(self.costs(by_wall)?.into_iter())
+        Spread::new(self.costs(by_wall)?)
     }
 
     /// Returns the milliseconds that `percent` percent of the frames keep to, of
@@ -107,26 +101,20 @@ impl FrameTimes {
         let rank = (costs.len() * usize::from(percent)).div_ceil(100).max(1);
         costs.get(rank - 1).copied()
     }
-
-    /// Sets the GPU times to `None`.
-    pub fn without_gpu(&mut self) {
-        (self.gpu_ms, self.gpu_frames) = (None, None);
-    }
 }
 
 impl Spread {
-    /// Returns the order statistics of samples; `None` if there are no samples.
-    pub fn new(samples: &[Duration]) -> Option<Self> {
-        Self::from_ms(samples.iter().map(|sample| sample.as_secs_f64() * 1e3))
-    }
-
     /// Returns the order statistics of samples in milliseconds; `None` if there are no samples.
-    pub fn from_ms(samples: impl Iterator<Item = f64>) -> Option<Self> {
-        let mut ms: Vec<f64> = samples.collect();
+    pub fn new(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut ms: Vec<f64> = samples.into_iter().collect();
         ms.sort_by(f64::total_cmp);
         let last = ms.len().checked_sub(1)?;
         let rank = (ms.len() as f64 * 0.95).ceil() as usize;
-        let [q1, q3] = quartiles(&ms);
+        let [q1, q3] = [0.25, 0.75].map(|share| {
+            let place = share * last as f64;
+            let [below, above] = [place.floor(), place.ceil()].map(|place| ms[place as usize]);
+            below + (above - below) * place.fract()
+        });
         Some(Self {
             min: ms[0],
             q1,
@@ -135,34 +123,11 @@ impl Spread {
             p95: ms[rank.clamp(1, ms.len()) - 1],
         })
     }
-
-    /// Returns the order statistics of samples; `None` if any sample is missing, or if there are no
-    /// samples.
-    pub fn from_all(samples: &[Option<Duration>]) -> Option<Self> {
-        Self::new(&all(samples)?)
-    }
 }
 
-/// First and third quartile of sorted samples, linear between those beside them.
-fn quartiles(sorted: &[f64]) -> [f64; 2] {
-    [0.25, 0.75].map(|share| {
-        let place = share * sorted.len().saturating_sub(1) as f64;
-        let at = |index: f64| sorted.get(index as usize).copied().unwrap_or(f64::NAN);
-        let (below, above) = (at(place.floor()), at(place.ceil()));
-        below + (above - below) * place.fract()
-    })
-}
-
-/// Converts times into milliseconds, exact to the nanosecond.
-pub fn in_ms(times: &[Duration]) -> Vec<f64> {
-    times
-        .iter()
-        .map(|time| time.as_nanos() as f64 / 1e6)
-        .collect()
-}
-
-fn all(samples: &[Option<Duration>]) -> Option<Vec<Duration>> {
-    samples.iter().copied().collect()
+/// Returns the milliseconds of a time, exact to the nanosecond.
+pub fn ms(time: Duration) -> f64 {
+    time.as_nanos() as f64 / 1e6
 }
 
 /// Times in milliseconds, one per frame, and their order statistics.
@@ -183,7 +148,7 @@ pub struct Series {
 impl Series {
     /// Creates a series of times in milliseconds; `None` if there are no samples.
     pub fn new(samples: Vec<f64>) -> Option<Self> {
-        let spread = Spread::from_ms(samples.iter().copied())?;
+        let spread = Spread::new(samples.iter().copied())?;
         let Spread {
             min, median, p95, ..
         } = spread;
@@ -196,22 +161,11 @@ impl Series {
         })
     }
 
-    /// Creates a series of times; `None` if there are no samples.
-    pub fn from_times(times: &[Duration]) -> Option<Self> {
-        Self::new(in_ms(times))
-    }
-
-    /// Creates a series of times; `None` if any sample is missing, or if there are no samples.
-    pub fn from_all(times: &[Option<Duration>]) -> Option<Self> {
-        Self::from_times(&all(times)?)
-    }
-
     /// Returns the first and third quartile of the samples, each interpolated linearly between the
     /// two nearest samples.
     pub fn quartiles(&self) -> [f64; 2] {
-        let mut sorted = self.samples.clone();
-        sorted.sort_by(f64::total_cmp);
-        quartiles(&sorted)
+        let spread = Spread::new(self.samples.iter().copied()).unwrap_or_default();
+        [spread.q1, spread.q3]
     }
 }
 
@@ -225,14 +179,7 @@ pub(crate) mod tests {
 
     #[test]
     fn spreads_are_order_statistics() {
-        let ms = |list: &[u64]| {
-            Spread::new(
-                &list
-                    .iter()
-                    .map(|&ms| Duration::from_millis(ms))
-                    .collect::<Vec<_>>(),
-            )
-        };
+        let ms = |list: &[u64]| Spread::new(list.iter().map(|&ms| ms as f64));
         assert_eq!(ms(&[]), None);
         assert_eq!(
             ms(&[7]),
@@ -265,7 +212,6 @@ pub(crate) mod tests {
                 p95: 95.0
             })
         );
-        assert_eq!(Spread::from_all(&[Some(Duration::ZERO), None]), None);
     }
 
     #[test]

@@ -21,7 +21,7 @@ use crate::records::results::{Adapter, Images};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 pub use skiagraph_cases::Casters;
-use skiagraph_reference::{PixelCounts, Statistics, WrongCounts};
+use skiagraph_reference::{PixelCounts, WrongCounts};
 use std::collections::BTreeMap;
 
 /// Results of the command `stress`: a matrix with a row per case and a column per method.
@@ -223,27 +223,6 @@ impl Verdict {
             Some(Guarantee::Certain) if certain == 0 => Self::Unjudged,
             Some(guarantee) if outside.breaks(guarantee) => Self::Fail,
             Some(_) => Self::Pass,
-        }
-    }
-}
-
-impl Counts {
-    /// Creates the counts of a picture. `whole` counts the method's answers as they are. `settled`
-    /// counts them with the [reference](crate#terms)'s answer at each pixel in the band (the pixels
-    /// whose answer rounding decides), so that its wrong pixels are those outside the band. `rays`
-    /// is the number of rays traced; `None` if the graph does not count them.
-    pub fn new(whole: &Statistics, settled: &Statistics, rays: Option<u64>) -> Self {
-        let outside = settled.wrong;
-        Self {
-            wrong: whole.wrong,
-            outside_band: OutsideBand {
-                lit: outside.lit,
-                shadow: outside.shadow,
-                certain: outside.certain,
-            },
-            uncertain: whole.uncertain,
-            uncertain_share: whole.uncertain_share(),
-            rays,
         }
     }
 }

@@ -109,7 +109,7 @@ fn saved_of(
     let names: BTreeSet<&str> = decodings.iter().map(|(.., name)| name.as_str()).collect();
     let names: Vec<&str> = names.into_iter().collect();
     let session = Session::new(gpu(), &Silent);
-    let (contents, _) = frame::render(session, method, plan, &mut provider, &names)?;
+    let (contents, _) = frame::render(session, plan, &mut provider, &names).unwrap();
     let write =
         |(save, decoding, name): &(&Save, Decoding, String)| write(save, &contents[name], decoding);
     decodings.iter().map(write).collect()

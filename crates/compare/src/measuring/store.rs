@@ -12,7 +12,7 @@ use crate::records::cells::Cells;
 use crate::records::read_back::{self, WITHOUT_RESULTS};
 use crate::records::results::{Results, Run};
 use crate::records::results_csv;
-use crate::sink::Sink;
+use crate::sink::{Silent, Sink};
 use itertools::Itertools;
 use std::{
     collections::BTreeSet,
@@ -55,16 +55,12 @@ impl Store {
             check_alike(&file, results, now)?;
         }
         let mut store = Self::new(folder, Cells::open(folder, None, results)?, now);
-        let names: Vec<String> = store.cells.files.keys().cloned().collect();
-        if !keeps {
-            (store.dropped, store.cells.torn) = (names, Vec::new());
-            return Ok((store, vec![None; planned.len()]));
+        if keeps {
+            return store.begin(keep, planned, sink);
         }
-        store.check(&names)?;
-        let runs = store.cells.in_order().into_iter();
-        let runs = runs.flat_map(|one| &one.runs).collect();
-        let kept = earlier(&file, keep, runs, planned, sink);
-        Ok((store, kept))
+        store.dropped = store.cells.files.keys().cloned().collect();
+        store.cells.torn.clear();
+        Ok((store, vec![None; planned.len()]))
     }
 
     /// Opens a folder for a shard: for those of the `planned` runs whose cells are `chosen`. Returns
@@ -87,14 +83,7 @@ impl Store {
             sink.note(&format!("{why}\n  it is measured anew"));
         }
         store.share = Some((truths, comparison.commit.clone()));
-        let names: Vec<String> = store.cells.files.keys().cloned().collect();
-        store.check(&names)?;
-        let kept = planned.iter().map(|planned| {
-            let run = store.known(&store.cells.name_of(planned))?.runs.first()?;
-            (run.is_whole() && planned.is_unchanged(run)).then(|| run.clone())
-        });
-        let kept = kept.collect();
-        Ok((store, kept))
+        store.begin(Kept::All, planned, &Silent)
     }
 
     fn new(folder: &Path, cells: Cells, now: &Results) -> Self {
@@ -105,6 +94,20 @@ impl Store {
             dropped: Vec::new(),
             share: None,
         }
+    }
+
+    fn begin(
+        mut self,
+        keep: Kept,
+        planned: &[Run],
+        sink: &dyn Sink,
+    ) -> Result<(Self, Vec<Option<Run>>), CompareError> {
+        let names: Vec<String> = self.cells.files.keys().cloned().collect();
+        self.check(&names)?;
+        let cells = self.cells.in_order().into_iter();
+        let runs = cells.flat_map(|one| &one.runs).collect();
+        let kept = earlier(&self.folder.join("results.json"), keep, runs, planned, sink);
+        Ok((self, kept))
     }
 
     /// Returns the reference's answers that machines share, for a shard.
@@ -282,7 +285,6 @@ fn differences(earlier: &Results, now: &Results) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::records::results::tests::sample;
-    use crate::sink::Silent;
     use std::{fs, thread};
 
     /// Names of the runs in the folder's two files, and that of cells.

@@ -56,15 +56,13 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
 /// When the results in `places` were written last.
 fn written(places: &[PathBuf]) -> Vec<Option<SystemTime>> {
     let places = read_back::with_scenes(places).into_iter();
-    let files = places.flat_map(|place| match place.is_dir() {
-        true => ["results.json", "stress.json"]
-            .map(|file| place.join(file))
-            .to_vec(),
-        false => vec![place],
+    let files = places.flat_map(|place| {
+        let names = ["results.json", "stress.json"].map(|name| place.join(name));
+        names.into_iter().chain([place])
     });
-    files
-        .map(|file| file.metadata().ok()?.modified().ok())
-        .collect()
+    let files = files.filter_map(|file| file.metadata().ok());
+    let files = files.filter(|file| file.is_file());
+    files.map(|file| file.modified().ok()).collect()
 }
 
 /// Joins the results in `places`, each as for [`write`](write()), and writes their cells,
@@ -88,11 +86,11 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
         sink.note(&format!("the results that {out} holds already stay in it"));
     }
     let is_out = |place: &Path| of_place(place) == of_place(out);
-    let places = places.iter().filter_map(|place| match is_out(place) {
-        false => Some(place.clone()),
-        true => cell_files::is_folder(out).then(|| out.to_path_buf()),
-    });
-    let places: Vec<PathBuf> = places.collect();
+    let mut places = places.to_vec();
+    for place in places.iter_mut().filter(|place| is_out(place)) {
+        *place = out.to_path_buf();
+    }
+    places.retain(|place| place != out || cell_files::is_folder(out));
     let mut cells = Cells::open(out, None, earlier)?;
     let (read, sources) = loop {
         if let Some(why) = cells.torn.pop() {
@@ -161,8 +159,8 @@ struct Read {
     missing: Option<String>,
 }
 
-/// Reads the results and matrices of folders or files; one that is named twice is read once. Results
-/// of the folder that `own` is of are not read again.
+/// Reads the results and matrices of folders or files; one that is named twice is read once. The
+/// folder of `own` has been read.
 fn read(places: &[PathBuf], own: &[Kept]) -> Result<Read, CompareError> {
     let places = places.iter().unique_by(|place| of_place(place));
     let places: Vec<PathBuf> = places.cloned().collect();

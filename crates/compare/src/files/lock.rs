@@ -23,8 +23,8 @@ use std::{
 };
 
 /// Name of the lock file for stress.json, the results of one `skiagraph stress` command. The lock
-/// is held to the end of the command. The lock file is never deleted, as that would let two processes
-/// lock two files of this name.
+/// is held to the end of the command. The lock file is never deleted, as that would let two
+/// processes lock two files of this name.
 pub const STRESS: &str = ".skiagraph-stress.lock";
 
 /// A lock that this process holds until the value is dropped or the process ends. It locks nothing

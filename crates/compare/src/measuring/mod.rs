@@ -52,3 +52,4 @@ mod trial;
 mod truth_folder;
 pub mod tune;
 pub mod view_or_path;
+mod view_warnings;

@@ -39,17 +39,17 @@ use crate::measuring::stop::attempt;
 use crate::measuring::store::Store;
 use crate::measuring::truth_folder::SeenFrame;
 use crate::measuring::view_or_path::ViewOrPath;
+use crate::measuring::view_warnings::{unlit, within_lamp};
 use crate::measuring::{cell, date, device};
 use crate::pictures::run_pictures::{PictureFile, conditions};
 use crate::records::published::attach;
 use crate::records::results::{PROGRAM, Results, Run, SCHEMA};
 use crate::sink::{Runs, Session, Step};
-use crate::wording::{length, plural, size, thousands};
+use crate::wording::{plural, size};
 use itertools::Itertools;
 use skiagraph_graph::{Code, Diagnostic, Diagnostics, Plan};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Oracle, PixelCounts};
-use skiagraph_scene::Scene;
+use skiagraph_reference::Oracle;
 use std::{
     cell::{OnceCell, RefCell},
     collections::BTreeSet,
@@ -626,55 +626,3 @@ fn planned(comparison: &Comparison, methods: &[Method], template: &Run) -> Vec<R
     }
     planned
 }
-
-/// That a view shows nothing, nothing in light or hardly any shadow: its table would be one of
-/// zeros.
-fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
-    let away = thousands(pixels.facing_away);
-    let facing = thousands(pixels.facing_light);
-    let what = match (pixels.facing_away, pixels.facing_light, pixels.lit) {
-        (0, 0, _) => {
-            "shows no triangle: look from elsewhere, or move the near and far planes".to_owned()
-        }
-        (_, 0, _) => format!(
-            "has nothing in light: all {away} pixels that show a surface face away from it; \
-             the light's direction is the one in which it travels"
-        ),
-        (_, _, 0) => format!(
-            "has nothing in light: {away} pixels face away from it, and all {facing} that face it \
-             are in shadow; the light's direction is the one in which it travels"
-        ),
-        (..) if (pixels.shadow as f64) < HARDLY_ANY * pixels.facing_light as f64 => format!(
-            "shows hardly any shadow: {} of the {facing} pixels that face the light, so that \
-             methods differ little on it; look from another side, or move the light",
-            thousands(pixels.shadow)
-        ),
-        _ => return None,
-    };
-    Some(format!("warning: view `{view}` {what}"))
-}
-
-/// Warns of surfaces within a lamp, which methods answer by a disk that is not all of it.
-fn within_lamp(view: &ViewOrPath, scene: &Scene, pixels: u64) -> Option<String> {
-    let kind = view.light(scene);
-    let radius = kind.radius()?;
-    let lights = view.own_light().into_iter().chain(&scene.lights);
-    let light = lights.into_iter().find(|light| light.kind == kind);
-    let light = light.map_or_else(
-        || kind.word().to_owned(),
-        |light| format!("`{}`", light.name),
-    );
-    (pixels > 0).then(|| {
-        format!(
-            "warning: view `{}` shows surfaces inside of the light {light}, in {} pixels: they \
-             are within its radius of {}, and are lit by a disk around its centre alone; make \
-             `radius` smaller, or move the light",
-            view.name(),
-            thousands(pixels),
-            length(radius)
-        )
-    })
-}
-
-/// Share of the pixels facing the light below which a view has hardly any shadow.
-const HARDLY_ANY: f64 = 0.05;

@@ -63,9 +63,9 @@ impl Store {
         Ok((store, vec![None; planned.len()]))
     }
 
-    /// Opens a folder for a shard: for those of the `planned` runs whose cells are `chosen`. Returns
-    /// those that need not be measured again, as [`open`](Self::open) does, whichever machine
-    /// measured them. Tells the sink about files that cannot be read.
+    /// Opens a folder for a shard: for those of the `planned` runs whose cells are `chosen`.
+    /// Returns those that need not be measured again, as [`open`](Self::open) does, whichever
+    /// machine measured them. Tells the sink about files that cannot be read.
     ///
     /// # Errors
     /// A folder that cannot be made; a cell that another version of the program has measured.
@@ -115,11 +115,6 @@ impl Store {
         self.share.as_ref().map(|(truths, _)| truths)
     }
 
-    /// What a file holds.
-    fn known(&self, name: &str) -> Option<&Results> {
-        self.cells.files.get(name)?.results.as_ref()
-    }
-
     /// Refuses files that cannot be read, and cells that were not measured alike.
     fn check(&mut self, names: &[String]) -> Result<(), CompareError> {
         if let Some(why) = self.cells.torn.pop() {
@@ -127,7 +122,7 @@ impl Store {
         }
         for name in names {
             let path = self.cells.path(name);
-            match (self.known(name), &self.share) {
+            match (self.cells.get(name), &self.share) {
                 (Some(one), Some((_, commit))) => check_version(&path, one, commit.as_deref())?,
                 (Some(one), None) => check_alike(&path, one, &self.head)?,
                 (None, _) => {}
@@ -180,9 +175,12 @@ impl Store {
                 continue;
             }
             let path = self.cells.path(&self.cells.name_of(run));
-            return Err(CompareError::write(&path, "what has its name is no file"));
+            return Err(CompareError::write(
+                &path,
+                "another process writes and removes it",
+            ));
         }
-        // Of several processes the one that writes last has seen all cells.
+        // The process that writes last has seen the cells of all.
         while self.share.is_none() {
             results_csv::save(&self.whole(own), &self.folder)?;
             if !self.refresh()? {
@@ -199,13 +197,13 @@ impl Store {
         let cell = self.cells.files.get(&name);
         let (is_there, is_foreign) = (cell.is_some(), cell.is_some_and(|cell| cell.is_foreign));
         let mut head = &self.head;
-        if let Some(known) = self.known(&name) {
-            let other = &known.runs[0];
+        if let Some(there) = self.cells.get(&name) {
+            let other = &there.runs[0];
             if other == run {
                 return Ok(true);
             }
             if is_foreign && other.fingerprint == run.fingerprint {
-                let is_like = known.adapter == head.adapter;
+                let is_like = there.adapter == head.adapter;
                 if let Some(why) = disagreement(run, other).filter(|_| is_like) {
                     let places = [&self.cells.path(&name), Path::new("here")];
                     return Err(at_odds(run, places, &why));
@@ -216,7 +214,7 @@ impl Store {
                 }
             }
             if other.session == run.session {
-                head = known;
+                head = there;
             }
         }
         let one = Results {
@@ -224,14 +222,14 @@ impl Store {
             ..head.clone()
         };
         if !is_there {
-            let files = self.cells.files.iter().filter(|(_, cell)| {
-                let known = cell.results.as_ref();
-                known.is_some_and(|known| run.is_in_place_of(&known.runs[0]))
-            });
-            let replaced: Vec<String> = files.map(|(name, _)| name.clone()).collect();
-            replaced
-                .iter()
-                .try_for_each(|name| self.cells.remove(name))?;
+            let is_replaced = |name: &&String| {
+                let there = self.cells.get(name);
+                there.is_some_and(|there| run.is_in_place_of(&there.runs[0]))
+            };
+            let names = self.cells.files.keys().filter(is_replaced);
+            for name in names.cloned().collect_vec() {
+                self.cells.remove(&name)?;
+            }
         }
         self.cells.write(&name, one)
     }

@@ -38,7 +38,7 @@ type Stamp = Option<(SystemTime, u64)>;
 pub struct Cell {
     stamp: Stamp,
     /// Results with one run; `None` if the file cannot be read.
-    pub results: Option<Results>,
+    results: Option<Results>,
     /// True if another process has written it since this one opened the folder.
     pub is_foreign: bool,
 }
@@ -84,8 +84,9 @@ impl Cells {
         }
         let made = fs::create_dir_all(&cells.place);
         made.map_err(|error| CompareError::write(&cells.place, error))?;
-        let known = cells.files.values_mut();
-        known.for_each(|cell| cell.is_foreign = false);
+        for cell in cells.files.values_mut() {
+            cell.is_foreign = false;
+        }
         Ok(cells)
     }
 
@@ -114,6 +115,11 @@ impl Cells {
     /// Returns the path of a file.
     pub fn path(&self, name: &str) -> PathBuf {
         self.place.join(name)
+    }
+
+    /// Returns what a file holds: results with one run.
+    pub fn get(&self, name: &str) -> Option<&Results> {
+        self.files.get(name)?.results.as_ref()
     }
 
     /// Takes over what other processes have written and removed since the last time, and returns
@@ -154,9 +160,8 @@ impl Cells {
     /// Returns the name of a run's file: that in which it is, or would be.
     pub fn name_of(&self, run: &Run) -> String {
         name_that(run, |name| {
-            let cell = self.files.get(name);
-            let other = cell.and_then(|cell| cell.results.as_ref());
-            other.is_none_or(|other| other.runs[0].is_in_place_of(run))
+            let there = self.get(name);
+            there.is_none_or(|there| there.runs[0].is_in_place_of(run))
         })
     }
 
@@ -187,9 +192,9 @@ impl Cells {
     /// The file cannot be removed.
     pub fn remove(&mut self, name: &str) -> Result<(), CompareError> {
         let path = self.path(name);
-        let known = self.files.remove(name).and_then(|cell| cell.stamp);
-        if known.is_some()
-            && known == stamp(&path)
+        let last = self.files.remove(name).and_then(|cell| cell.stamp);
+        if last.is_some()
+            && last == stamp(&path)
             && let Err(error) = fs::remove_file(&path)
             && path.exists()
         {
@@ -213,8 +218,7 @@ impl Cells {
             self.remove(name)?;
         }
         for (name, one) in wanted {
-            let known = self.files.get(&name).and_then(|cell| cell.results.as_ref());
-            if known.is_none_or(|known| known.runs != one.runs) {
+            if self.get(&name).is_none_or(|there| there.runs != one.runs) {
                 self.write(&name, one)?;
             }
         }

@@ -179,7 +179,15 @@ def compared(commands, programs, folders, is_measured, renames):
                 of += differences(f"{name} of `{words}`", *texts)
         print(f"{'differs' if of else 'alike'}, exit {old}: skiagraph {words}", flush=True)
         found += of
-    files = [{str(file.relative_to(folder)) for file in folder.rglob("*") if file.is_file()} for folder in folders]
+    # Cells stand in results.json, too.
+    files = [
+        {
+            str(file.relative_to(folder))
+            for file in folder.rglob("*")
+            if file.is_file() and file.parent.name != "cells" and not file.name.endswith(".lock")
+        }
+        for folder in folders
+    ]
     found += [f"only one program wrote {name}" for name in sorted(files[0] ^ files[1])]
     for name in sorted(files[0] & files[1]):
         texts = [read(folder / name, is_measured, pairs) for folder, pairs in zip(folders, renames)]
@@ -194,6 +202,7 @@ def hand_over(name, folders):
     of = [json.loads((folder / name / "results.json").read_text()) for folder in folders]
     shutil.rmtree(folders[1] / name)
     shutil.copytree(folders[0] / name, folders[1] / name)
+    shutil.rmtree(folders[1] / name / "cells", ignore_errors=True)
     for old, new in zip(of[0]["runs"], of[1]["runs"]):
         old["fingerprint"], old["params"] = new["fingerprint"], new["params"]
     (folders[1] / name / "results.json").write_text(json.dumps(of[0], indent=2, ensure_ascii=False))

@@ -3,18 +3,20 @@
 use crate::html::page;
 use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::files::lock;
 use skiagraph_compare::files::write::{check_folder, write_whole};
 use skiagraph_compare::records::cell_files;
+use skiagraph_compare::records::cells::Cells;
 use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::results_csv;
 use skiagraph_compare::records::sources::{Kept, Source, merged, sources};
 use skiagraph_compare::records::stress::Report;
-use skiagraph_compare::sink::{Silent, Sink};
+use skiagraph_compare::sink::Sink;
 use skiagraph_compare::wording::plural;
 use std::{
+    collections::BTreeSet,
     fs,
     path::{Path, PathBuf},
+    time::SystemTime,
 };
 
 /// Name of the page's file in a folder of results.
@@ -31,34 +33,42 @@ pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> 
 
 /// Writes the HTML page of the results in `places` to `file`. Each place is a folder that `compare`
 /// or `stress` wrote, a results.json, or a folder of such folders. The sink gets notes about
-/// pictures that did not fit into the page and planned cells that are not measured yet. If `file`
-/// lies in one of the folders, that folder's lock is held, so the page is never older than the
-/// results beside it.
+/// pictures that did not fit into the page and planned cells that are not measured yet. The page is
+/// written again if another process writes results meanwhile, so that it is never older than they
+/// are.
 ///
 /// # Errors
 /// If a folder has no results, results cannot be read, or the file cannot be written.
 pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
-    let beside = file.parent();
-    let beside = places.iter().find(|place| beside == Some(place.as_path()));
-    let _locked = match beside.filter(|folder| folder.is_dir()) {
-        Some(folder) => Some(lock::wait_for(folder, lock::RESULTS, sink)?),
-        None => None,
-    };
-    let Read {
-        sources,
-        matrices,
-        missing,
-    } = read(places, sink)?;
-    if let Some(missing) = missing {
-        sink.note(&missing);
+    loop {
+        let before = written(places);
+        let read = read(places, &[])?;
+        let page = page(&sources(read.kept), &read.matrices);
+        write_whole(file, page.html.as_bytes())?;
+        if written(places) == before {
+            let notes = read.notes.iter().chain(&read.missing).chain(&page.left_out);
+            notes.for_each(|text| sink.note(text));
+            return Ok(());
+        }
     }
-    write_page(&sources, &matrices, file, sink)
 }
 
-/// Joins the results in `places`, each as for [`write`](write()), and writes results.json,
-/// results.csv and the HTML page into the folder `out`, which is made if it is missing. Results
-/// that `out` holds already stay in it. Pictures are embedded in the page, but not copied into
-/// `out`. The sink is told which results are joined and which are kept apart.
+/// When the results in `places` were written last.
+fn written(places: &[PathBuf]) -> Vec<Option<SystemTime>> {
+    let places = read_back::with_scenes(places).into_iter();
+    let files = places.flat_map(|place| {
+        let names = ["results.json", "stress.json"].map(|name| place.join(name));
+        names.into_iter().chain([place])
+    });
+    let files = files.filter_map(|file| file.metadata().ok());
+    let files = files.filter(|file| file.is_file());
+    files.map(|file| file.modified().ok()).collect()
+}
+
+/// Joins the results in `places`, each as for [`write`](write()), and writes their cells,
+/// results.json, results.csv and the HTML page into the folder `out`, which is made if it is
+/// missing. Results that `out` holds already stay in it. Pictures are embedded in the page, but not
+/// copied into `out`. The sink is told which results are joined and which are kept apart.
 ///
 /// # Errors
 /// If a place has no results, results cannot be read, or a file cannot be written; cells of two
@@ -67,26 +77,45 @@ pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), Com
 /// the second case the measured cells are written first.
 pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
     // All is read before anything is written.
-    read(places, &Silent)?;
+    read(places, &[])?;
     check_folder(out)?;
-    let _locked = lock::wait_for(out, lock::RESULTS, sink)?;
-    let mut places = places.to_vec();
-    if out.join("results.json").exists() {
-        places.insert(0, out.to_path_buf());
+    let earlier = out.join("results.json").exists();
+    let earlier = earlier.then(|| read_back::kept(out)).transpose()?;
+    if earlier.is_some() {
         let out = out.display();
         sink.note(&format!("the results that {out} holds already stay in it"));
     }
-    let Read {
-        sources,
-        matrices,
-        missing,
-    } = read(&places, sink)?;
-    let Some(results) = merged(&sources, out) else {
-        let text = missing.unwrap_or_else(|| {
-            "there is nothing to join: name folders that `skiagraph compare --out DIR` wrote".into()
+    let is_out = |place: &Path| of_place(place) == of_place(out);
+    let mut places = places.to_vec();
+    for place in places.iter_mut().filter(|place| is_out(place)) {
+        *place = out.to_path_buf();
+    }
+    places.retain(|place| place != out || cell_files::is_folder(out));
+    let mut cells = Cells::open(out, None, earlier)?;
+    let (read, sources) = loop {
+        if let Some(why) = cells.torn.pop() {
+            return Err(why);
+        }
+        let own = cells.in_order().into_iter().map(|results| Kept {
+            folder: out.to_path_buf(),
+            results: results.clone(),
         });
-        return Err(CompareError::Input(text));
+        let mut read = read(&places, &own.collect_vec())?;
+        let sources = sources(std::mem::take(&mut read.kept));
+        let Some(results) = merged(&sources, out) else {
+            let text = read.missing.unwrap_or_else(|| {
+                "there is nothing to join: name folders that `skiagraph compare --out DIR` wrote"
+                    .into()
+            });
+            return Err(CompareError::Input(text));
+        };
+        cells.set(results.clone())?;
+        results_csv::save(&results, out)?;
+        if cells.refresh().is_empty() {
+            break (read, sources);
+        }
     };
+    read.notes.iter().for_each(|text| sink.note(text));
     for source in &sources {
         sink.note(&told(source));
     }
@@ -97,9 +126,11 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
              give one label to several settings, are kept apart"
         ));
     }
-    results_csv::save(&results, out)?;
-    write_page(&sources, &matrices, &out.join(FILE), sink)?;
-    missing.map_or(Ok(()), |missing| Err(CompareError::Input(missing)))
+    let page = page(&sources, &read.matrices);
+    page.left_out.iter().for_each(|text| sink.note(text));
+    write_whole(&out.join(FILE), page.html.as_bytes())?;
+    read.missing
+        .map_or(Ok(()), |missing| Err(CompareError::Input(missing)))
 }
 
 /// Describes what was joined.
@@ -120,22 +151,30 @@ fn told(source: &Source) -> String {
 
 /// Contents of folders and files.
 struct Read {
-    sources: Vec<Source>,
+    kept: Vec<Kept>,
     matrices: Vec<Report>,
+    /// Remarks for the user.
+    notes: Vec<String>,
     /// Text on the planned cells that are not measured yet.
     missing: Option<String>,
 }
 
-/// Reads the results and matrices of folders or files; one that is named twice is read once.
-fn read(places: &[PathBuf], sink: &dyn Sink) -> Result<Read, CompareError> {
-    let places: Vec<PathBuf> = places
-        .iter()
-        .unique_by(|place| of_place(place))
-        .cloned()
-        .collect();
+/// Reads the results and matrices of folders or files; one that is named twice is read once. The
+/// folder of `own` has been read.
+fn read(places: &[PathBuf], own: &[Kept]) -> Result<Read, CompareError> {
+    let places = places.iter().unique_by(|place| of_place(place));
+    let places: Vec<PathBuf> = places.cloned().collect();
     let cells = cell_files::join(&places)?;
-    cells.notes.iter().for_each(|text| sink.note(text));
-    let (mut kept, mut matrices) = (cells.kept, Vec::new());
+    let is_own = |place: &Path| own.iter().any(|kept| kept.folder == place);
+    let joined = cells.kept.iter().filter(|kept| is_own(&kept.folder));
+    let joined = joined.flat_map(|kept| &kept.results.runs);
+    let joined: BTreeSet<&str> = joined.map(|run| &*run.cell).collect();
+    let further = own.iter().filter(|kept| {
+        let mut runs = kept.results.runs.iter();
+        !runs.any(|run| joined.contains(&*run.cell))
+    });
+    let mut kept: Vec<Kept> = further.chain(&cells.kept).cloned().collect();
+    let mut matrices = Vec::new();
     let places = read_back::with_scenes(&places);
     for place in places.iter().unique_by(|place| of_place(place)) {
         let matrix = if place.is_dir() {
@@ -145,14 +184,15 @@ fn read(places: &[PathBuf], sink: &dyn Sink) -> Result<Read, CompareError> {
         };
         // A folder may be of `stress` or of cells alone.
         let has_others = matrix.is_some() || cell_files::is_folder(place);
-        if !has_others || place.join("results.json").exists() {
+        if !is_own(place) && (!has_others || place.join("results.json").exists()) {
             kept.extend(Kept::read(place)?);
         }
         matrices.extend(matrix);
     }
     Ok(Read {
-        sources: sources(kept),
+        kept,
         matrices,
+        notes: cells.notes,
         missing: cells.missing,
     })
 }
@@ -169,24 +209,12 @@ fn of_place(place: &Path) -> PathBuf {
     canonical.unwrap_or(file)
 }
 
-fn write_page(
-    sources: &[Source],
-    matrices: &[Report],
-    file: &Path,
-    sink: &dyn Sink,
-) -> Result<(), CompareError> {
-    let page = page(sources, matrices);
-    for line in &page.left_out {
-        sink.note(line);
-    }
-    write_whole(file, page.html.as_bytes())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::test_support::results as sample;
     use skiagraph_compare::records::results::Results;
+    use skiagraph_compare::sink::Silent;
 
     /// A folder with these results and a picture of the first run.
     fn folder(place: &Path, results: &Results) -> PathBuf {

@@ -1,13 +1,13 @@
 //! Locks on files of a folder, so that one process at a time writes them.
 //!
 //! ```
-//! use skiagraph_compare::{files::lock::{RESULTS, claim, wait_for}, sink::Silent};
+//! use skiagraph_compare::{files::lock::{STRESS, claim, wait_for}, sink::Silent};
 //!
 //! let folder = tempfile::tempdir()?;
-//! let locked = wait_for(folder.path(), RESULTS, &Silent)?;
-//! assert!(claim(folder.path(), RESULTS, &Silent)?.is_none(), "it is taken");
+//! let locked = wait_for(folder.path(), STRESS, &Silent)?;
+//! assert!(claim(folder.path(), STRESS, &Silent)?.is_none(), "it is taken");
 //! drop(locked);
-//! assert!(claim(folder.path(), RESULTS, &Silent)?.is_some());
+//! assert!(claim(folder.path(), STRESS, &Silent)?.is_some());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -22,13 +22,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Name of the lock file for results.json, the files beside it (results.csv, report.html) and the
-/// pictures of its runs. The lock is held while these are written, not while runs are measured. The
-/// lock file is never deleted, as that would let two processes lock two files of this name.
-pub const RESULTS: &str = ".skiagraph-results.lock";
-
 /// Name of the lock file for stress.json, the results of one `skiagraph stress` command. The lock
-/// is held to the end of the command.
+/// is held to the end of the command. The lock file is never deleted, as that would let two
+/// processes lock two files of this name.
 pub const STRESS: &str = ".skiagraph-stress.lock";
 
 /// A lock that this process holds until the value is dropped or the process ends. It locks nothing
@@ -44,7 +40,7 @@ const RETRY: Duration = Duration::from_millis(20);
 /// After so long it is said that something is waited for.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Locks the lock file named `files` ([`RESULTS`] or [`STRESS`]) in `folder`, which must exist, and
+/// Locks the lock file named `files` in `folder`, which must exist, and
 /// waits while another process holds it. Tells the sink after two seconds of waiting.
 ///
 /// # Errors
@@ -72,7 +68,7 @@ pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, C
     }
 }
 
-/// Locks the lock file named `files` ([`RESULTS`] or [`STRESS`]) in `folder`, which must exist,
+/// Locks the lock file named `files` in `folder`, which must exist,
 /// without waiting; `None` if it is held already, by this process or another. Tells the sink if the
 /// file system has no locks.
 ///
@@ -109,14 +105,14 @@ mod tests {
     fn one_has_the_files_until_it_lets_go() {
         let folder = tempfile::tempdir().unwrap();
         let claim = |files| claim(folder.path(), files, &Silent).unwrap();
-        let first = claim(RESULTS);
+        let first = claim(STRESS);
         assert!(first.is_some());
-        assert!(claim(RESULTS).is_none());
-        assert!(claim(STRESS).is_some(), "files of their own");
+        assert!(claim(STRESS).is_none());
+        assert!(claim(".a.truth.lock").is_some(), "files of their own");
         drop(first);
-        assert!(claim(RESULTS).is_some());
+        assert!(claim(STRESS).is_some());
         let nowhere = folder.path().join("nowhere");
-        let error = super::claim(&nowhere, RESULTS, &Silent).unwrap_err();
+        let error = super::claim(&nowhere, STRESS, &Silent).unwrap_err();
         assert!(error.to_string().contains("nowhere"), "{error}");
     }
 }

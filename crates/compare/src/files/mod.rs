@@ -2,10 +2,10 @@
 //! shows mistakes in JSON and CSV.
 //!
 //! ```
-//! use skiagraph_compare::{files::{lock::{RESULTS, wait_for}, write::write_whole}, sink::Silent};
+//! use skiagraph_compare::{files::{lock::{STRESS, wait_for}, write::write_whole}, sink::Silent};
 //!
 //! let folder = tempfile::tempdir()?;
-//! let locked = wait_for(folder.path(), RESULTS, &Silent)?;
+//! let locked = wait_for(folder.path(), STRESS, &Silent)?;
 //! write_whole(&folder.path().join("notes.txt"), b"measured at night")?;
 //! drop(locked);
 //! assert_eq!(std::fs::read(folder.path().join("notes.txt"))?, b"measured at night");

@@ -141,24 +141,41 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
     write().map_err(|error| CompareError::write(path, error))
 }
 
-/// Writes a file, whole or not at all, unless a file of that name exists. It is on the disk before
-/// it has its name, so that not even a machine that loses its power leaves a part. Returns true if
-/// the file was written, false if the name was in use.
+/// Writes a file whole or not at all, in place of one of that name. It is on the disk before it has
+/// its name, so that not even a machine that loses its power leaves a part.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_durable(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
+    let write = || -> io::Result<()> {
+        durable(path, bytes)?.persist(path)?;
+        Ok(())
+    };
+    write().map_err(|error| CompareError::write(path, error))
+}
+
+/// Writes a file as [`write_durable`] does, unless a file of that name exists. Returns true if the
+/// file was written, false if the name was in use.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<bool, CompareError> {
     let write = || -> io::Result<bool> {
-        let mut file = beside(path)?;
-        file.write_all(bytes)?;
-        file.as_file().sync_all()?;
-        match file.persist_noclobber(path) {
+        match durable(path, bytes)?.persist_noclobber(path) {
             Ok(_) => Ok(true),
             Err(kept) if kept.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
             Err(kept) => Err(kept.error),
         }
     };
     write().map_err(|error| CompareError::write(path, error))
+}
+
+/// A file beside `path` that is on the disk, and has no name of its own yet.
+fn durable(path: &Path, bytes: &[u8]) -> io::Result<tempfile::NamedTempFile> {
+    let mut file = beside(path)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    Ok(file)
 }
 
 #[cfg(test)]

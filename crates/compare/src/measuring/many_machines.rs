@@ -23,7 +23,6 @@ use crate::comparison::Comparison;
 use crate::error::CompareError;
 use crate::files::write::{check_folder, write_new};
 use crate::measuring::cell;
-use crate::measuring::cell_folder::CellFolder;
 use crate::measuring::series::Series;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::records::cell_plan::{CellPlan, FILE, Head, PlannedCell, PlannedTruth};
@@ -134,7 +133,7 @@ pub fn plan(
 }
 
 /// Measures the cells of a shard that the folder [`Share::out`] does not hold yet. Each becomes a
-/// file of its own when it is finished, `cells/ID.json`; the folder also gets the pictures, a copy
+/// file of its own, `cells/ID.json`; the folder also gets the pictures, a copy
 /// of the plan, and the reference's answers in `truth`, which are traced once for all machines that
 /// share the folder. `scenes` are those of which the plan was made.
 ///
@@ -163,8 +162,7 @@ pub fn measure(
     let mut broken = BTreeSet::new();
     for SceneCells { comparison, folder } in scenes {
         let folder = folder.map_or(out.to_path_buf(), |name| out.join(name));
-        let cells = CellFolder::open(&folder, comparison)?;
-        let mut series = Series::of_cells(comparison, session, cells, &ids)?;
+        let mut series = Series::of_cells(comparison, session, &folder, &ids)?;
         outcome.kept += series.results.runs.len();
         for view in 0..comparison.views.len() {
             for viewport in 0..comparison.viewports.len() {

@@ -18,10 +18,7 @@
 //! # }
 //! ```
 
-use crate::error::CompareError;
-use crate::measuring::results_folder::{ResultsFolder, check_alike};
-use crate::records::read_back;
-use crate::records::results::{Results, Run};
+use crate::records::results::Run;
 use crate::sink::Sink;
 use crate::wording::plural;
 use std::path::Path;
@@ -39,63 +36,42 @@ pub enum Kept {
     All,
 }
 
-/// Opens a folder of results, and finds the earlier runs that need not be measured again;
-/// [`Series::new`](crate::measuring::series::Series::new) calls it. The returned list is parallel
-/// to `planned`: the earlier run, or `None` if the run must be measured. Only [`Kept::All`] reuses
-/// any. Tells the sink how many runs are kept. `now` holds the adapter, scene and protocol of this
-/// comparison.
-///
-/// # Errors
-/// A file that cannot be read, is not a results.json, or was measured with another adapter, scene
-/// or protocol than `now`. With [`Kept::Nothing`], such a file is not an error.
+/// Finds the earlier runs that need not be measured again, of those that a folder holds. The
+/// returned list is parallel to `planned`: the earlier run, or `None` if the run must be measured.
+/// Only [`Kept::All`] reuses any. Tells the sink how many runs of `file` are kept.
 pub(crate) fn earlier(
-    folder: &Path,
+    file: &Path,
     keep: Kept,
-    now: &Results,
+    runs: Vec<&Run>,
     planned: &[Run],
     sink: &dyn Sink,
-) -> Result<(ResultsFolder, Vec<Option<Run>>), CompareError> {
-    let path = folder.join("results.json");
-    let (name, resumes) = (path.display().to_string(), keep == Kept::All);
-    let mut opened = ResultsFolder::new(folder);
-    let none = vec![None; planned.len()];
-    if keep == Kept::Nothing {
-        // A file that cannot be read is overwritten as well.
-        let earlier = read_back::results(&path).ok().flatten();
-        opened.dropped = earlier.map_or_else(Vec::new, |earlier| earlier.runs);
-        return Ok((opened, none));
-    }
-    let Some(earlier) = read_back::results(&path)? else {
+) -> Vec<Option<Run>> {
+    let (name, resumes) = (file.display(), keep == Kept::All);
+    if runs.is_empty() {
         if resumes {
             sink.note(&format!(
                 "{name} is not there yet, so everything is measured"
             ));
         }
-        return Ok((opened, none));
-    };
-    check_alike(&path, &earlier, now)?;
-    let is_planned = |run: &Run| planned.iter().any(|planned| planned.is_in_place_of(run));
-    let (mut runs, rest): (Vec<Run>, Vec<Run>) = earlier.runs.into_iter().partition(is_planned);
+        return vec![None; planned.len()];
+    }
+    let is_planned = |run: &&Run| planned.iter().any(|planned| planned.is_in_place_of(run));
+    let (mut runs, rest): (Vec<&Run>, Vec<&Run>) = runs.into_iter().partition(is_planned);
     if !rest.is_empty() {
         let stay = if rest.len() == 1 { "stays" } else { "stay" };
         let runs = plural(rest.len(), "other run");
         sink.note(&format!("{runs} that {name} holds already {stay} in it"));
     }
-    if resumes || !rest.is_empty() {
-        opened.commands = earlier.commands;
-        opened.notes = earlier.notes;
+    if !resumes {
+        return vec![None; planned.len()];
     }
-    opened.others = rest;
     let total = runs.len();
     let is_tuned = planned.iter().any(|run| run.tuned.is_some());
-    let is_same = |planned: &Run, run: &Run| {
-        planned.is_in_place_of(run)
-            && (&planned.params, &planned.fingerprint) == (&run.params, &run.fingerprint)
-    };
     let take = |planned: &Run| {
-        let is_kept = |run: &Run| resumes && run.is_whole() && is_same(planned, run);
+        let is_kept =
+            |run: &&Run| run.is_whole() && planned.is_in_place_of(run) && planned.is_unchanged(run);
         let index = runs.iter().position(is_kept)?;
-        let mut kept = runs.swap_remove(index);
+        let mut kept = runs.swap_remove(index).clone();
         if let Some(measured) = kept.measured.as_mut().filter(|_| is_tuned) {
             measured.hint = None;
         }
@@ -106,31 +82,24 @@ pub(crate) fn earlier(
         })
     };
     let kept: Vec<Option<Run>> = planned.iter().map(take).collect();
-    if resumes {
-        let measured = kept.iter().flatten().filter(|run| run.measured.is_some());
-        let (count, planned) = (measured.count(), planned.len());
-        sink.note(&format!("{count} of {planned} runs are kept from {name}"));
-    }
-    if resumes && !runs.is_empty() {
+    let measured = kept.iter().flatten().filter(|run| run.measured.is_some());
+    let (count, planned) = (measured.count(), planned.len());
+    sink.note(&format!("{count} of {planned} runs are kept from {name}"));
+    if !runs.is_empty() {
         sink.note(&format!(
             "{} of the {total} in it are measured again: params, graph, shaders or \
              scene have changed since, or frames are missing",
             runs.len()
         ));
     }
-    // Runs that were judged and not timed stay until they are measured again.
-    let is_judged = |run: &Run| {
-        resumes && !run.is_whole() && planned.iter().any(|planned| is_same(planned, run))
-    };
-    let (judged, changed): (Vec<Run>, Vec<Run>) = runs.into_iter().partition(is_judged);
-    opened.others.extend(judged);
-    opened.dropped = changed;
-    Ok((opened, kept))
+    kept
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measuring::store::Store;
+    use crate::records::results::Results;
     use crate::records::results::tests::sample;
     use crate::records::results_csv::save;
     use crate::sink::Silent;
@@ -142,7 +111,7 @@ mod tests {
         let mut now = sample();
         let mut planned = now.runs.clone();
         change(&mut now, &mut planned);
-        earlier(folder.path(), Kept::All, &now, &planned, &Silent)
+        Store::open(folder.path(), Kept::All, (&now, &planned), &Silent)
             .map(|(_, kept)| kept.iter().map(Option::is_some).collect())
             .map_err(|error| error.to_string())
     }
@@ -208,9 +177,16 @@ mod tests {
         save(&sample(), folder.path()).unwrap();
         let planned = &sample().runs[1..2];
         for keep in [Kept::Others, Kept::All] {
-            let (stay, kept) = earlier(folder.path(), keep, &sample(), planned, &Silent).unwrap();
-            let presets: Vec<&str> = stay.others.iter().map(|run| run.preset.as_str()).collect();
-            assert_eq!(presets, ["nsm", "rt_hw"]);
+            let now = sample();
+            let opened = Store::open(folder.path(), keep, (&now, planned), &Silent);
+            let (store, kept) = opened.unwrap();
+            let own = Results {
+                runs: planned.to_vec(),
+                ..now
+            };
+            let whole = store.whole(&own);
+            let presets: Vec<&str> = whole.runs.iter().map(|run| run.preset.as_str()).collect();
+            assert_eq!(presets, ["rt", "nsm", "rt_hw"]);
             assert_eq!(kept[0].is_some(), keep == Kept::All);
         }
     }
@@ -219,8 +195,7 @@ mod tests {
     fn no_file_keeps_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let (now, planned) = (sample(), sample().runs);
-        let (opened, kept) = earlier(folder.path(), Kept::All, &now, &planned, &Silent).unwrap();
-        assert_eq!(kept, [None, None, None]);
-        assert_eq!(opened.others, []);
+        let opened = Store::open(folder.path(), Kept::All, (&now, &planned), &Silent);
+        assert_eq!(opened.unwrap().1, [None, None, None]);
     }
 }

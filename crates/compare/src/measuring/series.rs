@@ -31,26 +31,26 @@ use crate::graphs::faults::{is_mistake, reasons};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::camera_pose::CameraPose;
-use crate::measuring::cell_folder::CellFolder;
 use crate::measuring::frame_sequence::FrameSequence;
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView, trace};
-use crate::measuring::results_folder::ResultsFolder;
-use crate::measuring::resume::{Kept, earlier};
+use crate::measuring::resume::Kept;
 use crate::measuring::run::{Judged, MeasureContext};
 use crate::measuring::stop::attempt;
+use crate::measuring::store::Store;
 use crate::measuring::truth_folder::SeenFrame;
 use crate::measuring::view_or_path::ViewOrPath;
+use crate::measuring::view_warnings::{unlit, within_lamp};
 use crate::measuring::{cell, date, device};
 use crate::pictures::run_pictures::{PictureFile, conditions};
 use crate::records::published::attach;
 use crate::records::results::{PROGRAM, Results, Run, SCHEMA};
 use crate::sink::{Runs, Session, Step};
-use crate::wording::{length, plural, size, thousands};
+use crate::wording::{plural, size};
 use itertools::Itertools;
 use skiagraph_graph::{Code, Diagnostic, Diagnostics, Plan};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Oracle, PixelCounts};
-use skiagraph_scene::{Movable, Scene};
+use skiagraph_reference::Oracle;
+use skiagraph_scene::Movable;
 use std::{
     cell::{OnceCell, RefCell},
     collections::BTreeSet,
@@ -81,23 +81,14 @@ pub struct Series<'a> {
     /// Results so far: the finished runs, those reused from earlier results ([`Kept::All`])
     /// included, in the order in which they were planned.
     pub results: Results,
-    /// Where they are kept.
-    store: Store,
+    /// Where they are kept; `None` for memory alone.
+    store: Option<Store>,
     /// Messages, added by [`measure`](Self::measure), on methods whose documents have mistakes, or
     /// whose outputs do not have the values that a shadow method's must have.
     pub broken: BTreeSet<String>,
     /// Counts the runs that are measured now.
     /// `None` before the first run that is to be measured.
     progress: Option<Runs<'a>>,
-}
-
-/// Where the results of a comparison are kept.
-enum Store {
-    Memory,
-    /// One file, with what is in the folder besides.
-    Results(ResultsFolder),
-    /// A file for each cell.
-    Cells(CellFolder),
 }
 
 /// Checks a comparison, measures all its runs and returns the results, without writing files. After
@@ -144,14 +135,11 @@ impl<'a> Series<'a> {
         kept_in: Option<(&Path, Kept)>,
     ) -> Result<Self, CompareError> {
         let mut series = Self::in_memory(comparison, session);
-        let mut earlier_runs = Vec::new();
-        if let Some((folder, keep)) = kept_in {
-            let (results, planned) = (&series.results, &series.planned);
-            let (folder, kept) = earlier(folder, keep, results, planned, session.sink)?;
-            series.store = Store::Results(folder);
-            earlier_runs = kept;
-        }
-        series.begin(earlier_runs);
+        let opened = kept_in.map(|(folder, keep)| {
+            let plan = (&series.results, &series.planned[..]);
+            Store::open(folder, keep, plan, session.sink)
+        });
+        series.begin(opened.transpose()?);
         Ok(series)
     }
 
@@ -196,7 +184,7 @@ impl<'a> Series<'a> {
             is_left_out: vec![false; planned.len()],
             planned,
             results,
-            store: Store::Memory,
+            store: None,
             broken: BTreeSet::new(),
             progress: None,
             methods,
@@ -204,32 +192,31 @@ impl<'a> Series<'a> {
     }
 
     /// Begins a comparison of which only the cells with the ids in `chosen` are measured, as far as
-    /// `folder` does not hold them already. Each is written into a file of its own.
+    /// `folder` does not hold them already.
     ///
     /// # Errors
-    /// A cell in the folder that another version of the program has measured.
+    /// The errors of [`Store::of_share`].
     pub(crate) fn of_cells(
         comparison: &'a Comparison,
         session: Session<'a>,
-        mut folder: CellFolder,
+        folder: &Path,
         chosen: &BTreeSet<&str>,
     ) -> Result<Self, CompareError> {
         let mut series = Self::in_memory(comparison, session);
         let planned = series.planned.iter();
         series.is_left_out = planned.map(|run| !chosen.contains(&*run.cell)).collect();
-        let mut kept = Vec::new();
-        for (run, is_left_out) in series.planned.iter().zip(&series.is_left_out) {
-            let run = (!is_left_out).then(|| folder.earlier(run, session.sink));
-            kept.push(run.transpose()?.flatten());
-        }
-        series.store = Store::Cells(folder);
-        series.begin(kept);
+        let plan = (&series.results, &series.planned[..]);
+        let opened = Store::of_share(folder, (comparison, chosen), plan, session.sink)?;
+        series.begin(Some(opened));
         Ok(series)
     }
 
-    /// Takes over earlier runs, parallel to the planned ones, and counts those that are left.
-    fn begin(&mut self, kept: Vec<Option<Run>>) {
-        for (place, run) in kept.into_iter().enumerate() {
+    /// Takes over the earlier runs of a folder, parallel to the planned ones, and counts those that
+    /// are left.
+    fn begin(&mut self, opened: Option<(Store, Vec<Option<Run>>)>) {
+        let (store, kept) = opened.unzip();
+        self.store = store;
+        for (place, run) in kept.into_iter().flatten().enumerate() {
             match run {
                 Some(run) if run.measured.is_some() => self.done(place, run),
                 Some(run) => self.planned[place] = run,
@@ -472,13 +459,11 @@ impl<'a> Series<'a> {
         self.save(pictures)
     }
 
-    /// Returns the results of this comparison's finished runs, followed by the earlier runs in the
-    /// folder that are kept although this comparison does not measure them ([`Kept`]).
+    /// Returns the results of this comparison's finished runs, followed by the other runs that the
+    /// folder holds ([`Kept`]).
     pub fn whole(&self) -> Results {
-        match &self.store {
-            Store::Results(folder) => folder.whole(&self.results),
-            Store::Memory | Store::Cells(_) => self.results.clone(),
-        }
+        let store = self.store.as_ref();
+        store.map_or_else(|| self.results.clone(), |store| store.whole(&self.results))
     }
 
     /// Writes the finished runs and the picture files of the last run into the folder. Measuring
@@ -486,13 +471,12 @@ impl<'a> Series<'a> {
     /// [`results`](Self::results). Does nothing if results stay in memory.
     ///
     /// # Errors
-    /// An [early end](crate#terms); a file that cannot be written; a results.json that another
-    /// process has meanwhile written, of another adapter, scene or protocol.
+    /// A file that cannot be written; a cell that another process has meanwhile measured on another
+    /// adapter or scene, with another protocol, or with other errors.
     pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
         match &mut self.store {
-            Store::Memory => Ok(()),
-            Store::Results(folder) => folder.save(&self.results, pictures, self.session.sink),
-            Store::Cells(folder) => folder.save(&self.results, pictures),
+            None => Ok(()),
+            Some(store) => store.save(&self.results, pictures),
         }
     }
 
@@ -568,16 +552,16 @@ impl<'a> Series<'a> {
             let (camera, light) = (pose.camera(viewport), self.provider.light());
             let (how, heard) = ((mode, reference_samples), (&*what, session.sink));
             let trace = || trace(&oracle, &camera, light, &ids, how, heard);
-            let truth = match &self.store {
-                Store::Memory | Store::Results(_) => trace()?,
-                Store::Cells(folder) => {
+            let truth = match self.store.as_ref().and_then(Store::truths) {
+                None => trace()?,
+                Some(truths) => {
                     let seen = SeenFrame {
                         moved: frames.meshes.as_ref().map(|meshes| &meshes[index]),
                         camera: &camera,
                         light,
                         primitives: &ids,
                     };
-                    folder.truths.find(&id, &seen, heard, trace)?
+                    truths.find(&id, &seen, heard, trace)?
                 }
             };
             let (camera, seen) = ((camera, light), (ids, mode));
@@ -641,55 +625,3 @@ fn planned(comparison: &Comparison, methods: &[Method], template: &Run) -> Vec<R
     }
     planned
 }
-
-/// That a view shows nothing, nothing in light or hardly any shadow: its table would be one of
-/// zeros.
-fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
-    let away = thousands(pixels.facing_away);
-    let facing = thousands(pixels.facing_light);
-    let what = match (pixels.facing_away, pixels.facing_light, pixels.lit) {
-        (0, 0, _) => {
-            "shows no triangle: look from elsewhere, or move the near and far planes".to_owned()
-        }
-        (_, 0, _) => format!(
-            "has nothing in light: all {away} pixels that show a surface face away from it; \
-             the light's direction is the one in which it travels"
-        ),
-        (_, _, 0) => format!(
-            "has nothing in light: {away} pixels face away from it, and all {facing} that face it \
-             are in shadow; the light's direction is the one in which it travels"
-        ),
-        (..) if (pixels.shadow as f64) < HARDLY_ANY * pixels.facing_light as f64 => format!(
-            "shows hardly any shadow: {} of the {facing} pixels that face the light, so that \
-             methods differ little on it; look from another side, or move the light",
-            thousands(pixels.shadow)
-        ),
-        _ => return None,
-    };
-    Some(format!("warning: view `{view}` {what}"))
-}
-
-/// Warns of surfaces within a lamp, which methods answer by a disk that is not all of it.
-fn within_lamp(view: &ViewOrPath, scene: &Scene, pixels: u64) -> Option<String> {
-    let kind = view.light(scene);
-    let radius = kind.radius()?;
-    let lights = view.own_light().into_iter().chain(&scene.lights);
-    let light = lights.into_iter().find(|light| light.kind == kind);
-    let light = light.map_or_else(
-        || kind.word().to_owned(),
-        |light| format!("`{}`", light.name),
-    );
-    (pixels > 0).then(|| {
-        format!(
-            "warning: view `{}` shows surfaces inside of the light {light}, in {} pixels: they \
-             are within its radius of {}, and are lit by a disk around its centre alone; make \
-             `radius` smaller, or move the light",
-            view.name(),
-            thousands(pixels),
-            length(radius)
-        )
-    })
-}
-
-/// Share of the pixels facing the light below which a view has hardly any shadow.
-const HARDLY_ANY: f64 = 0.05;

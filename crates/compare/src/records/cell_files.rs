@@ -18,6 +18,7 @@ use crate::records::read_back;
 use crate::records::results::{PROGRAM, Results, Run};
 use crate::records::sources::Kept;
 use crate::wording::plural;
+use itertools::Itertools;
 use serde_json::Value;
 use std::{
     collections::BTreeMap,
@@ -60,13 +61,12 @@ pub(crate) fn path(folder: &Path, cell: &str) -> PathBuf {
 /// # Errors
 /// A file that cannot be read, or does not hold the run of this cell.
 pub(crate) fn read(path: &Path) -> Result<Option<Results>, CompareError> {
-    if !path.exists() {
+    let Some(results) = read_back::cell(path)? else {
         return Ok(None);
-    }
-    let results = read_back::kept(path)?;
-    let id = path.file_stem().map(|id| id.to_string_lossy());
+    };
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
     match &results.runs[..] {
-        [run] if Some(&*run.cell) == id.as_deref() => Ok(Some(results)),
+        [run] if name.starts_with(&run.cell) => Ok(Some(results)),
         _ => Err(CompareError::Input(format!(
             "{} is not the file of a cell: it does not hold that one run; delete it, and measure \
              the cell again",
@@ -229,19 +229,23 @@ fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<
                     path.display()
                 )));
             }
-            let mut earlier = copies.iter();
-            let earlier = earlier.find(|(_, kept)| kept.results.adapter == results.adapter);
+            let is_like = |kept: &Kept| kept.results.adapter == results.adapter;
+            let earlier = copies.iter_mut().find(|(_, kept)| is_like(kept));
+            results.plan = Some(id.clone());
             if let Some((other, kept)) = earlier {
                 if let Some(why) = disagreement(&kept.results.runs[0], run) {
                     return Err(at_odds(run, [other, &path], &why));
                 }
                 twice += 1;
+                if run.is_whole() && !kept.results.runs[0].is_whole() {
+                    (*other, *kept) = (path, Kept { folder, results });
+                }
             } else {
-                results.plan = Some(id.clone());
                 copies.push((path, Kept { folder, results }));
             }
         }
-        if copies.is_empty() {
+        let mut runs = copies.iter().map(|(_, kept)| &kept.results.runs[0]);
+        if !runs.any(Run::is_whole) {
             missing.push(plan.label(cell));
         }
         joined.kept.extend(copies.into_iter().map(|(_, kept)| kept));
@@ -267,43 +271,30 @@ fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<
 
 /// Refuses truths that two folders hold and that differ.
 fn check_truths(plan: &CellPlan, folders: &[&Path]) -> Result<(), CompareError> {
+    let read = |file: &Path| {
+        fs::read(file).map_err(|error| {
+            let file = file.display();
+            CompareError::Input(format!("cannot read {file}: {error}"))
+        })
+    };
+    let scenes = plan.truths.iter().map(|truth| truth.folder.as_deref());
+    let scenes: Vec<&str> = scenes.map(Option::unwrap_or_default).unique().collect();
     let mut by_name: BTreeMap<PathBuf, PathBuf> = BTreeMap::new();
-    for folder in folders {
-        let mut scenes: Vec<Option<&String>> = plan
-            .truths
-            .iter()
-            .map(|truth| truth.folder.as_ref())
-            .collect();
-        scenes.sort();
-        scenes.dedup();
-        for scene in scenes {
-            let below = scene.map_or(PathBuf::new(), PathBuf::from).join(TRUTHS);
-            let entries = fs::read_dir(folder.join(&below))
-                .into_iter()
-                .flatten()
-                .flatten();
-            let names = entries.map(|entry| below.join(entry.file_name()));
-            for name in names.filter(|name| name.extension().is_some_and(|it| it == "truth")) {
-                let path = folder.join(&name);
-                let Some(other) = by_name.get(&name) else {
-                    by_name.insert(name, path);
-                    continue;
-                };
-                let [one, two] = [other, &path].map(|file| {
-                    fs::read(file).map_err(|error| {
-                        let file = file.display();
-                        CompareError::Input(format!("cannot read {file}: {error}"))
-                    })
-                });
-                if one? != two? {
-                    return Err(CompareError::Input(format!(
-                        "two machines have traced the same reference, and their bits differ\n  \
-                         {}\n  {}\n  find out which machine is wrong, delete its cells and its \
-                         truth, and measure them again on machines that agree",
-                        other.display(),
-                        path.display()
-                    )));
-                }
+    for (folder, scene) in folders.iter().cartesian_product(scenes) {
+        let below = Path::new(scene).join(TRUTHS);
+        let entries = fs::read_dir(folder.join(&below)).into_iter().flatten();
+        let names = entries.flatten().map(|entry| below.join(entry.file_name()));
+        for name in names.filter(|name| name.extension().is_some_and(|it| it == "truth")) {
+            let path = folder.join(&name);
+            let other = by_name.entry(name).or_insert_with(|| path.clone());
+            if *other != path && read(other)? != read(&path)? {
+                return Err(CompareError::Input(format!(
+                    "two machines have traced the same reference, and their bits differ\n  {}\n  \
+                     {}\n  find out which machine is wrong, delete its cells and its truth, and \
+                     measure them again on machines that agree",
+                    other.display(),
+                    path.display()
+                )));
             }
         }
     }

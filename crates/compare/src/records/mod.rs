@@ -26,6 +26,7 @@ pub mod baseline;
 pub mod budgets;
 pub mod cell_files;
 pub mod cell_plan;
+pub mod cells;
 pub mod check;
 pub mod columns;
 pub mod figure;

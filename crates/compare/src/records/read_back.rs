@@ -72,17 +72,8 @@ pub fn profile(path: &Path) -> Result<Profile, CompareError> {
 /// # Errors
 /// A file that cannot be read, or is not a results.json; the message shows the place.
 pub fn results(path: &Path) -> Result<Option<Results>, CompareError> {
-    let file = results_file(path)?;
+    let file = read(&RESULTS, path).map_err(CompareError::Input)?;
     file.map(|file| results_of(&file)).transpose()
-}
-
-/// Reads the text of the file at `path`, a results.json, without parsing it; `None` if the file
-/// does not exist.
-///
-/// # Errors
-/// A file that cannot be read.
-pub fn results_file(path: &Path) -> Result<Option<SourceFile>, CompareError> {
-    read(&RESULTS, path).map_err(CompareError::Input)
 }
 
 /// Reads a file; `None` if there is none.
@@ -140,6 +131,20 @@ pub fn kept(place: &Path) -> Result<Results, CompareError> {
     checked(&file, parse_results, "results.json", advice)
 }
 
+/// Reads the file of a cell, a results.json with one run; `None` if the file does not exist.
+///
+/// # Errors
+/// A file that cannot be read, or is not a results.json; the message shows the place.
+pub(crate) fn cell(path: &Path) -> Result<Option<Results>, CompareError> {
+    let file = read(&KEPT, path).map_err(CompareError::Input)?;
+    let advice = [
+        "delete it, and measure the cell again",
+        "the cell cannot be used",
+    ];
+    let cell = file.map(|file| checked(&file, parse_results, "results.json", advice));
+    cell.transpose()
+}
+
 /// Parses a file; a mistake says what kind of file it is not, and gives advice and a summary.
 fn checked<T>(
     file: &SourceFile,
@@ -179,10 +184,7 @@ fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
 }
 
 /// Parses the text of a results.json, to continue from its runs.
-///
-/// # Errors
-/// Text that is not a results.json; the message shows the place.
-pub fn results_of(file: &SourceFile) -> Result<Results, CompareError> {
+fn results_of(file: &SourceFile) -> Result<Results, CompareError> {
     let advice = [WITHOUT_RESULTS, "nothing was measured"];
     checked(file, parse_results, "results.json to resume", advice)
 }

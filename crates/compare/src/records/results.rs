@@ -97,6 +97,18 @@ impl Results {
         [self].into_iter().chain(parts).collect()
     }
 
+    /// Splits results, those that are joined too: returns each run alone, with its machine.
+    pub fn each_run(self) -> impl Iterator<Item = Self> {
+        self.each().into_iter().flat_map(|mut part| {
+            let runs = std::mem::take(&mut part.runs).into_iter();
+            runs.map(move |run| Self {
+                machine: part.machine_of(&run).clone(),
+                runs: vec![run],
+                ..part.clone()
+            })
+        })
+    }
+
     /// True if runs on both machines belong together in these results: it is the same one, or of
     /// cells of a plan one of the same kind, whatever its name.
     pub fn joins(&self, one: &Machine, other: &Machine) -> bool {
@@ -330,6 +342,11 @@ impl Run {
     pub fn is_in_place_of(&self, other: &Self) -> bool {
         (&self.preset, &self.view, self.viewport, self.map_size)
             == (&other.preset, &other.view, other.viewport, other.map_size)
+    }
+
+    /// True if both ran with the same params, and nothing else has changed that a run depends on.
+    pub fn is_unchanged(&self, other: &Self) -> bool {
+        (&self.params, &self.fingerprint) == (&other.params, &other.fingerprint)
     }
 
     /// True if both runs have the same preset, view, viewport, map size and cell (in results of

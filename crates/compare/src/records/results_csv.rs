@@ -39,18 +39,16 @@ fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
     Table::new(heads, 0, rows).csv()
 }
 
-/// Writes `results.json` and `results.csv` into `folder`, each whole or not at all. Returns the
-/// text of `results.json`.
+/// Writes `results.json` and `results.csv` into `folder`, each whole or not at all.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn save(results: &Results, folder: &Path) -> Result<String, CompareError> {
+pub fn save(results: &Results, folder: &Path) -> Result<(), CompareError> {
     let text = json::to_text(results);
     write_whole(&folder.join("results.json"), text.as_bytes())?;
     let path = folder.join("results.csv");
     let csv = to_csv(results).map_err(|error| CompareError::write(&path, error))?;
-    write_whole(&path, csv.as_bytes())?;
-    Ok(text)
+    write_whole(&path, csv.as_bytes())
 }
 
 #[cfg(test)]

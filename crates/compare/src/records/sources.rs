@@ -177,9 +177,10 @@ impl Source {
         for mut run in other.runs {
             run.machine.get_or_insert_with(|| machine.clone());
             // Times are written so that they sort.
-            let when = |run: &Run| (run.session.clone(), run.date.clone());
+            let when = |run: &Run| (run.session.clone(), run.date.clone(), run.is_whole());
             let runs = &mut self.results.runs;
             match runs.iter().position(|own| own.is_same_cell(&run)) {
+                Some(at) if runs[at] == run => {}
                 Some(at) => {
                     self.replaced += 1;
                     if when(&runs[at]) <= when(&run) {

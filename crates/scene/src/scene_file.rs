@@ -38,7 +38,8 @@ use serde::{
 };
 use skiagraph_located_ron::{
     diagnostics::{Code, Diagnostic, Diagnostics},
-    reader::{Node, from_all_fields},
+    fields::from_all_fields,
+    reader::Node,
     span::SourceFile,
 };
 use std::collections::HashMap;

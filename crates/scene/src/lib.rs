@@ -91,7 +91,9 @@ pub use camera::{Camera, LEAST_DEPTH, View};
 pub use error::SceneError;
 pub use indexed::{Indexed, IndexedError};
 pub use light::{DirectionalLight, LightFit};
-pub use light_kind::{LIGHT_GAP, Light, LightKind, PointLight, SpotLight, Towards};
+pub use light_kind::{
+    LIGHT_GAP, Light, LightKind, LightParameters, PointLight, SpotLight, Towards,
+};
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};

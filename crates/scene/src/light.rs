@@ -52,16 +52,6 @@ impl DirectionalLight {
         self.angle_degrees > 0.0
     }
 
-    /// Returns two vectors, world space, from the light's centre to its rim, for a light disk at
-    /// distance 1 from the receiver (the point that is lit). The directions to the disk's points
-    /// are `to_light() + across()[0] · x + across()[1] · y`, with (x, y) in the unit disk. Both are
-    /// 0 for a light without extent.
-    pub fn across(&self) -> [DVec3; 2] {
-        let (right, up) = self.to_light().any_orthonormal_pair();
-        let radius = (self.angle_degrees.to_radians() * 0.5).tan();
-        [right, up].map(|axis| axis * radius)
-    }
-
     /// Returns the unit vector, world space, from any point to the light: the reverse of
     /// `direction`.
     pub fn to_light(&self) -> DVec3 {

@@ -4,8 +4,7 @@
 use crate::{
     camera::View,
     keys::{not_later, spline},
-    light::DirectionalLight,
-    light_kind::{Light, LightKind, PointLight, SpotLight},
+    light_kind::Light,
     mesh::Mesh,
     motion::{PartMotion, moved},
     movable::Movable,
@@ -143,20 +142,17 @@ impl CameraPath {
         let place = |get: fn(&LightKey) -> DVec3| spline(&self.light_keys, |key| key.at, get, at);
         let direction = place(|key| key.direction.unwrap_or_default().normalize_or_zero());
         let position = place(|key| key.position.unwrap_or_default());
-        let kind = match light.kind {
-            LightKind::Directional(light) => DirectionalLight { direction, ..light }.into(),
-            LightKind::Spot(light) => SpotLight {
-                direction,
-                position,
-                ..light
+        let mut light = light.clone();
+        let parameters = light.kind.parameters();
+        for (value, now) in [
+            (parameters.position, position),
+            (parameters.direction, direction),
+        ] {
+            if let Some(value) = value {
+                *value = now;
             }
-            .into(),
-            LightKind::Point(light) => PointLight { position, ..light }.into(),
-        };
-        Light {
-            kind,
-            ..light.clone()
         }
+        light
     }
 
     /// Checks that the keys of the light are of the kind that the view's own light is.
@@ -167,14 +163,16 @@ impl CameraPath {
         let (Some(light), Some(_)) = (&self.view.light, self.light_keys.first()) else {
             return Ok(());
         };
-        let (direction, position, needs) = match light.kind {
-            LightKind::Directional(_) => (true, false, "`direction` alone"),
-            LightKind::Spot(_) => (true, true, "`position` and `direction`"),
-            LightKind::Point(_) => (false, true, "`position` alone"),
+        let has = (
+            light.kind.position().is_some(),
+            light.kind.direction().is_some(),
+        );
+        let needs = match has {
+            (true, true) => "`position` and `direction`",
+            (true, false) => "`position` alone",
+            (false, _) => "`direction` alone",
         };
-        let fits = |key: &LightKey| {
-            (key.direction.is_some(), key.position.is_some()) == (direction, position)
-        };
+        let fits = |key: &LightKey| (key.position.is_some(), key.direction.is_some()) == has;
         match self.light_keys.iter().find(|key| !fits(key)) {
             None => Ok(()),
             Some(key) => Err(format!(
@@ -250,6 +248,7 @@ impl CameraPath {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light::DirectionalLight;
 
     fn path(keys: &[(f64, DVec3, DVec3)]) -> CameraPath {
         let keys = keys

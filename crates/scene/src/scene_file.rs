@@ -24,7 +24,7 @@ use crate::{
     error::SceneError,
     generate::Generator,
     light::DirectionalLight,
-    light_kind::{Light, LightKind, PointLight, SpotLight, own_light},
+    light_kind::{Light, own_light},
     material_use::MaterialUse,
     motion::{Motion, PartMotion, PoseKey, RigidKey},
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
@@ -274,88 +274,6 @@ impl Item for CameraPath {
     const NEEDED: bool = false;
     const NAME: fn(&Self) -> &str = |path| &path.view.name;
     const CHECK: fn(&Self) -> Result<(), String> = Self::check;
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "NamedLight")
-)]
-#[serde(deny_unknown_fields, rename = "light")]
-pub(crate) enum NamedLightText {
-    /// A light as far away as the sun.
-    Directional {
-        name: String,
-        /// Direction in which the light travels.
-        #[serde(with = "Vector")]
-        direction: DVec3,
-        /// Diameter as seen from the scene: 0 to less than 90.
-        #[serde(default)]
-        angle_degrees: f64,
-    },
-    /// A lamp with a cone.
-    Spot {
-        name: String,
-        #[serde(with = "Vector")]
-        position: DVec3,
-        /// Direction of the cone's axis.
-        #[serde(with = "Vector")]
-        direction: DVec3,
-        /// The whole opening angle: more than 0, less than 180.
-        cone_degrees: f64,
-        /// Radius of its disc, in the mesh's units.
-        #[serde(default)]
-        radius: f64,
-    },
-    /// A lamp that shines everywhere.
-    Point {
-        name: String,
-        #[serde(with = "Vector")]
-        position: DVec3,
-        /// Radius of its ball, in the mesh's units.
-        #[serde(default)]
-        radius: f64,
-    },
-}
-
-impl From<NamedLightText> for Light {
-    fn from(text: NamedLightText) -> Self {
-        let (name, kind): (_, LightKind) = match text {
-            NamedLightText::Directional {
-                name,
-                direction,
-                angle_degrees,
-            } => {
-                let light = DirectionalLight {
-                    direction,
-                    angle_degrees,
-                };
-                (name, light.into())
-            }
-            NamedLightText::Spot {
-                name,
-                position,
-                direction,
-                cone_degrees,
-                radius,
-            } => {
-                let spot = SpotLight {
-                    position,
-                    direction,
-                    cone_degrees,
-                    radius,
-                };
-                (name, spot.into())
-            }
-            NamedLightText::Point {
-                name,
-                position,
-                radius,
-            } => (name, PointLight { position, radius }.into()),
-        };
-        Self { name, kind }
-    }
 }
 
 #[derive(Deserialize)]

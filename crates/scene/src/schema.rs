@@ -2,7 +2,8 @@
 
 use crate::{
     camera::View,
-    scene_file::{NamedLightText, PathText, SceneFile},
+    light_kind::NamedLightText,
+    scene_file::{PathText, SceneFile},
 };
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Value, json};

@@ -27,9 +27,7 @@ use crate::graphs::method::Method;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::wording::size;
 use glam::DVec3;
-use skiagraph_scene::{
-    CameraPath, DirectionalLight, LightKind, Motion, PartMotion, PointLight, SpotLight, View,
-};
+use skiagraph_scene::{CameraPath, LightKind, LightParameters, Motion, PartMotion, View};
 
 /// Returns the id of a cell, 16 hexadecimal digits: a hash of the scene's name and number of
 /// triangles; the name, camera and light of the view or path; the viewport in pixels; the preset
@@ -168,27 +166,21 @@ fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
     }
 }
 
-pub(crate) fn light_text(light: LightKind) -> String {
+pub(crate) fn light_text(mut light: LightKind) -> String {
     let word = light.word();
-    let numbers = match light {
-        LightKind::Directional(DirectionalLight {
-            direction,
-            angle_degrees,
-        }) => format!("{} {angle_degrees}", vector(direction)),
-        LightKind::Spot(SpotLight {
-            position,
-            direction,
-            cone_degrees,
-            radius,
-        }) => {
-            let [position, direction] = [position, direction].map(vector);
-            format!("{position} {direction} {cone_degrees} {radius}")
-        }
-        LightKind::Point(PointLight { position, radius }) => {
-            format!("{} {radius}", vector(position))
-        }
-    };
-    format!("light {word} {numbers}")
+    let LightParameters {
+        position,
+        direction,
+        angle_degrees,
+        cone_degrees,
+        radius,
+    } = light.parameters();
+    let vectors = [position, direction].into_iter().flatten();
+    let numbers = [angle_degrees, cone_degrees, radius].into_iter().flatten();
+    let words = vectors
+        .map(|it| vector(*it))
+        .chain(numbers.map(|it| it.to_string()));
+    format!("light {word} {}", words.collect::<Vec<_>>().join(" "))
 }
 
 #[cfg(test)]
@@ -197,7 +189,7 @@ mod tests {
     use crate::graphs::shadow_method::load_methods;
     use glam::DQuat;
     use skiagraph_passes::EmbeddedSources;
-    use skiagraph_scene::{PoseKey, RigidKey, SceneLibrary};
+    use skiagraph_scene::{DirectionalLight, PoseKey, RigidKey, SceneLibrary};
     use std::collections::BTreeSet;
     use std::sync::Arc;
 

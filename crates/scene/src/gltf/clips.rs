@@ -287,7 +287,7 @@ impl<'a> Poses<'a> {
         }
         for (light, &node) in placed.lights.iter().enumerate() {
             if let Some(worlds) = self.frames(node, frames) {
-                let keys = light_keys(&worlds, &placed.kinds[light]);
+                let keys = light_keys(&worlds, placed.kinds[light]);
                 clip.lights.push((light, keys));
             }
         }
@@ -404,19 +404,14 @@ fn camera_keys(worlds: &[DMat4], place: &str, notes: &mut Vec<String>) -> (DVec3
     (up, keys)
 }
 
-fn light_keys(worlds: &[DMat4], kind: &LightKind) -> Vec<LightKey> {
+fn light_keys(worlds: &[DMat4], kind: LightKind) -> Vec<LightKey> {
     let keys = worlds.iter().enumerate().map(|(frame, world)| {
         let direction = (-world.z_axis.truncate()).normalize_or_zero();
         let position = world.w_axis.truncate();
-        let (direction, position) = match kind {
-            LightKind::Directional(_) => (Some(direction), None),
-            LightKind::Spot(_) => (Some(direction), Some(position)),
-            LightKind::Point(_) => (None, Some(position)),
-        };
         LightKey {
             at: at(frame),
-            direction,
-            position,
+            direction: kind.direction().map(|_| direction),
+            position: kind.position().map(|_| position),
         }
     });
     keys.collect()

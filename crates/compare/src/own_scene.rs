@@ -288,10 +288,9 @@ fn towards(mesh: &Mesh, eye: DVec3) -> View {
         } else {
             direction
         },
-        up: DVec3::Y,
         fov_y_degrees: DEFAULT_FOV,
         near: 1.0,
         far: 2.0,
-        light: None,
+        ..View::default()
     }
 }

@@ -40,6 +40,22 @@ pub struct View {
     pub light: Option<Light>,
 }
 
+impl Default for View {
+    /// A camera in the origin that looks along −z, with a vertical field of view of 60 degrees.
+    fn default() -> Self {
+        Self {
+            name: "main".to_owned(),
+            eye: DVec3::ZERO,
+            direction: DVec3::NEG_Z,
+            up: y_axis(),
+            fov_y_degrees: 60.0,
+            near: 0.1,
+            far: 1000.0,
+            light: None,
+        }
+    }
+}
+
 /// Up where nothing else is said.
 pub(crate) fn y_axis() -> DVec3 {
     DVec3::Y
@@ -252,14 +268,12 @@ mod tests {
 
     fn camera_view() -> View {
         View {
-            name: "main".into(),
             eye: DVec3::new(-83.7, 222.0, -2.9),
             direction: DVec3::new(0.81, -0.27, 0.52) * 3.0,
             up: DVec3::Y * 2.0,
-            fov_y_degrees: 60.0,
             near: 1.0,
             far: 2800.0,
-            light: None,
+            ..View::default()
         }
     }
 
@@ -326,14 +340,9 @@ mod tests {
     #[test]
     fn planes_whose_depths_f32_cannot_hold_are_refused() {
         let view = |near, far| View {
-            name: "main".into(),
-            eye: DVec3::ZERO,
-            direction: DVec3::NEG_Z,
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
             near,
             far,
-            light: None,
+            ..View::default()
         };
         assert_eq!(view(1e-10, 1e10).check(), Ok(()));
         let refused = view(1e-20, 1e11).check().unwrap_err();

@@ -257,13 +257,10 @@ mod tests {
         CameraPath {
             view: View {
                 name: "walk".into(),
-                eye: DVec3::ZERO,
                 direction: DVec3::X,
-                up: DVec3::Y,
-                fov_y_degrees: 60.0,
                 near: 1.0,
                 far: 100.0,
-                light: None,
+                ..View::default()
             },
             frames_per_second: 10.0,
             keys: keys.collect(),

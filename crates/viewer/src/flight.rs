@@ -87,14 +87,9 @@ mod tests {
 
     fn view() -> View {
         View {
-            name: "main".into(),
             eye: DVec3::new(0.0, 2.0, 8.0),
-            direction: DVec3::NEG_Z,
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
-            near: 0.1,
             far: 100.0,
-            light: None,
+            ..View::default()
         }
     }
 

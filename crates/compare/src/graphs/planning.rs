@@ -12,7 +12,7 @@
 //! ```
 
 use crate::graphs::light_kinds;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use skiagraph_gpu::{
     Provider,
     device::{Gpu, partial},
@@ -382,14 +382,8 @@ fn lit(described: &SceneProvider, lights: &[LightKind], count: usize) -> ScenePr
 /// Describes all that a scene can give, of the least scene that has it and so many triangles.
 fn described(viewport: [u32; 2], triangles: usize) -> SceneProvider {
     let view = View {
-        name: "main".into(),
-        eye: DVec3::ZERO,
-        direction: DVec3::NEG_Z,
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
-        near: 0.1,
         far: 10.0,
-        light: None,
+        ..View::default()
     };
     let mesh = Mesh {
         positions: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]

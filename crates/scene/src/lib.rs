@@ -97,7 +97,7 @@ pub use light_kind::{
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};
-pub use motion::{Motion, PartMotion, PoseKey, RigidKey};
+pub use motion::{Motion, PoseKey, RigidKey};
 pub use movable::{Movable, MoveError, MovedPart, PartChange, PartPlace};
 pub use outline::Outline;
 pub use parts::Parts;

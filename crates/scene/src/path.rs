@@ -6,7 +6,7 @@ use crate::{
     keys::{not_later, spline},
     light_kind::Light,
     mesh::Mesh,
-    motion::{PartMotion, moved},
+    motion::{Motion, moved},
     movable::Movable,
     vector::Vector,
 };
@@ -35,7 +35,7 @@ pub struct CameraPath {
     /// after the last key the light stands still.
     pub light_keys: Vec<LightKey>,
     /// Motions of parts of the mesh, at most one for each part.
-    pub moves: Vec<PartMotion>,
+    pub moves: Vec<Motion>,
 }
 
 /// Keyframe of a camera: its position and direction at a time.
@@ -102,7 +102,7 @@ impl CameraPath {
         if self.moves.is_empty() {
             return Ok(None);
         }
-        let parts = self.moves.iter().map(|it| it.part.as_str());
+        let parts = self.moves.iter().map(Motion::part);
         let movable = Movable::new(mesh, &parts.collect::<Vec<_>>());
         let movable =
             movable.map_err(|reason| format!("path {:?}: moves: {reason}", self.view.name))?;
@@ -185,11 +185,8 @@ impl CameraPath {
 
     fn check_moves(&self) -> Result<(), String> {
         for (index, it) in self.moves.iter().enumerate() {
-            if self.moves[..index]
-                .iter()
-                .any(|other| other.part == it.part)
-            {
-                let part = &it.part;
+            let part = it.part();
+            if self.moves[..index].iter().any(|other| other.part() == part) {
                 return Err(format!("moves: {part:?} is there twice"));
             }
             it.check()?;

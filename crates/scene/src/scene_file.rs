@@ -26,7 +26,7 @@ use crate::{
     light::DirectionalLight,
     light_kind::{Light, own_light},
     material_use::MaterialUse,
-    motion::{Motion, PartMotion, PoseKey, RigidKey},
+    motion::Motion,
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::{CameraKey, CameraPath, LightKey},
     vector::Vector,
@@ -303,83 +303,20 @@ pub(crate) struct PathText {
     light_keys: Vec<LightKey>,
     /// Parts of the mesh that move.
     #[serde(default)]
-    moves: Vec<MotionText>,
+    moves: Vec<Motion>,
 }
 
 fn thirty() -> f64 {
     30.0
 }
 
-#[derive(Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Motion")
-)]
-#[serde(deny_unknown_fields, rename = "moves")]
-enum MotionText {
-    /// The part is turned about an axis, then shifted.
-    Rigid {
-        /// Name of the part: a group or object of OBJ, a node of glTF.
-        part: String,
-        /// Point on the axis.
-        #[serde(default, with = "Vector")]
-        pivot: DVec3,
-        #[serde(default = "y_axis", with = "Vector")]
-        axis: DVec3,
-        keys: Vec<RigidKey>,
-    },
-    /// The part is turned about the origin and shifted from key to key, in a straight line.
-    Posed {
-        /// Name of the part.
-        part: String,
-        keys: Vec<PoseKey>,
-    },
-    /// The part bends along the axis as by wind; its foot stands.
-    Sway {
-        /// Name of the part.
-        part: String,
-        #[serde(with = "Vector")]
-        axis: DVec3,
-        /// Angle to which its top bends.
-        degrees: f64,
-        /// Period.
-        seconds: f64,
-    },
-}
-
-impl MotionText {
-    /// On a path with that direction up.
-    fn motion(self, up: DVec3) -> PartMotion {
-        let (part, motion) = match self {
-            Self::Rigid {
-                part,
-                pivot,
-                axis,
-                keys,
-            } => (part, Motion::Rigid { pivot, axis, keys }),
-            Self::Posed { part, keys } => (part, Motion::Posed { keys }),
-            Self::Sway {
-                part,
-                axis,
-                degrees,
-                seconds,
-            } => {
-                let motion = Motion::Sway {
-                    axis,
-                    up,
-                    degrees,
-                    seconds,
-                };
-                (part, motion)
-            }
-        };
-        PartMotion { part, motion }
-    }
-}
-
 impl From<PathText> for CameraPath {
-    fn from(text: PathText) -> Self {
+    fn from(mut text: PathText) -> Self {
+        for motion in &mut text.moves {
+            if let Motion::Sway { up, .. } = motion {
+                *up = text.up;
+            }
+        }
         let first = text.keys.first();
         Self {
             view: View {
@@ -395,11 +332,7 @@ impl From<PathText> for CameraPath {
             frames_per_second: text.frames_per_second,
             keys: text.keys,
             light_keys: text.light_keys,
-            moves: text
-                .moves
-                .into_iter()
-                .map(|motion| motion.motion(text.up))
-                .collect(),
+            moves: text.moves,
         }
     }
 }

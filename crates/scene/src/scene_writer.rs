@@ -4,7 +4,7 @@ use crate::{
     camera::View,
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
-    motion::{Motion, PartMotion},
+    motion::Motion,
     path::{CameraPath, LightKey},
     scene_file::{MeshSource, SceneFile},
 };
@@ -213,10 +213,14 @@ fn light_key(key: &LightKey) -> String {
     text + ")"
 }
 
-fn moves(moved: &PartMotion) -> String {
-    let part = &moved.part;
-    match &moved.motion {
-        Motion::Rigid { pivot, axis, keys } => {
+fn moves(moved: &Motion) -> String {
+    match moved {
+        Motion::Rigid {
+            part,
+            pivot,
+            axis,
+            keys,
+        } => {
             let keys = keys.iter().map(|key| {
                 let (at, shift) = (number(key.at), vector(key.translation));
                 let degrees = number(key.degrees);
@@ -226,7 +230,7 @@ fn moves(moved: &PartMotion) -> String {
             let (pivot, axis, keys) = (vector(*pivot), vector(*axis), keys.join(", "));
             format!("Rigid(part: {part:?}, pivot: {pivot}, axis: {axis}, keys: [{keys}])")
         }
-        Motion::Posed { keys } => {
+        Motion::Posed { part, keys } => {
             let keys = keys.iter().map(|key| {
                 let (at, shift) = (number(key.at), vector(key.translation));
                 let turn = key.rotation.to_array().map(number).join(", ");
@@ -239,6 +243,7 @@ fn moves(moved: &PartMotion) -> String {
             )
         }
         Motion::Sway {
+            part,
             axis,
             degrees,
             seconds,

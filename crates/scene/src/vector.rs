@@ -41,7 +41,7 @@ pub(crate) enum Turn {}
 
 impl Turn {
     /// Reads a quaternion and scales it to length 1; one of length 1 keeps its bits. (0, 0, 0, 0)
-    /// is returned as it is, and `PartMotion::check` refuses it.
+    /// is returned as it is, and `Motion::check` refuses it.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DQuat, D::Error> {
         let (x, y, z, w) = <(f64, f64, f64, f64)>::deserialize(deserializer)?;
         let rotation = DQuat::from_xyzw(x, y, z, w);

@@ -27,7 +27,7 @@ use crate::graphs::method::Method;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::wording::size;
 use glam::DVec3;
-use skiagraph_scene::{CameraPath, LightKind, LightParameters, Motion, PartMotion, View};
+use skiagraph_scene::{CameraPath, LightKind, LightParameters, Motion, View};
 
 /// Returns the id of a cell, 16 hexadecimal digits: a hash of the scene's name and number of
 /// triangles; the name, camera and light of the view or path; the viewport in pixels; the preset
@@ -130,15 +130,17 @@ fn path_lines(path: &CameraPath, lines: &mut Vec<String>) {
         let (direction, position) = (text(direction), text(position));
         lines.push(format!("light key {} {direction} {position}", key.at));
     }
-    for PartMotion { part, motion } in &path.moves {
-        lines.push(format!("moves {part}"));
+    for motion in &path.moves {
+        lines.push(format!("moves {}", motion.part()));
         motion_lines(motion, lines);
     }
 }
 
 fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
     match motion {
-        Motion::Rigid { pivot, axis, keys } => {
+        Motion::Rigid {
+            pivot, axis, keys, ..
+        } => {
             let [pivot, axis] = [*pivot, *axis].map(vector);
             lines.push(format!("rigid {pivot} {axis}"));
             for key in keys {
@@ -146,7 +148,7 @@ fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
                 lines.push(format!("rigid key {at} {shift} {turn}"));
             }
         }
-        Motion::Posed { keys } => {
+        Motion::Posed { keys, .. } => {
             lines.push("posed".into());
             for key in keys {
                 let (at, shift) = (key.at, vector(key.translation));
@@ -159,6 +161,7 @@ fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
             up,
             degrees,
             seconds,
+            ..
         } => {
             let [axis, up] = [*axis, *up].map(vector);
             lines.push(format!("sway {axis} {up} {degrees} {seconds}"));
@@ -228,12 +231,17 @@ mod tests {
         };
         let motions = [
             Motion::Rigid {
+                part: "leg".into(),
                 pivot: DVec3::ZERO,
                 axis: DVec3::Y,
                 keys: vec![rigid],
             },
-            Motion::Posed { keys: vec![pose] },
+            Motion::Posed {
+                part: "leg".into(),
+                keys: vec![pose],
+            },
             Motion::Sway {
+                part: "leg".into(),
                 axis: DVec3::X,
                 up: DVec3::Y,
                 degrees: 6.0,

@@ -11,7 +11,7 @@ use crate::{
     error::beginning,
     light_kind::{Light, LightKind},
     mesh::Mesh,
-    motion::{Motion, PartMotion, PoseKey},
+    motion::{Motion, PoseKey},
     path::{CameraKey, CameraPath, LightKey},
 };
 use glam::{DMat3, DMat4, DQuat, DVec3};
@@ -39,7 +39,7 @@ pub struct Clip {
     /// The view that moves, and its direction up.
     cameras: Vec<(usize, DVec3, Vec<CameraKey>)>,
     lights: Vec<(usize, Vec<LightKey>)>,
-    moves: Vec<PartMotion>,
+    moves: Vec<Motion>,
 }
 
 impl Clip {
@@ -338,8 +338,7 @@ impl<'a> Poses<'a> {
                 ));
                 continue;
             }
-            let motion = Motion::Posed { keys };
-            clip.moves.push(PartMotion { part, motion });
+            clip.moves.push(Motion::Posed { part, keys });
         }
     }
 }

@@ -323,7 +323,7 @@ fn keys_turn_from_a_rest_of_any_length() {
     };
     let paths = scene.clips[0].paths(&scene.views, &scene.lights, &view);
     let path = paths.into_iter().next().unwrap().unwrap();
-    let skiagraph_scene::Motion::Posed { keys } = &path.moves[0].motion else {
+    let skiagraph_scene::Motion::Posed { keys, .. } = &path.moves[0] else {
         panic!("{:?}", path.moves)
     };
     // It does not turn: it stands as it did at rest.

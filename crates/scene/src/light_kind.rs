@@ -1,15 +1,13 @@
 //! The lights of a scene: directional, spot and point.
 
 use crate::light::DirectionalLight;
-#[cfg(feature = "files")]
 use crate::vector::Vector;
 use glam::DVec3;
 use serde::{Deserialize, Deserializer};
 
 /// A light of a scene, with the name by which commands and results know it.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(Deserialize))]
-#[cfg_attr(feature = "files", serde(from = "NamedLightText"))]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(from = "NamedLightText")]
 pub struct Light {
     /// Name of small letters, digits and `_`, unique within its scene. It begins with a letter and
     /// is not `all`.
@@ -30,7 +28,6 @@ pub enum LightKind {
 }
 
 /// A light as scene files write it.
-#[cfg(feature = "files")]
 #[derive(Deserialize)]
 #[cfg_attr(
     feature = "schema",
@@ -74,7 +71,6 @@ pub(crate) enum NamedLightText {
     },
 }
 
-#[cfg(feature = "files")]
 impl From<NamedLightText> for Light {
     fn from(text: NamedLightText) -> Self {
         let (name, kind): (_, LightKind) = match text {

@@ -2,9 +2,9 @@
 //! mesh with them.
 
 use crate::{
-    camera::View,
+    camera::{View, y_axis},
     keys::{not_later, spline},
-    light_kind::Light,
+    light_kind::{Light, own_light},
     mesh::Mesh,
     motion::{Motion, moved},
     movable::Movable,
@@ -19,9 +19,8 @@ const MOST_FRAMES: f64 = 10_000.0;
 /// Path of a moving camera. Between keyframes, eye and direction follow Catmull-Rom splines
 /// (Catmull, Rom 1974, over uneven times). Two keyframes make a straight line, two equal keyframes
 /// a camera that stands still. The light and parts of the mesh may move as well.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(Deserialize))]
-#[cfg_attr(feature = "files", serde(from = "crate::scene_file::PathText"))]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(from = "PathText")]
 pub struct CameraPath {
     /// View that is changed from frame to frame: it holds the path's name and everything that stays
     /// constant. Its eye and direction are replaced by those of the keyframes.
@@ -36,6 +35,68 @@ pub struct CameraPath {
     pub light_keys: Vec<LightKey>,
     /// Motions of parts of the mesh, at most one for each part.
     pub moves: Vec<Motion>,
+}
+
+/// A path as scene files write it.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, rename = "Path")]
+pub(crate) struct PathText {
+    name: String,
+    /// Direction up in the picture.
+    #[serde(default = "y_axis", with = "Vector")]
+    up: DVec3,
+    /// Opening angle from bottom to top: more than 0, less than 180.
+    fov_y_degrees: f64,
+    /// Distance of the near plane, more than 0.
+    near: f64,
+    /// Distance of the far plane, more than `near`.
+    far: f64,
+    /// One sun in the place of the scene's lights.
+    #[serde(default, deserialize_with = "own_light")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<crate::DirectionalLight>"))]
+    light: Option<Light>,
+    #[serde(default = "thirty")]
+    frames_per_second: f64,
+    /// The camera's way, a smooth curve through its keys.
+    keys: Vec<CameraKey>,
+    /// The light's way.
+    #[serde(default)]
+    light_keys: Vec<LightKey>,
+    /// Parts of the mesh that move.
+    #[serde(default)]
+    moves: Vec<Motion>,
+}
+
+fn thirty() -> f64 {
+    30.0
+}
+
+impl From<PathText> for CameraPath {
+    fn from(mut text: PathText) -> Self {
+        for motion in &mut text.moves {
+            if let Motion::Sway { up, .. } = motion {
+                *up = text.up;
+            }
+        }
+        let first = text.keys.first();
+        Self {
+            view: View {
+                name: text.name,
+                eye: first.map_or(DVec3::ZERO, |key| key.eye),
+                direction: first.map_or(DVec3::ZERO, |key| key.direction),
+                up: text.up,
+                fov_y_degrees: text.fov_y_degrees,
+                near: text.near,
+                far: text.far,
+                light: text.light,
+            },
+            frames_per_second: text.frames_per_second,
+            keys: text.keys,
+            light_keys: text.light_keys,
+            moves: text.moves,
+        }
+    }
 }
 
 /// Keyframe of a camera: its position and direction at a time.

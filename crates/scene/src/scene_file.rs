@@ -20,15 +20,14 @@
 //! ```
 
 use crate::{
-    camera::{View, y_axis},
+    camera::View,
     error::SceneError,
     generate::Generator,
     light::DirectionalLight,
-    light_kind::{Light, own_light},
+    light_kind::Light,
     material_use::MaterialUse,
-    motion::Motion,
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
-    path::{CameraKey, CameraPath, LightKey},
+    path::CameraPath,
     vector::Vector,
 };
 use glam::DVec3;
@@ -274,67 +273,6 @@ impl Item for CameraPath {
     const NEEDED: bool = false;
     const NAME: fn(&Self) -> &str = |path| &path.view.name;
     const CHECK: fn(&Self) -> Result<(), String> = Self::check;
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, rename = "Path")]
-pub(crate) struct PathText {
-    name: String,
-    /// Direction up in the picture.
-    #[serde(default = "y_axis", with = "Vector")]
-    up: DVec3,
-    /// Opening angle from bottom to top: more than 0, less than 180.
-    fov_y_degrees: f64,
-    /// Distance of the near plane, more than 0.
-    near: f64,
-    /// Distance of the far plane, more than `near`.
-    far: f64,
-    /// One sun in the place of the scene's lights.
-    #[serde(default, deserialize_with = "own_light")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<DirectionalLight>"))]
-    light: Option<Light>,
-    #[serde(default = "thirty")]
-    frames_per_second: f64,
-    /// The camera's way, a smooth curve through its keys.
-    keys: Vec<CameraKey>,
-    /// The light's way.
-    #[serde(default)]
-    light_keys: Vec<LightKey>,
-    /// Parts of the mesh that move.
-    #[serde(default)]
-    moves: Vec<Motion>,
-}
-
-fn thirty() -> f64 {
-    30.0
-}
-
-impl From<PathText> for CameraPath {
-    fn from(mut text: PathText) -> Self {
-        for motion in &mut text.moves {
-            if let Motion::Sway { up, .. } = motion {
-                *up = text.up;
-            }
-        }
-        let first = text.keys.first();
-        Self {
-            view: View {
-                name: text.name,
-                eye: first.map_or(DVec3::ZERO, |key| key.eye),
-                direction: first.map_or(DVec3::ZERO, |key| key.direction),
-                up: text.up,
-                fov_y_degrees: text.fov_y_degrees,
-                near: text.near,
-                far: text.far,
-                light: text.light,
-            },
-            frames_per_second: text.frames_per_second,
-            keys: text.keys,
-            light_keys: text.light_keys,
-            moves: text.moves,
-        }
-    }
 }
 
 fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D::Error> {

@@ -30,3 +30,4 @@ pub mod reader;
 #[cfg(feature = "schema")]
 pub mod schema;
 pub mod span;
+pub mod writer;

@@ -120,5 +120,5 @@ pub use self::{
     pattern::Pattern,
     report::ImportReport,
     scene_file::{MeshSource, SceneFile},
-    scene_writer::scene_text,
+    scene_writer::{scene_text, view_text},
 };

@@ -2,13 +2,13 @@
 
 use crate::{
     outline::{Outline, convex_hull},
-    vector::Vector,
+    vector::{Vector, is_default},
 };
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A light infinitely far away, such as the sun.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Light")]
 pub struct DirectionalLight {
@@ -17,7 +17,7 @@ pub struct DirectionalLight {
     pub direction: DVec3,
     /// Angular diameter in degrees as seen from the scene: at least 0, less than 90. A light of 0
     /// degrees has no extent, and its shadows are hard. The sun has 0.53 degrees.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub angle_degrees: f64,
 }
 

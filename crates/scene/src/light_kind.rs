@@ -1,13 +1,13 @@
 //! The lights of a scene: directional, spot and point.
 
 use crate::light::DirectionalLight;
-use crate::vector::Vector;
+use crate::vector::{Vector, is_default};
 use glam::DVec3;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, ser::Error};
 
 /// A light of a scene, with the name by which commands and results know it.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(from = "NamedLightText")]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(from = "NamedLightText", into = "NamedLightText")]
 pub struct Light {
     /// Name of small letters, digits and `_`, unique within its scene. It begins with a letter and
     /// is not `all`.
@@ -28,7 +28,7 @@ pub enum LightKind {
 }
 
 /// A light as scene files write it.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[cfg_attr(
     feature = "schema",
     derive(schemars::JsonSchema),
@@ -43,7 +43,7 @@ pub(crate) enum NamedLightText {
         #[serde(with = "Vector")]
         direction: DVec3,
         /// Diameter as seen from the scene: 0 to less than 90.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         angle_degrees: f64,
     },
     /// A lamp with a cone.
@@ -57,7 +57,7 @@ pub(crate) enum NamedLightText {
         /// The whole opening angle: more than 0, less than 180.
         cone_degrees: f64,
         /// Radius of its disc, in the mesh's units.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         radius: f64,
     },
     /// A lamp that shines everywhere.
@@ -66,9 +66,33 @@ pub(crate) enum NamedLightText {
         #[serde(with = "Vector")]
         position: DVec3,
         /// Radius of its ball, in the mesh's units.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         radius: f64,
     },
+}
+
+impl From<Light> for NamedLightText {
+    fn from(Light { name, kind }: Light) -> Self {
+        match kind {
+            LightKind::Directional(light) => Self::Directional {
+                name,
+                direction: light.direction,
+                angle_degrees: light.angle_degrees,
+            },
+            LightKind::Spot(light) => Self::Spot {
+                name,
+                position: light.position,
+                direction: light.direction,
+                cone_degrees: light.cone_degrees,
+                radius: light.radius,
+            },
+            LightKind::Point(light) => Self::Point {
+                name,
+                position: light.position,
+                radius: light.radius,
+            },
+        }
+    }
 }
 
 impl From<NamedLightText> for Light {
@@ -173,9 +197,22 @@ const FARTHEST: f64 = 1e18;
 /// shadow, instead of being decided by rounding.
 pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
 
-/// The light of a view, which checks it and says whose it is.
-pub(crate) fn own_light<'de, D: Deserializer<'de>>(input: D) -> Result<Option<Light>, D::Error> {
-    DirectionalLight::deserialize(input).map(|sun| Some(sun.into()))
+/// The light of a view in scene files, a sun; the view checks it and says whose it is.
+pub(crate) enum OwnLight {}
+
+impl OwnLight {
+    pub fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Option<Light>, D::Error> {
+        DirectionalLight::deserialize(input).map(|sun| Some(sun.into()))
+    }
+
+    pub fn serialize<S: Serializer>(
+        light: &Option<Light>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let sun = light.as_ref().and_then(|light| light.kind.directional());
+        let lamp = || S::Error::custom("a scene file has lamps for all views only");
+        sun.ok_or_else(lamp)?.serialize(serializer)
+    }
 }
 
 impl Light {

@@ -8,12 +8,12 @@ use crate::{
     vector::{Turn, Vector},
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Motion of a part of a mesh (an OBJ group or object, a glTF node, or a group of a generated mesh)
 /// over the time of a [`CameraPath`](crate::CameraPath), in seconds.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "moves")]
 #[cfg_attr(feature = "schema", schemars(rename = "Motion"))]
@@ -65,7 +65,7 @@ pub enum Motion {
 }
 
 /// Keyframe of a `Rigid` motion: turn and shift of a part at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RigidKey {
@@ -81,7 +81,7 @@ pub struct RigidKey {
 }
 
 /// Keyframe of a `Posed` motion: the part is turned about the world's origin, then shifted.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PoseKey {

@@ -2,16 +2,16 @@
 //! mesh with them.
 
 use crate::{
-    camera::{View, y_axis},
+    camera::{View, is_y, y_axis},
     keys::{not_later, spline},
-    light_kind::{Light, own_light},
+    light_kind::{Light, OwnLight},
     mesh::Mesh,
     motion::{Motion, moved},
     movable::Movable,
-    vector::Vector,
+    vector::{SomeVector, Vector, is_default},
 };
 use glam::DVec3;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The most frames that a path may have: five and a half minutes at thirty per second.
 const MOST_FRAMES: f64 = 10_000.0;
@@ -19,8 +19,8 @@ const MOST_FRAMES: f64 = 10_000.0;
 /// Path of a moving camera. Between keyframes, eye and direction follow Catmull-Rom splines
 /// (Catmull, Rom 1974, over uneven times). Two keyframes make a straight line, two equal keyframes
 /// a camera that stands still. The light and parts of the mesh may move as well.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(from = "PathText")]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(from = "PathText", into = "PathText")]
 pub struct CameraPath {
     /// View that is changed from frame to frame: it holds the path's name and everything that stays
     /// constant. Its eye and direction are replaced by those of the keyframes.
@@ -38,13 +38,13 @@ pub struct CameraPath {
 }
 
 /// A path as scene files write it.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Path")]
 pub(crate) struct PathText {
     name: String,
     /// Direction up in the picture.
-    #[serde(default = "y_axis", with = "Vector")]
+    #[serde(default = "y_axis", with = "Vector", skip_serializing_if = "is_y")]
     up: DVec3,
     /// Opening angle from bottom to top: more than 0, less than 180.
     fov_y_degrees: f64,
@@ -53,7 +53,7 @@ pub(crate) struct PathText {
     /// Distance of the far plane, more than `near`.
     far: f64,
     /// One sun in the place of the scene's lights.
-    #[serde(default, deserialize_with = "own_light")]
+    #[serde(default, with = "OwnLight", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<crate::DirectionalLight>"))]
     light: Option<Light>,
     #[serde(default = "thirty")]
@@ -61,15 +61,33 @@ pub(crate) struct PathText {
     /// The camera's way, a smooth curve through its keys.
     keys: Vec<CameraKey>,
     /// The light's way.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     light_keys: Vec<LightKey>,
     /// Parts of the mesh that move.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     moves: Vec<Motion>,
 }
 
 fn thirty() -> f64 {
     30.0
+}
+
+impl From<CameraPath> for PathText {
+    fn from(path: CameraPath) -> Self {
+        let view = path.view;
+        Self {
+            name: view.name,
+            up: view.up,
+            fov_y_degrees: view.fov_y_degrees,
+            near: view.near,
+            far: view.far,
+            light: view.light,
+            frames_per_second: path.frames_per_second,
+            keys: path.keys,
+            light_keys: path.light_keys,
+            moves: path.moves,
+        }
+    }
 }
 
 impl From<PathText> for CameraPath {
@@ -100,7 +118,7 @@ impl From<PathText> for CameraPath {
 }
 
 /// Keyframe of a camera: its position and direction at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Key")]
 pub struct CameraKey {
@@ -116,7 +134,7 @@ pub struct CameraKey {
 }
 
 /// Keyframe of the light of a camera path: its position and direction at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LightKey {
@@ -124,16 +142,27 @@ pub struct LightKey {
     pub at: f64,
     /// Direction in which the light travels, world space, of any length above 0; `None` for a point
     /// light.
-    #[serde(default, deserialize_with = "Vector::some")]
+    #[serde(default, with = "SomeVector", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub direction: Option<DVec3>,
     /// Position of a spot or point light, world space; `None` for a directional light.
-    #[serde(default, deserialize_with = "Vector::some")]
+    #[serde(default, with = "SomeVector", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub position: Option<DVec3>,
 }
 
 impl CameraPath {
+    /// Creates a path of 30 frames per second on which only the camera moves.
+    pub fn new(view: View, keys: Vec<CameraKey>) -> Self {
+        Self {
+            view,
+            frames_per_second: thirty(),
+            keys,
+            light_keys: Vec::new(),
+            moves: Vec::new(),
+        }
+    }
+
     /// Returns the number of frames. Frame 0 is at the first keyframe, the last frame at the last
     /// keyframe or less than a frame before it.
     pub fn frames(&self) -> u32 {
@@ -312,18 +341,16 @@ mod tests {
         let keys = keys
             .iter()
             .map(|&(at, eye, direction)| CameraKey { at, eye, direction });
+        let view = View {
+            name: "walk".into(),
+            direction: DVec3::X,
+            near: 1.0,
+            far: 100.0,
+            ..View::default()
+        };
         CameraPath {
-            view: View {
-                name: "walk".into(),
-                direction: DVec3::X,
-                near: 1.0,
-                far: 100.0,
-                ..View::default()
-            },
             frames_per_second: 10.0,
-            keys: keys.collect(),
-            light_keys: Vec::new(),
-            moves: Vec::new(),
+            ..CameraPath::new(view, keys.collect())
         }
     }
 

@@ -28,11 +28,11 @@ use crate::{
     material_use::MaterialUse,
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::CameraPath,
-    vector::Vector,
+    vector::{SomeVector, Vector, is_default},
 };
 use glam::DVec3;
 use serde::{
-    Deserialize, Deserializer,
+    Deserialize, Deserializer, Serialize, Serializer,
     de::{DeserializeOwned, Error},
 };
 use skiagraph_located_ron::{
@@ -45,7 +45,7 @@ use std::collections::HashMap;
 
 /// Content of a scene file. `SceneFile::parse` checks everything in it, but loads no mesh. Serde
 /// alone refuses the lists `lights`, `views` and `paths`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "scene")]
 pub struct SceneFile {
@@ -55,18 +55,26 @@ pub struct SceneFile {
     pub name: String,
     /// Description of the scene in one line, for the list that `skiagraph scenes` prints; may be
     /// empty.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub description: String,
     /// Source of the scene's triangles.
     pub mesh: MeshSource,
     /// Direction up, of any length above 0, of a ground that is added just below the mesh; `None`
     /// adds no ground.
     #[serde(default, deserialize_with = "ground")]
+    #[serde(
+        serialize_with = "SomeVector::serialize",
+        skip_serializing_if = "Option::is_none"
+    )]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub ground: Option<DVec3>,
     /// Lights of the scene: at least one, no two of the same name. They light each view that has no
     /// light of its own.
-    #[serde(default, rename = "light", deserialize_with = "only_light")]
+    #[serde(
+        default,
+        rename(deserialize = "light"),
+        deserialize_with = "only_light"
+    )]
     #[cfg_attr(feature = "schema", schemars(with = "Option<DirectionalLight>"))]
     #[cfg_attr(
         feature = "schema",
@@ -74,10 +82,12 @@ pub struct SceneFile {
     )]
     pub lights: Vec<Light>,
     /// Views of the scene: at least one, no two of the same name. The first is the default.
-    #[serde(skip)]
+    #[serde(skip_deserializing)]
+    #[cfg_attr(feature = "schema", schemars(skip))]
     pub views: Vec<View>,
     /// Camera paths of the scene, no two of the same name; may be empty.
-    #[serde(skip)]
+    #[serde(skip_deserializing, skip_serializing_if = "is_default")]
+    #[cfg_attr(feature = "schema", schemars(skip))]
     pub paths: Vec<CameraPath>,
 }
 
@@ -85,7 +95,7 @@ pub struct SceneFile {
 const LISTS: [&str; 3] = ["lights", "views", "paths"];
 
 /// Source of a scene's triangles.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[cfg_attr(
     feature = "schema",
     derive(schemars::JsonSchema),
@@ -100,20 +110,20 @@ pub enum MeshSource {
         /// folder of the user's cache.
         file: String,
         /// Names of the groups or objects that are left out: the whole text after `g` or `o`.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         leave_out: Vec<String>,
         /// Diagonal that splits a quad into triangles.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         quads: QuadDiagonal,
         /// Treatment of concave polygons.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         concave: Concave,
         /// Parts of the file's materials that are read.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         materials: ObjMaterials,
         /// Sentence that tells where the file can be downloaded, for the message that it is
         /// missing; `None` for a file that is not public.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         source: Option<String>,
     },
     /// A glTF 2.0 file, `.gltf` or `.glb`.
@@ -122,23 +132,37 @@ pub enum MeshSource {
         /// `Obj`.
         file: String,
         /// Parts of the file's materials that are read.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         materials: MaterialUse,
         /// Sentence that tells where the file can be downloaded, for the message that it is
         /// missing; `None` for a file that is not public.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         source: Option<String>,
     },
     /// A mesh that this crate generates. A scene file names it, for example `"park"` or
     /// `"city:100000"`.
     Generated(
-        #[serde(deserialize_with = "generator")]
+        #[serde(deserialize_with = "generator", serialize_with = "generator_text")]
         #[cfg_attr(feature = "schema", schemars(with = "String"))]
         Generator,
     ),
 }
 
 impl SceneFile {
+    /// Creates a scene that is a mesh alone, without lights and views.
+    pub fn new(name: impl Into<String>, mesh: MeshSource) -> Self {
+        Self {
+            format: 1,
+            name: name.into(),
+            description: String::new(),
+            mesh,
+            ground: None,
+            lights: Vec::new(),
+            views: Vec::new(),
+            paths: Vec::new(),
+        }
+    }
+
     /// Reads a scene from the text of a scene file. `file` is the name of the file in error
     /// messages.
     ///
@@ -278,6 +302,10 @@ impl Item for CameraPath {
 fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D::Error> {
     let name = String::deserialize(deserializer)?;
     name.parse().map_err(D::Error::custom)
+}
+
+fn generator_text<S: Serializer>(generator: &Generator, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_str(generator)
 }
 
 fn ground<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DVec3>, D::Error> {

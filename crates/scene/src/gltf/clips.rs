@@ -94,16 +94,16 @@ impl Clip {
                 if let Some(light) = light.filter(|_| several_lights) {
                     name += &format!("_{}", light.name);
                 }
+                let view = View {
+                    name,
+                    light: light.cloned(),
+                    ..view.clone()
+                };
                 let path = CameraPath {
-                    view: View {
-                        name,
-                        light: light.cloned(),
-                        ..view.clone()
-                    },
                     frames_per_second: RATE,
-                    keys: keys.clone(),
                     light_keys: moved.map_or_else(Vec::new, |(_, keys)| keys.clone()),
                     moves: self.moves.clone(),
+                    ..CameraPath::new(view, keys.clone())
                 };
                 paths.push(path.check().map(|()| path));
             }

@@ -97,18 +97,20 @@ impl From<PathText> for CameraPath {
                 *up = text.up;
             }
         }
-        let first = text.keys.first();
+        let mut view = View {
+            name: text.name,
+            up: text.up,
+            fov_y_degrees: text.fov_y_degrees,
+            near: text.near,
+            far: text.far,
+            light: text.light,
+            ..View::default()
+        };
+        if let Some(first) = text.keys.first() {
+            (view.eye, view.direction) = (first.eye, first.direction);
+        }
         Self {
-            view: View {
-                name: text.name,
-                eye: first.map_or(DVec3::ZERO, |key| key.eye),
-                direction: first.map_or(DVec3::ZERO, |key| key.direction),
-                up: text.up,
-                fov_y_degrees: text.fov_y_degrees,
-                near: text.near,
-                far: text.far,
-                light: text.light,
-            },
+            view,
             frames_per_second: text.frames_per_second,
             keys: text.keys,
             light_keys: text.light_keys,

@@ -91,12 +91,12 @@ mod tests {
             direction: DVec3::new(1.0 / 3.0, -1.0, 0.0),
             up: DVec3::Z,
             fov_y_degrees: 47.5,
-            near: 0.25,
             far: 1e18,
             light: Some(Light::only(DirectionalLight {
                 direction: DVec3::new(0.1, -0.7, 0.2),
                 angle_degrees: 0.53,
             })),
+            ..View::default()
         }
     }
 

@@ -166,11 +166,9 @@ fn view(turn: usize) -> View {
         name: String::new(),
         eye: DVec3::new(30.0 + aside, 20.0, 90.0),
         direction: DVec3::new(0.0, -0.4, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
-        near: 0.1,
         far: 300.0,
-        light: None,
+        ..View::default()
     }
 }
 

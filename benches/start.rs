@@ -104,11 +104,8 @@ fn scene(gpu: &Gpu, preset: &str) -> (SceneProvider, Plan) {
         name: String::new(),
         eye: glam::DVec3::new(0.0, 6.0, 7.0),
         direction: glam::DVec3::new(0.0, -6.0, -7.0),
-        up: glam::DVec3::Y,
-        fov_y_degrees: 60.0,
-        near: 0.1,
         far: 50.0,
-        light: None,
+        ..skiagraph_scene::View::default()
     };
     provider.set_camera(&view.camera(VIEWPORT));
     let mut request = PlanRequest::new(VIEWPORT, &provider);

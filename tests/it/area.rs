@@ -18,14 +18,12 @@ fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
 
 fn scene_of(mesh: Mesh, light: impl Into<LightKind>) -> Arc<Scene> {
     let view = View {
-        name: "main".into(),
         eye: DVec3::new(0.5, 6.0, 7.0),
         direction: DVec3::new(0.0, -0.8, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
         near: 0.5,
         far: 50.0,
-        light: None,
+        ..View::default()
     };
     let light = skiagraph_scene::Light::only(light);
     Arc::new(Scene {

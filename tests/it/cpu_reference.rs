@@ -204,14 +204,12 @@ fn hard() -> Arc<Scene> {
     positions.extend(corners.map(|(x, z)| Vec3::new(x, 0.0, z)));
     triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
     let view = View {
-        name: "main".into(),
         eye: DVec3::new(0.5, 4.0, 6.0),
         direction: DVec3::new(0.0, -0.5, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
         near: 0.5,
         far: 50.0,
-        light: None,
+        ..View::default()
     };
     Arc::new(Scene {
         name: "hard".into(),

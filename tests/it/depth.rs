@@ -34,11 +34,10 @@ fn far_above(near: f64) -> Arc<Scene> {
             name: "far".into(),
             eye,
             direction: -eye,
-            up: DVec3::Y,
             fov_y_degrees: 0.2,
             near,
             far: 10_000.0,
-            light: None,
+            ..View::default()
         }],
         lights: vec![DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).into()],
     })

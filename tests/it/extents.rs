@@ -15,14 +15,12 @@ fn scene(mesh: Mesh, eye: DVec3, target: DVec3, far: f64, direction: DVec3) -> A
         name: "extents".into(),
         mesh,
         views: vec![View {
-            name: "main".into(),
             eye,
             direction: target - eye,
-            up: DVec3::Y,
             fov_y_degrees: 50.0,
             near: 0.01 * (target - eye).length(),
             far,
-            light: None,
+            ..View::default()
         }],
         lights: vec![DirectionalLight::new(direction).into()],
     })

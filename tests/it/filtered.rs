@@ -299,11 +299,7 @@ fn the_noise_of_pcss_falls_with_its_taps() {
 fn pcss_widens_under_lamps_with_an_extent() {
     let scene = case("near_and_far");
     for mut lamp in lamps() {
-        match &mut lamp {
-            LightKind::Spot(spot) => spot.radius = 0.2,
-            LightKind::Point(point) => point.radius = 0.2,
-            LightKind::Directional(_) => unreachable!("a lamp"),
-        }
+        *lamp.parameters().radius.unwrap() = 0.2;
         let scene = under(&scene, lamp);
         let [pcf, pcss] = ["pcf", "pcss"].map(|preset| see(&scene, preset, &[map(512)]).rmse());
         println!("{lamp:?}: pcf {pcf}, pcss {pcss}");

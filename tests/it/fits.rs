@@ -23,14 +23,12 @@ fn scene(seed: u64, far: f64) -> Arc<Scene> {
     let floor = mesh(corners, vec![[0, 1, 2], [0, 2, 3]]);
     let eye = DVec3::new(2.0, 3.0, 4.0);
     let view = View {
-        name: "main".into(),
         eye,
         direction: -eye,
-        up: DVec3::Y,
         fov_y_degrees: 40.0,
         near: 0.5,
         far,
-        light: None,
+        ..View::default()
     };
     Arc::new(Scene {
         name: "test".into(),

@@ -281,14 +281,10 @@ fn softvis_hands_out_the_share_that_arrives() {
 /// One triangle, and a view of it.
 fn one() -> Arc<Scene> {
     let view = View {
-        name: "main".into(),
         eye: DVec3::Z,
-        direction: DVec3::NEG_Z,
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
         near: 0.5,
         far: 10.0,
-        light: None,
+        ..View::default()
     };
     Arc::new(Scene {
         name: "one".into(),

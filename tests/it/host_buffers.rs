@@ -27,11 +27,9 @@ fn camera(size: [u32; 2]) -> Camera {
         name: String::new(),
         eye: DVec3::new(2.0, 9.0, 14.0),
         direction: DVec3::new(-0.1, -0.55, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
-        near: 0.1,
         far: 60.0,
-        light: None,
+        ..View::default()
     }
     .camera(size)
 }

@@ -24,14 +24,11 @@ fn scene(light: LightKind) -> Arc<Scene> {
         .for_each(|p| *p += Vec3::new(3.0, 0.2, 1.0));
     let eye = DVec3::new(4.0, 7.0, 9.0);
     let view = View {
-        name: "main".into(),
         eye,
         direction: -eye,
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
         near: 0.5,
         far: 60.0,
-        light: None,
+        ..View::default()
     };
     Arc::new(Scene {
         name: "lamp".into(),

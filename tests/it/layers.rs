@@ -25,14 +25,10 @@ fn scene(mesh: Mesh, direction: DVec3) -> Arc<Scene> {
         name: "layers".into(),
         mesh,
         views: vec![View {
-            name: "main".into(),
             eye: DVec3::new(0.3, 9.0, 6.0),
             direction: DVec3::new(0.0, -1.0, -0.7),
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
-            near: 0.1,
             far: 100.0,
-            light: None,
+            ..View::default()
         }],
         lights: vec![DirectionalLight::new(direction).into()],
     })

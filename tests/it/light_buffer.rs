@@ -22,14 +22,12 @@ const VIEWPORT: [u32; 2] = [96, 64];
 
 fn scene(mesh: Mesh, eye: DVec3, light: DVec3) -> Arc<Scene> {
     let view = View {
-        name: "main".into(),
         eye,
         direction: -eye,
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
         near: 0.05,
         far: 50.0,
-        light: None,
+        ..View::default()
     };
     Arc::new(Scene {
         name: "test".into(),

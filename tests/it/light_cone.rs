@@ -173,10 +173,10 @@ impl Emitter {
         let rim = [area.right, area.up].map(Vec3::as_dvec3);
         let place = light.position.as_dvec3() + light.position_low.as_dvec3();
         let way = place - receiver.as_dvec3();
-        let (centre, across) = match self.kind {
-            LightKind::Directional(_) => (light.to_light.as_dvec3(), rim),
-            LightKind::Spot(_) => (way, rim),
-            LightKind::Point(_) => {
+        let (centre, across) = match (self.kind.position(), self.kind.direction()) {
+            (None, _) => (light.to_light.as_dvec3(), rim),
+            (_, Some(_)) => (way, rim),
+            (_, None) => {
                 let to_light = way.normalize();
                 let helper = if to_light.x.abs() > 0.5 {
                     DVec3::Y

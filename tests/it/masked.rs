@@ -25,14 +25,11 @@ fn scene_under(seed: u64, light: LightKind) -> Arc<Scene> {
         name: "foliage".into(),
         mesh: foliage(60, 0.35, 4.0, seed),
         views: vec![View {
-            name: "main".into(),
             eye,
             direction: DVec3::new(0.0, -0.5, 0.0) - eye,
-            up: DVec3::Y,
             fov_y_degrees: 50.0,
-            near: 0.1,
             far: 50.0,
-            light: None,
+            ..View::default()
         }],
         lights: vec![light.into()],
     })

@@ -28,11 +28,9 @@ fn camera(aside: f64) -> Camera {
         name: String::new(),
         eye: DVec3::new(7.0 + aside, 9.0, 24.0),
         direction: DVec3::new(0.0, -0.5, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
-        near: 0.1,
         far: 60.0,
-        light: None,
+        ..View::default()
     }
     .camera(SIZE)
 }

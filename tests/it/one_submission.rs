@@ -38,11 +38,9 @@ pub(crate) fn view(time: f64) -> View {
         name: String::new(),
         eye: DVec3::new(1.0 + 2.0 * time, 6.0, 9.0),
         direction: DVec3::new(-0.1, -0.6, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
-        near: 0.1,
         far: 60.0,
-        light: None,
+        ..View::default()
     }
 }
 

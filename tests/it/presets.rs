@@ -18,14 +18,12 @@ const VIEWPORT: [u32; 2] = [96, 64];
 /// A floor, and a box that floats above it.
 fn scene() -> Arc<Scene> {
     let view = View {
-        name: "main".into(),
         eye: DVec3::new(0.5, 5.0, 7.0),
         direction: DVec3::new(0.0, -0.7, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
         near: 0.5,
         far: 50.0,
-        light: None,
+        ..View::default()
     };
     Arc::new(Scene {
         name: "box".into(),

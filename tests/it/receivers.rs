@@ -92,11 +92,9 @@ fn measured(by: Arithmetic, count: u32) -> Off {
             name: String::new(),
             eye: vector(100.0),
             direction: vector(1.0),
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
             near: 1.0,
             far: 1e4,
-            light: None,
+            ..View::default()
         };
         let camera = view.camera([640, 480]);
         let light = vector(1.0).normalize();

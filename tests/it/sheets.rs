@@ -127,14 +127,11 @@ fn scene(name: &str, mesh: Mesh, light: impl Into<LightKind>, [eye, at]: [DVec3;
         name: name.into(),
         mesh,
         views: vec![View {
-            name: "main".into(),
             eye,
             direction: at - eye,
-            up: DVec3::Y,
             fov_y_degrees: 50.0,
-            near: 0.1,
             far: 50.0,
-            light: None,
+            ..View::default()
         }],
         lights: vec![light.into().into()],
     })
@@ -534,11 +531,9 @@ fn sheets_move_with_their_parts() {
         name: String::new(),
         eye: DVec3::new(2.0, 8.0, 18.0),
         direction: DVec3::new(0.2, -0.6, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
-        near: 0.1,
         far: 60.0,
-        light: None,
+        ..View::default()
     }
     .camera(VIEWPORT);
     let provider_of = |parts: &[(&Mesh, DAffine3)]| {

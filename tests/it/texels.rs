@@ -53,14 +53,12 @@ fn scene(light: impl Into<LightKind>) -> Arc<Scene> {
             ..Mesh::default()
         },
         views: vec![View {
-            name: "main".into(),
             eye: DVec3::new(1.0, 9.0, 30.0),
             direction: DVec3::new(0.1, -0.5, -1.0),
-            up: DVec3::Y,
             fov_y_degrees: 40.0,
             near: 1.0,
             far: 150.0,
-            light: None,
+            ..View::default()
         }],
         lights: vec![Light::only(light)],
     })

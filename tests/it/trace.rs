@@ -464,14 +464,10 @@ fn a_pixel_without_an_answer_is_neither_lit_nor_judged() {
         &[(90.0, -40.0), (-40.0, -40.0), (-40.0, 90.0)].map(|(x, z)| Vec3::new(x, -1.0, z)),
     );
     let view = View {
-        name: "main".into(),
         eye: DVec3::new(0.0, -0.3, 3.0),
         direction: DVec3::new(0.0, -0.7, -3.0),
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
-        near: 0.1,
         far: 200.0,
-        light: None,
+        ..View::default()
     };
     let scene = Arc::new(Scene {
         name: "stack".into(),

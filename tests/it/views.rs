@@ -16,19 +16,15 @@ const SIZES: [[u32; 2]; 2] = [[64, 40], [48, 48]];
 
 /// Two suns, a spot and a bulb, all of them elsewhere at another time.
 fn lights(time: f64) -> [LightKind; 4] {
-    let moved = |light| match light {
-        LightKind::Directional(mut sun) => {
-            sun.direction.x -= 0.2 * time;
-            LightKind::Directional(sun)
+    let moved = |mut light: LightKind| {
+        let parameters = light.parameters();
+        match (parameters.position, parameters.direction) {
+            (None, Some(direction)) => direction.x -= 0.2 * time,
+            (Some(position), Some(_)) => position.x += 0.5 * time,
+            (Some(position), None) => position.z -= 0.5 * time,
+            (None, None) => {}
         }
-        LightKind::Spot(mut spot) => {
-            spot.position.x += 0.5 * time;
-            LightKind::Spot(spot)
-        }
-        LightKind::Point(mut bulb) => {
-            bulb.position.z -= 0.5 * time;
-            LightKind::Point(bulb)
-        }
+        light
     };
     let evening = DirectionalLight::new(DVec3::new(-0.7, -0.8, 0.2));
     let [spot, bulb] = lamps();

@@ -147,14 +147,11 @@ fn blades(count: u32) -> Arc<Scene> {
         name: "blades".into(),
         mesh: meshes::mesh(positions, triangles),
         views: vec![View {
-            name: "main".into(),
             eye: DVec3::new(15.0, 4.0, 15.0),
             direction: DVec3::new(-0.6, -0.3, -0.6),
-            up: DVec3::Y,
             fov_y_degrees: 70.0,
-            near: 0.1,
             far: 100.0,
-            light: None,
+            ..View::default()
         }],
         lights: vec![
             LightKind::Spot(SpotLight {

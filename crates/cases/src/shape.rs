@@ -198,7 +198,7 @@ impl Shape {
                 fov_y_degrees: 45.0,
                 near: 0.01 * direction.length(),
                 far: 100.0 * direction.length(),
-                light: None,
+                ..View::default()
             }],
             lights: vec![Light::only(light)],
         }

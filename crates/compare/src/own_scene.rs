@@ -263,14 +263,11 @@ impl OwnScene {
         paths: Vec<CameraPath>,
     ) -> SceneFile {
         SceneFile {
-            format: 1,
-            name: self.scene.name.clone(),
-            description: String::new(),
-            mesh: options.file.source(mesh),
             ground: self.chosen.ground.map(|_| options.up()),
             lights: self.scene.lights.clone(),
             views: self.scene.views.clone(),
             paths,
+            ..SceneFile::new(&self.scene.name, options.file.source(mesh))
         }
     }
 }
@@ -288,10 +285,9 @@ fn towards(mesh: &Mesh, eye: DVec3) -> View {
         } else {
             direction
         },
-        up: DVec3::Y,
         fov_y_degrees: DEFAULT_FOV,
         near: 1.0,
         far: 2.0,
-        light: None,
+        ..View::default()
     }
 }

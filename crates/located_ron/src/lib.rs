@@ -2,12 +2,13 @@
 //! point at that place.
 //!
 //! [`reader`] splits a text into nodes (a list entry, a field's value) and reads each node by
-//! itself, so that one mistake does not hide the next. A [`diagnostics::Diagnostic`] holds the kind
-//! of a mistake, its message, its places in the text, and a hint how to mend it.
+//! itself, as [`fields`] does with those of a struct, so that one mistake does not hide the next. A
+//! [`diagnostics::Diagnostic`] holds the kind of a mistake, its message, its places in the text,
+//! and a hint how to mend it.
 //!
 //! ```
 //! use serde::Deserialize;
-//! use skiagraph_located_ron::{reader::{Node, from_fields}, span::SourceFile};
+//! use skiagraph_located_ron::{fields::from_fields, reader::Node, span::SourceFile};
 //!
 //! #[derive(Debug, Deserialize)]
 //! #[serde(deny_unknown_fields)]
@@ -22,8 +23,11 @@
 //! ```
 
 pub mod diagnostics;
+pub mod fields;
+pub mod mistakes;
 pub mod panics;
 pub mod reader;
 #[cfg(feature = "schema")]
 pub mod schema;
 pub mod span;
+pub mod writer;

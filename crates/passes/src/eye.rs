@@ -272,11 +272,10 @@ mod tests {
             name: String::new(),
             eye: DVec3::new(5.0, 6.0, 7.0),
             direction: DVec3::new(1.0, -2.0, 3.0),
-            up: DVec3::Y,
             fov_y_degrees: 50.0,
             near: 0.5,
             far: 80.0,
-            light: None,
+            ..skiagraph_scene::View::default()
         };
         let own = Eye::from(&view_of.camera([30, 20]));
         // Planes that change places reverse the depth.

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Error,
-    uniforms::{LIGHT_KINDS, LightAreaUniform, LightUniform},
+    uniforms::{LightAreaUniform, LightUniform},
 };
 use skiagraph_graph::{Provided, ProvidedBinding, ProvidedKind};
 use skiagraph_scene::{LightKind, Scene};
@@ -22,9 +22,11 @@ pub(crate) fn from_scene(scene: &Scene) -> Vec<LightKind> {
 
 /// The kind of a light, as plans and shaders know it.
 pub(crate) fn provided_kind(light: &LightKind) -> ProvidedKind {
-    let number = LIGHT_KINDS.iter().position(|word| *word == light.word());
+    let number = LightKind::WORDS
+        .iter()
+        .position(|word| *word == light.word());
     ProvidedKind {
-        words: &LIGHT_KINDS,
+        words: &LightKind::WORDS,
         number: number.unwrap_or_default() as u32,
     }
 }

@@ -1,14 +1,12 @@
 //! `Trace`: rays in, hits out, by one of several engines. The number of rays stays on the GPU.
 
-use crate::{
-    names::{EMBREE, LIGHT, MASKS},
-    uniforms::LIGHT_KINDS,
-};
+use crate::names::{EMBREE, LIGHT, MASKS};
 use serde::Deserialize;
 use skiagraph_graph::{
     Chosen, Code, Diagnostic, Lowering, PassKind, Reference, Span,
     step::{CpuCall, CpuItems, Dispatch, Groups, Operand, Program, Step, Threads},
 };
+use skiagraph_scene::LightKind;
 
 /// Choice of the hit that a [`Trace`] pass records for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -255,7 +253,7 @@ impl PassKind for Trace {
         if engine == Engine::LightSpace {
             match (self.direction, pass.kind_of(LIGHT)) {
                 (None, _) => self.refuse(pass),
-                (Some(Direction::Light), Some(kind)) if kind != LIGHT_KINDS[0] => {
+                (Some(Direction::Light), Some(kind)) if kind != LightKind::WORDS[0] => {
                     self.refuse_light(pass, kind);
                 }
                 (Some(Direction::Light), _) => {}

@@ -20,9 +20,7 @@
 //! ```
 
 use glam::{DMat4, DVec3, Mat3, Mat4, Vec2, Vec3};
-use skiagraph_scene::{
-    Camera, DirectionalLight, LightFit, LightKind, Mesh, SpotLight, light::across,
-};
+use skiagraph_scene::{Camera, DirectionalLight, LightFit, LightKind, Mesh, light::across};
 
 /// The struct `Camera` of `shaders/shared/camera.wgsl`: a perspective camera with reversed depth (1
 /// near, 0 far), 96 bytes. Positions and vectors are in world space, distances in scene units.
@@ -139,10 +137,6 @@ pub struct LightUniform {
     pub range: f32,
 }
 
-/// Words for the kinds of lights in graph documents and scene files. The index of a word in this
-/// list is the number that stands for the kind in shaders.
-pub const LIGHT_KINDS: [&str; 3] = ["directional", "spot", "point"];
-
 impl LightUniform {
     /// Creates the uniform of a light whose light space and bounds enclose `mesh`. An empty mesh
     /// counts as a point at the origin.
@@ -160,14 +154,19 @@ impl LightUniform {
     ) -> Self {
         let (min, max) = bounds.unwrap_or((Vec3::ZERO, Vec3::ZERO));
         let bounds = (min.as_dvec3(), max.as_dvec3());
-        match light {
-            LightKind::Directional(light) => Self::directional(&light, bounds, fit(&light)),
-            LightKind::Spot(spot) => Self {
-                to_light: -spot.direction.normalize().as_vec3(),
-                edge_cosine: spot.edge_cosine() as f32,
-                ..Self::at(spot.position, bounds).seen_by(&spot)
-            },
-            LightKind::Point(point) => Self::at(point.position, bounds),
+        if let Some(sun) = light.directional() {
+            return Self::directional(sun, bounds, fit(sun));
+        }
+        let placed = Self {
+            to_light: light
+                .direction()
+                .map_or(Vec3::ZERO, |axis| -axis.normalize().as_vec3()),
+            edge_cosine: light.edge_cosine().unwrap_or(0.0) as f32,
+            ..Self::at(light.position().unwrap_or_default(), bounds)
+        };
+        match (light.direction(), light.cone_degrees()) {
+            (Some(axis), Some(degrees)) => placed.with_cone(axis.normalize(), degrees),
+            _ => placed,
         }
     }
 
@@ -188,11 +187,10 @@ impl LightUniform {
         }
     }
 
-    /// With the light space of a spot light.
-    fn seen_by(self, spot: &SpotLight) -> Self {
-        let forward = spot.direction.normalize();
+    /// With the light space of a light that lights a cone around `forward`.
+    fn with_cone(self, forward: DVec3, degrees: f64) -> Self {
         let (right, up) = across(forward);
-        let half_width = (spot.cone_degrees * 0.5).to_radians().tan();
+        let half_width = (degrees * 0.5).to_radians().tan();
         let rows = [
             (right / half_width).extend(0.0),
             (up / half_width).extend(0.0),
@@ -254,18 +252,12 @@ pub struct LightAreaUniform {
 
 impl From<&LightKind> for LightAreaUniform {
     fn from(light: &LightKind) -> Self {
-        let ([right, up], radius) = match light {
-            LightKind::Directional(light) => (light.across(), light.across()[0].length()),
-            LightKind::Spot(spot) => {
-                let (right, up) = spot.direction.normalize().any_orthonormal_pair();
-                ([right, up].map(|axis| axis * spot.radius), spot.radius)
-            }
-            LightKind::Point(point) => ([DVec3::ZERO; 2], point.radius),
-        };
+        let (axis, radius) = light.disk();
+        let (right, up) = axis.map_or_else(Default::default, |axis| axis.any_orthonormal_pair());
         Self {
-            right: right.as_vec3(),
+            right: (right * radius).as_vec3(),
             radius: radius as f32,
-            up: up.as_vec3(),
+            up: (up * radius).as_vec3(),
             padding: 0.0,
         }
     }

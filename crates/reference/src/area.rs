@@ -31,43 +31,30 @@ struct Emitter {
 }
 
 impl Emitter {
-    /// As a receiver sees it. A point light's disk faces the receiver, a spot light's is across its
-    /// axis.
+    /// As a receiver sees it.
     fn seen_from(light: &LightKind, receiver: &Receiver) -> Self {
-        let (across, radius) = match light {
-            LightKind::Directional(light) => {
-                let angle = light.angle_degrees.to_radians() * 0.5;
-                let centre = light.to_light();
-                return Self {
-                    centre,
-                    across: light.across(),
-                    is_place: false,
-                    cone: Cone {
-                        axis: centre,
-                        sin: angle.sin(),
-                        cos: angle.cos(),
-                    },
-                };
-            }
-            LightKind::Spot(spot) => (spot.direction.normalize(), spot.radius),
-            LightKind::Point(point) => (receiver.towards.direction, point.radius),
-        };
         let Towards {
-            direction,
+            direction: axis,
             distance,
         } = receiver.towards;
-        // All of the ball around the centre.
-        let sin = (radius / distance).min(1.0);
-        let (x, y) = across.any_orthonormal_pair();
+        let (across, radius) = light.disk();
+        let (x, y) = across.unwrap_or(axis).any_orthonormal_pair();
+        let (centre, [sin, cos]) = match light.directional() {
+            Some(sun) => {
+                let angle = sun.angle_degrees.to_radians() * 0.5;
+                (axis, [angle.sin(), angle.cos()])
+            }
+            // All of the ball around the centre.
+            None => {
+                let sin = (radius / distance).min(1.0);
+                (axis * distance, [sin, (1.0 - sin * sin).sqrt()])
+            }
+        };
         Self {
-            centre: direction * distance,
+            centre,
             across: [x * radius, y * radius],
-            is_place: true,
-            cone: Cone {
-                axis: direction,
-                sin,
-                cos: (1.0 - sin * sin).sqrt(),
-            },
+            is_place: light.directional().is_none(),
+            cone: Cone { axis, sin, cos },
         }
     }
 

@@ -216,14 +216,10 @@ mod tests {
         };
         let half_height = f64::from(viewport[1]) * 0.5;
         let view = View {
-            name: "main".into(),
             eye: DVec3::new(0.25, 0.25, half_height),
-            direction: DVec3::NEG_Z,
-            up: DVec3::Y,
             fov_y_degrees: 90.0,
-            near: 0.1,
             far: 1000.0,
-            light: None,
+            ..View::default()
         };
         (mesh, view.camera(viewport))
     }

@@ -104,7 +104,7 @@ impl LayerJump {
 mod tests {
     use super::*;
     use crate::Class::{self, Lit, Shadow};
-    use glam::{DVec3, Vec3};
+    use glam::Vec3;
     use skiagraph_scene::{Mesh, View};
 
     /// A row of pixels on a wall ten units away, the last of which show another one five units
@@ -119,14 +119,9 @@ mod tests {
             ..Mesh::default()
         };
         let view = View {
-            name: "main".into(),
-            eye: DVec3::ZERO,
-            direction: DVec3::NEG_Z,
-            up: DVec3::Y,
             fov_y_degrees: 10.0,
-            near: 0.1,
             far: 100.0,
-            light: None,
+            ..View::default()
         };
         let camera = view.camera([count as u32, 1]);
         let mut truth = GroundTruthPixels {

@@ -12,10 +12,7 @@
 //! use glam::DVec3;
 //!
 //! let mesh = Mesh::default();
-//! let view = View {
-//!     name: "main".into(), eye: DVec3::ZERO, direction: DVec3::NEG_Z, up: DVec3::Y,
-//!     fov_y_degrees: 60.0, near: 0.1, far: 100.0, light: None,
-//! };
+//! let view = View { far: 100.0, ..View::default() };
 //! let light = DirectionalLight::new(DVec3::NEG_Y);
 //! let camera = view.camera([8, 8]);
 //! let oracle = Oracle::new(&mesh);

@@ -168,17 +168,14 @@ impl Receiver {
         } else {
             f64::INFINITY
         };
-        let beyond_edge = match light {
-            LightKind::Spot(spot) => spot.edge_cosine() - spot.axis_cosine(to_light),
-            _ => -1.0,
-        };
+        let beyond_edge = light.beyond_cone(to_light);
         let cone_error = CONE_ROUNDINGS * F32_ROUNDING + turned;
         Self {
             primitive,
             position,
             towards,
-            outside_cone: beyond_edge > 0.0,
-            on_cone_edge: matches!(light, LightKind::Spot(_)) && beyond_edge.abs() <= cone_error,
+            outside_cone: beyond_edge.is_some_and(|beyond| beyond > 0.0),
+            on_cone_edge: beyond_edge.is_some_and(|beyond| beyond.abs() <= cone_error),
             n_dot_l,
             n_dot_l_error,
             uncertainty,

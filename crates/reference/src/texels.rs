@@ -162,14 +162,11 @@ mod tests {
             ..Mesh::default()
         };
         let view = View {
-            name: "main".into(),
             eye: DVec3::new(0.0, 10.0, 10.0),
             direction: DVec3::new(0.0, -1.0, -1.0),
-            up: DVec3::Y,
             fov_y_degrees: 90.0,
-            near: 0.1,
             far: 1000.0,
-            light: None,
+            ..View::default()
         };
         let camera = view.camera([SIZE; 2]);
         let count = (SIZE * SIZE) as usize;

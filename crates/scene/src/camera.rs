@@ -2,15 +2,15 @@
 
 use crate::{
     light::onto_axes,
-    light_kind::{Light, own_light},
+    light_kind::{Light, OwnLight},
     vector::Vector,
 };
 use glam::{DMat4, DVec2, DVec3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A named view of a scene: a perspective camera without the size of a viewport. A scene file lists
 /// views.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct View {
@@ -24,7 +24,7 @@ pub struct View {
     pub direction: DVec3,
     /// Direction up in the picture, world space, of any length above 0. A view straight along it,
     /// up or down, has a direction across it as its up: -z for y, y for z.
-    #[serde(default = "y_axis", with = "Vector")]
+    #[serde(default = "y_axis", with = "Vector", skip_serializing_if = "is_y")]
     pub up: DVec3,
     /// Vertical field of view in degrees: more than 0, less than 180.
     pub fov_y_degrees: f64,
@@ -35,14 +35,34 @@ pub struct View {
     pub far: f64,
     /// The view's own light, which replaces all lights of the scene for this view; `None` for the
     /// lights of the scene. In a scene file it is a directional light.
-    #[serde(default, deserialize_with = "own_light")]
+    #[serde(default, with = "OwnLight", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<crate::DirectionalLight>"))]
     pub light: Option<Light>,
+}
+
+impl Default for View {
+    /// A camera in the origin that looks along −z, with a vertical field of view of 60 degrees.
+    fn default() -> Self {
+        Self {
+            name: "main".to_owned(),
+            eye: DVec3::ZERO,
+            direction: DVec3::NEG_Z,
+            up: y_axis(),
+            fov_y_degrees: 60.0,
+            near: 0.1,
+            far: 1000.0,
+            light: None,
+        }
+    }
 }
 
 /// Up where nothing else is said.
 pub(crate) fn y_axis() -> DVec3 {
     DVec3::Y
+}
+
+pub(crate) fn is_y(up: &DVec3) -> bool {
+    *up == DVec3::Y
 }
 
 /// Sine of the angle between direction and up below which their cross product would be mostly
@@ -252,14 +272,12 @@ mod tests {
 
     fn camera_view() -> View {
         View {
-            name: "main".into(),
             eye: DVec3::new(-83.7, 222.0, -2.9),
             direction: DVec3::new(0.81, -0.27, 0.52) * 3.0,
             up: DVec3::Y * 2.0,
-            fov_y_degrees: 60.0,
             near: 1.0,
             far: 2800.0,
-            light: None,
+            ..View::default()
         }
     }
 
@@ -326,14 +344,9 @@ mod tests {
     #[test]
     fn planes_whose_depths_f32_cannot_hold_are_refused() {
         let view = |near, far| View {
-            name: "main".into(),
-            eye: DVec3::ZERO,
-            direction: DVec3::NEG_Z,
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
             near,
             far,
-            light: None,
+            ..View::default()
         };
         assert_eq!(view(1e-10, 1e10).check(), Ok(()));
         let refused = view(1e-20, 1e11).check().unwrap_err();

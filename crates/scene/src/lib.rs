@@ -91,11 +91,13 @@ pub use camera::{Camera, LEAST_DEPTH, View};
 pub use error::SceneError;
 pub use indexed::{Indexed, IndexedError};
 pub use light::{DirectionalLight, LightFit};
-pub use light_kind::{LIGHT_GAP, Light, LightKind, PointLight, SpotLight, Towards};
+pub use light_kind::{
+    LIGHT_GAP, Light, LightKind, LightParameters, PointLight, SpotLight, Towards,
+};
 pub use mask::Mask;
 pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};
-pub use motion::{Motion, PartMotion, PoseKey, RigidKey};
+pub use motion::{Motion, PoseKey, RigidKey};
 pub use movable::{Movable, MoveError, MovedPart, PartChange, PartPlace};
 pub use outline::Outline;
 pub use parts::Parts;
@@ -118,5 +120,5 @@ pub use self::{
     pattern::Pattern,
     report::ImportReport,
     scene_file::{MeshSource, SceneFile},
-    scene_writer::scene_text,
+    scene_writer::{scene_text, view_text},
 };

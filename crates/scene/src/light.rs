@@ -2,13 +2,13 @@
 
 use crate::{
     outline::{Outline, convex_hull},
-    vector::Vector,
+    vector::{Vector, is_default},
 };
 use glam::{DMat4, DVec2, DVec3, Vec3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A light infinitely far away, such as the sun.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Light")]
 pub struct DirectionalLight {
@@ -17,7 +17,7 @@ pub struct DirectionalLight {
     pub direction: DVec3,
     /// Angular diameter in degrees as seen from the scene: at least 0, less than 90. A light of 0
     /// degrees has no extent, and its shadows are hard. The sun has 0.53 degrees.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub angle_degrees: f64,
 }
 
@@ -50,16 +50,6 @@ impl DirectionalLight {
     /// Returns true if the light has an extent, so that its shadows have a penumbra.
     pub fn has_extent(&self) -> bool {
         self.angle_degrees > 0.0
-    }
-
-    /// Returns two vectors, world space, from the light's centre to its rim, for a light disk at
-    /// distance 1 from the receiver (the point that is lit). The directions to the disk's points
-    /// are `to_light() + across()[0] · x + across()[1] · y`, with (x, y) in the unit disk. Both are
-    /// 0 for a light without extent.
-    pub fn across(&self) -> [DVec3; 2] {
-        let (right, up) = self.to_light().any_orthonormal_pair();
-        let radius = (self.angle_degrees.to_radians() * 0.5).tan();
-        [right, up].map(|axis| axis * radius)
     }
 
     /// Returns the unit vector, world space, from any point to the light: the reverse of

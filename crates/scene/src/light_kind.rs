@@ -1,13 +1,13 @@
 //! The lights of a scene: directional, spot and point.
 
 use crate::light::DirectionalLight;
+use crate::vector::{Vector, is_default};
 use glam::DVec3;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, ser::Error};
 
 /// A light of a scene, with the name by which commands and results know it.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(Deserialize))]
-#[cfg_attr(feature = "files", serde(from = "crate::scene_file::NamedLightText"))]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(from = "NamedLightText", into = "NamedLightText")]
 pub struct Light {
     /// Name of small letters, digits and `_`, unique within its scene. It begins with a letter and
     /// is not `all`.
@@ -25,6 +25,113 @@ pub enum LightKind {
     Spot(SpotLight),
     /// Bulb at a position that lights every direction.
     Point(PointLight),
+}
+
+/// A light as scene files write it.
+#[derive(Deserialize, Serialize)]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "NamedLight")
+)]
+#[serde(deny_unknown_fields, rename = "light")]
+pub(crate) enum NamedLightText {
+    /// A light as far away as the sun.
+    Directional {
+        name: String,
+        /// Direction in which the light travels.
+        #[serde(with = "Vector")]
+        direction: DVec3,
+        /// Diameter as seen from the scene: 0 to less than 90.
+        #[serde(default, skip_serializing_if = "is_default")]
+        angle_degrees: f64,
+    },
+    /// A lamp with a cone.
+    Spot {
+        name: String,
+        #[serde(with = "Vector")]
+        position: DVec3,
+        /// Direction of the cone's axis.
+        #[serde(with = "Vector")]
+        direction: DVec3,
+        /// The whole opening angle: more than 0, less than 180.
+        cone_degrees: f64,
+        /// Radius of its disc, in the mesh's units.
+        #[serde(default, skip_serializing_if = "is_default")]
+        radius: f64,
+    },
+    /// A lamp that shines everywhere.
+    Point {
+        name: String,
+        #[serde(with = "Vector")]
+        position: DVec3,
+        /// Radius of its ball, in the mesh's units.
+        #[serde(default, skip_serializing_if = "is_default")]
+        radius: f64,
+    },
+}
+
+impl From<Light> for NamedLightText {
+    fn from(Light { name, kind }: Light) -> Self {
+        match kind {
+            LightKind::Directional(light) => Self::Directional {
+                name,
+                direction: light.direction,
+                angle_degrees: light.angle_degrees,
+            },
+            LightKind::Spot(light) => Self::Spot {
+                name,
+                position: light.position,
+                direction: light.direction,
+                cone_degrees: light.cone_degrees,
+                radius: light.radius,
+            },
+            LightKind::Point(light) => Self::Point {
+                name,
+                position: light.position,
+                radius: light.radius,
+            },
+        }
+    }
+}
+
+impl From<NamedLightText> for Light {
+    fn from(text: NamedLightText) -> Self {
+        let (name, kind): (_, LightKind) = match text {
+            NamedLightText::Directional {
+                name,
+                direction,
+                angle_degrees,
+            } => {
+                let light = DirectionalLight {
+                    direction,
+                    angle_degrees,
+                };
+                (name, light.into())
+            }
+            NamedLightText::Spot {
+                name,
+                position,
+                direction,
+                cone_degrees,
+                radius,
+            } => {
+                let spot = SpotLight {
+                    position,
+                    direction,
+                    cone_degrees,
+                    radius,
+                };
+                (name, spot.into())
+            }
+            NamedLightText::Point {
+                name,
+                position,
+                radius,
+            } => (name, PointLight { position, radius }.into()),
+        };
+        Self { name, kind }
+    }
 }
 
 /// Light at a position that lights a cone.
@@ -51,6 +158,23 @@ pub struct PointLight {
     pub radius: f64,
 }
 
+/// The parameters of a light, as [`LightKind::parameters`] returns them; `None` for each that its
+/// kind does not have.
+#[derive(Debug, Default)]
+pub struct LightParameters<'a> {
+    /// Position of the light, world space. A light without one is infinitely far away.
+    pub position: Option<&'a mut DVec3>,
+    /// Direction in which the light travels, along a cone's axis; world space, of any length but
+    /// zero.
+    pub direction: Option<&'a mut DVec3>,
+    /// Angular diameter as seen from the scene, in degrees.
+    pub angle_degrees: Option<&'a mut f64>,
+    /// Whole angle of the cone that is lit, in degrees.
+    pub cone_degrees: Option<&'a mut f64>,
+    /// Radius of the emitter, in scene units.
+    pub radius: Option<&'a mut f64>,
+}
+
 /// Direction and distance from a point to a light, as [`LightKind::towards`] returns them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Towards {
@@ -73,9 +197,22 @@ const FARTHEST: f64 = 1e18;
 /// shadow, instead of being decided by rounding.
 pub const LIGHT_GAP: f64 = 1.0 / 65536.0;
 
-/// The light of a view, which checks it and says whose it is.
-pub(crate) fn own_light<'de, D: Deserializer<'de>>(input: D) -> Result<Option<Light>, D::Error> {
-    DirectionalLight::deserialize(input).map(|sun| Some(sun.into()))
+/// The light of a view in scene files, a sun; the view checks it and says whose it is.
+pub(crate) enum OwnLight {}
+
+impl OwnLight {
+    pub fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Option<Light>, D::Error> {
+        DirectionalLight::deserialize(input).map(|sun| Some(sun.into()))
+    }
+
+    pub fn serialize<S: Serializer>(
+        light: &Option<Light>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let sun = light.as_ref().and_then(|light| light.kind.directional());
+        let lamp = || S::Error::custom("a scene file has lamps for all views only");
+        sun.ok_or_else(lamp)?.serialize(serializer)
+    }
 }
 
 impl Light {
@@ -113,9 +250,36 @@ impl Light {
 }
 
 impl LightKind {
+    /// One light of each kind, without extent. The index of a kind is its number in shaders
+    /// (`shaders/shared/light.wgsl`); graphs are planned for these where there is no scene.
+    pub const EACH: [Self; 3] = [
+        Self::Directional(DirectionalLight::new(DVec3::NEG_Z)),
+        Self::Spot(SpotLight {
+            position: DVec3::Z,
+            direction: DVec3::NEG_Z,
+            cone_degrees: 90.0,
+            radius: 0.0,
+        }),
+        Self::Point(PointLight {
+            position: DVec3::Z,
+            radius: 0.0,
+        }),
+    ];
+
+    /// Words for the kinds of lights ([`word`](Self::word)), in the order of [`EACH`](Self::EACH).
+    pub const WORDS: [&str; Self::EACH.len()] = {
+        let mut words = [""; Self::EACH.len()];
+        let mut number = 0;
+        while number < words.len() {
+            words[number] = Self::EACH[number].word();
+            number += 1;
+        }
+        words
+    };
+
     /// Returns the word for this kind in graph documents, messages and results: `directional`,
     /// `spot` or `point`.
-    pub fn word(&self) -> &'static str {
+    pub const fn word(&self) -> &'static str {
         match self {
             Self::Directional(_) => "directional",
             Self::Spot(_) => "spot",
@@ -123,41 +287,78 @@ impl LightKind {
         }
     }
 
-    /// Returns the directional light, or `None` for a spot or point light.
-    pub fn directional(&self) -> Option<&DirectionalLight> {
+    /// Returns the parameters of the light, to be read or changed without regard to its kind.
+    pub fn parameters(&mut self) -> LightParameters<'_> {
+        let none = LightParameters::default();
         match self {
-            Self::Directional(light) => Some(light),
-            Self::Spot(_) | Self::Point(_) => None,
+            Self::Directional(light) => LightParameters {
+                direction: Some(&mut light.direction),
+                angle_degrees: Some(&mut light.angle_degrees),
+                ..none
+            },
+            Self::Spot(light) => LightParameters {
+                position: Some(&mut light.position),
+                direction: Some(&mut light.direction),
+                cone_degrees: Some(&mut light.cone_degrees),
+                radius: Some(&mut light.radius),
+                ..none
+            },
+            Self::Point(light) => LightParameters {
+                position: Some(&mut light.position),
+                radius: Some(&mut light.radius),
+                ..none
+            },
         }
     }
 
-    /// Returns the radius of a spot or point light in scene units, 0 if it has no extent; `None`
-    /// for a directional light.
-    pub fn radius(&self) -> Option<f64> {
+    /// Returns the directional light, or `None` for a light at a position.
+    pub fn directional(&self) -> Option<&DirectionalLight> {
         match self {
-            Self::Directional(_) => None,
-            Self::Spot(SpotLight { radius, .. }) | Self::Point(PointLight { radius, .. }) => {
-                Some(*radius)
-            }
+            Self::Directional(light) => Some(light),
+            _ => None,
         }
+    }
+
+    /// Returns the radius of a light at a position in scene units, 0 if it has no extent; `None`
+    /// for a directional light.
+    pub fn radius(mut self) -> Option<f64> {
+        self.parameters().radius.copied()
     }
 
     /// Returns true if the light has an extent, so that its shadows have a penumbra.
     pub fn has_extent(&self) -> bool {
-        match self {
-            Self::Directional(light) => light.has_extent(),
-            _ => self.radius().is_some_and(|radius| radius > 0.0),
-        }
+        self.disk().1 > 0.0
     }
 
-    /// Returns the position of a spot or point light, world space, or `None` for a directional
-    /// light.
-    pub fn position(&self) -> Option<DVec3> {
+    /// Returns the position of a light, world space, or `None` for a directional light.
+    pub fn position(mut self) -> Option<DVec3> {
+        self.parameters().position.copied()
+    }
+
+    /// Returns the direction in which the light travels, along a cone's axis, world space; `None`
+    /// for a light that has none.
+    pub fn direction(mut self) -> Option<DVec3> {
+        self.parameters().direction.copied()
+    }
+
+    /// Returns the whole angle of the cone that is lit, in degrees; `None` for a light without a
+    /// cone.
+    pub fn cone_degrees(mut self) -> Option<f64> {
+        self.parameters().cone_degrees.copied()
+    }
+
+    /// Returns the disk around the light's centre that stands for its extent: the unit vector that
+    /// it lies across, world space (`None` if it faces each receiver), and its radius, 0 without
+    /// extent. The radius is in scene units, and for a directional light at distance 1 from the
+    /// receiver.
+    pub fn disk(&self) -> (Option<DVec3>, f64) {
         match self {
-            Self::Directional(_) => None,
-            Self::Spot(SpotLight { position, .. }) | Self::Point(PointLight { position, .. }) => {
-                Some(*position)
+            Self::Directional(light) => {
+                let radius = (light.angle_degrees.to_radians() * 0.5).tan();
+                (Some(light.to_light()), radius)
             }
+            Self::Spot(light) => (Some(light.direction.normalize()), light.radius),
+            Self::Point(light) => (None, light.radius),
         }
     }
 
@@ -178,14 +379,31 @@ impl LightKind {
         }
     }
 
+    /// Returns the cosine of the angle between the axis and the edge of the cone; `None` for a
+    /// light without a cone.
+    pub fn edge_cosine(&self) -> Option<f64> {
+        let degrees = self.cone_degrees()?;
+        Some((degrees * 0.5).to_radians().cos())
+    }
+
+    /// Returns how far a receiver (a shaded surface point) is beyond the cone's edge: the edge's
+    /// cosine minus that of the angle between the axis and the direction from the light to the
+    /// receiver, more than 0 outside of the cone. `to_light` is the unit vector from the receiver
+    /// to the light. Returns `None` for a light without a cone.
+    pub fn beyond_cone(&self, to_light: DVec3) -> Option<f64> {
+        let axis = self.direction()?.normalize();
+        Some(self.edge_cosine()? + axis.dot(to_light))
+    }
+
     /// Checks that the light's parameters are within their ranges: a position of at most 1e18 in
     /// each coordinate, a direction other than 0, a sun's angle of less than 90 degrees and that of
     /// a cone of less than 180, a radius of at least 0.
     ///
     /// # Errors
     /// Sentence with the first mistake.
-    pub fn check(&self) -> Result<(), String> {
-        if let Some(position) = self.position()
+    pub fn check(mut self) -> Result<(), String> {
+        let parameters = self.parameters();
+        if let Some(position) = parameters.position
             && (position.is_nan() || position.abs().max_element() > FARTHEST)
         {
             return Err(format!(
@@ -193,46 +411,27 @@ impl LightKind {
                  {FARTHEST:e}; a light so far away is directional"
             ));
         }
-        match self {
-            Self::Directional(light) => light.check(),
-            Self::Spot(spot) => {
-                let direction = spot.direction;
-                DirectionalLight::new(direction).check()?;
-                if !(spot.cone_degrees > 0.0 && spot.cone_degrees < 180.0) {
-                    return Err(format!(
-                        "cone_degrees is {}, expected more than 0 and less than 180, the whole \
-                         angle at the light",
-                        spot.cone_degrees
-                    ));
-                }
-                check_radius(spot.radius)
-            }
-            Self::Point(point) => check_radius(point.radius),
+        if let Some(direction) = parameters.direction {
+            let sun = DirectionalLight {
+                direction: *direction,
+                angle_degrees: parameters.angle_degrees.map_or(0.0, |degrees| *degrees),
+            };
+            sun.check()?;
         }
-    }
-}
-
-fn check_radius(radius: f64) -> Result<(), String> {
-    if radius.is_finite() && radius >= 0.0 {
-        Ok(())
-    } else {
-        Err(format!(
-            "radius is {radius}, expected a length of at least 0"
-        ))
-    }
-}
-
-impl SpotLight {
-    /// Returns the cosine of the angle between the axis and the edge of the cone.
-    pub fn edge_cosine(&self) -> f64 {
-        (self.cone_degrees * 0.5).to_radians().cos()
-    }
-
-    /// Returns the cosine of the angle between the cone's axis and the direction from the light to
-    /// a receiver (a shaded surface point). `to_light` is the unit vector from the receiver to the
-    /// light. Within the cone, the result is at least [`edge_cosine`](Self::edge_cosine).
-    pub fn axis_cosine(&self, to_light: DVec3) -> f64 {
-        -self.direction.normalize().dot(to_light)
+        if let Some(degrees) = parameters.cone_degrees
+            && !(*degrees > 0.0 && *degrees < 180.0)
+        {
+            return Err(format!(
+                "cone_degrees is {degrees}, expected more than 0 and less than 180, the whole \
+                 angle at the light"
+            ));
+        }
+        match parameters.radius {
+            Some(radius) if !(radius.is_finite() && *radius >= 0.0) => Err(format!(
+                "radius is {radius}, expected a length of at least 0"
+            )),
+            _ => Ok(()),
+        }
     }
 }
 

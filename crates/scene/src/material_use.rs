@@ -1,9 +1,9 @@
 //! Extent to which the materials of a mesh file are read.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Extent to which the materials of a mesh file are read.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum MaterialUse {
     /// Nothing is read: files of materials and textures may be missing.

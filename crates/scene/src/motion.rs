@@ -1,34 +1,33 @@
 //! Motions of parts of a mesh on a camera path: rigid, from pose to pose, or swaying.
 
 use crate::{
+    camera::y_axis,
     keys::{not_later, spline},
     mesh::Mesh,
     movable::{Movable, MoveError},
     vector::{Turn, Vector},
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Motion of one part of a mesh.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PartMotion {
-    /// Name of the moving part: an OBJ group or object, a glTF node, or a group of a generated
-    /// mesh.
-    pub part: String,
-    /// Motion of the part along the camera path.
-    pub motion: Motion,
-}
-
-/// Motion of a part of a mesh over the time of a [`CameraPath`](crate::CameraPath), in seconds.
-#[derive(Clone, Debug, PartialEq)]
+/// Motion of a part of a mesh (an OBJ group or object, a glTF node, or a group of a generated mesh)
+/// over the time of a [`CameraPath`](crate::CameraPath), in seconds.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, rename = "moves")]
+#[cfg_attr(feature = "schema", schemars(rename = "Motion"))]
 pub enum Motion {
     /// The part is turned about an axis, then shifted. Between keys both follow Catmull-Rom
     /// splines, like the camera.
     Rigid {
+        /// Name of the part.
+        part: String,
         /// Point on the axis, which stays where it is while the part turns; world space.
+        #[serde(default, with = "Vector")]
         pivot: DVec3,
         /// Axis about which the part turns, world space, of any length but zero.
+        #[serde(default = "y_axis", with = "Vector")]
         axis: DVec3,
         /// Keys in the order of their times, at least one. Before the first and after the last key
         /// the part stands still.
@@ -37,6 +36,8 @@ pub enum Motion {
     /// The part is turned and shifted from pose to pose, along straight lines and by the shortest
     /// turns.
     Posed {
+        /// Name of the part.
+        part: String,
         /// Keys in the order of their times, at least one. Before the first and after the last key
         /// the part stands still.
         keys: Vec<PoseKey>,
@@ -46,11 +47,15 @@ pub enum Motion {
     /// `degrees · sin(2π t / seconds)` at the time t on the clock of the path's keyframes. The foot
     /// stands still.
     Sway {
+        /// Name of the part.
+        part: String,
         /// Direction in which the part leans while a is positive, world space, of any length but
         /// zero and not along `up`.
+        #[serde(with = "Vector")]
         axis: DVec3,
         /// Direction in which the part grows, world space, of any length but zero: that of the `up`
-        /// of the path that the motion belongs to.
+        /// of the path that the motion belongs to, and no field of its own in scene files.
+        #[serde(skip, default = "y_axis")]
         up: DVec3,
         /// Greatest angle of the swing in degrees, more than −90 and less than 90.
         degrees: f64,
@@ -60,7 +65,7 @@ pub enum Motion {
 }
 
 /// Keyframe of a `Rigid` motion: turn and shift of a part at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct RigidKey {
@@ -76,7 +81,7 @@ pub struct RigidKey {
 }
 
 /// Keyframe of a `Posed` motion: the part is turned about the world's origin, then shifted.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct PoseKey {
@@ -108,23 +113,30 @@ fn posed(keys: &[PoseKey], at: f64) -> DAffine3 {
     )
 }
 
-impl PartMotion {
+impl Motion {
+    /// Returns the name of the part that moves.
+    pub fn part(&self) -> &str {
+        match self {
+            Self::Rigid { part, .. } | Self::Posed { part, .. } | Self::Sway { part, .. } => part,
+        }
+    }
+
     /// Checks that the motion is valid: keys in the order of their times, finite numbers within
     /// their ranges, and a sway that does not turn its part inside out.
     ///
     /// # Errors
     /// Sentence with the first mistake, which names the part.
     pub fn check(&self) -> Result<(), String> {
-        let wrong = |what: String| Err(format!("moves: {:?}: {what}", self.part));
+        let wrong = |what: String| Err(format!("moves: {:?}: {what}", self.part()));
         let is_axis = |axis: DVec3| axis.is_finite() && axis.length_squared() > 0.0;
-        match &self.motion {
-            Motion::Rigid { axis, .. } if !is_axis(*axis) => {
+        match self {
+            Self::Rigid { axis, .. } if !is_axis(*axis) => {
                 wrong(format!("axis {axis} must be finite and longer than 0"))
             }
-            Motion::Rigid { keys, .. } if keys.is_empty() => {
+            Self::Rigid { keys, .. } if keys.is_empty() => {
                 wrong("it has none of the keys, of which it needs one at least".into())
             }
-            Motion::Rigid { pivot, keys, .. } => {
+            Self::Rigid { pivot, keys, .. } => {
                 let is_finite = |key: &RigidKey| {
                     key.at.is_finite() && key.translation.is_finite() && key.degrees.is_finite()
                 };
@@ -136,10 +148,10 @@ impl PartMotion {
                     None => Ok(()),
                 }
             }
-            Motion::Posed { keys } if keys.is_empty() => {
+            Self::Posed { keys, .. } if keys.is_empty() => {
                 wrong("it has none of the keys, of which it needs one at least".into())
             }
-            Motion::Posed { keys } => {
+            Self::Posed { keys, .. } => {
                 let is_pose = |key: &PoseKey| {
                     key.at.is_finite()
                         && key.translation.is_finite()
@@ -153,34 +165,36 @@ impl PartMotion {
                     None => Ok(()),
                 }
             }
-            Motion::Sway { axis, up, .. }
+            Self::Sway { axis, up, .. }
                 if !is_axis(*axis) || axis.cross(*up).length_squared() == 0.0 =>
             {
                 wrong(format!(
                     "axis {axis} must be finite, longer than 0 and not along {up}, which is up"
                 ))
             }
-            Motion::Sway { degrees, .. } if degrees.is_nan() || degrees.abs() >= 90.0 => {
+            Self::Sway { degrees, .. } if degrees.is_nan() || degrees.abs() >= 90.0 => {
                 wrong(format!("degrees are {degrees}, expected less than 90"))
             }
-            Motion::Sway {
+            Self::Sway {
                 axis, up, degrees, ..
             } if folds(*axis, *up, *degrees) => wrong(format!(
                 "leaning by {degrees} degrees along {axis}, which is partly up or down, it is \
                  turned inside out: lean less, or across {up}"
             )),
-            Motion::Sway { seconds, .. } if !(seconds.is_finite() && *seconds > 0.0) => {
+            Self::Sway { seconds, .. } if !(seconds.is_finite() && *seconds > 0.0) => {
                 wrong(format!("seconds are {seconds}, expected more than 0"))
             }
-            Motion::Sway { .. } => Ok(()),
+            Self::Sway { .. } => Ok(()),
         }
     }
 
     /// The map of its part, which lies between two heights, at a time: of a place at rest, the
     /// place now and the map's derivative there.
     fn map(&self, [low, high]: [f64; 2], at: f64) -> Box<dyn Fn(DVec3) -> (DVec3, DMat3)> {
-        match &self.motion {
-            Motion::Rigid { pivot, axis, keys } => {
+        match self {
+            Self::Rigid {
+                pivot, axis, keys, ..
+            } => {
                 let degrees = spline(keys, |key| key.at, |key| DVec3::X * key.degrees, at).x;
                 let shift = spline(keys, |key| key.at, |key| key.translation, at);
                 let turn = DQuat::from_axis_angle(axis.normalize(), degrees.to_radians());
@@ -195,15 +209,16 @@ impl PartMotion {
                 };
                 Box::new(move |place| (map.transform_point3(place), map.matrix3))
             }
-            Motion::Posed { keys } => {
+            Self::Posed { keys, .. } => {
                 let map = posed(keys, at);
                 Box::new(move |place| (map.transform_point3(place), map.matrix3))
             }
-            Motion::Sway {
+            Self::Sway {
                 axis,
                 up,
                 degrees,
                 seconds,
+                ..
             } => {
                 let (axis, up) = (axis.normalize(), up.normalize());
                 let lean = (degrees.to_radians() * (TAU * at / seconds).sin()).tan();
@@ -222,9 +237,9 @@ impl PartMotion {
     }
 
     fn up(&self) -> DVec3 {
-        match &self.motion {
-            Motion::Rigid { .. } | Motion::Posed { .. } => DVec3::ZERO,
-            Motion::Sway { up, .. } => up.normalize(),
+        match self {
+            Self::Rigid { .. } | Self::Posed { .. } => DVec3::ZERO,
+            Self::Sway { up, .. } => up.normalize(),
         }
     }
 }
@@ -238,12 +253,12 @@ fn folds(axis: DVec3, up: DVec3, degrees: f64) -> bool {
 
 /// Returns the mesh of `movable` with its parts moved to their places at the time `at`, in seconds
 /// on the clock of the keyframes of the [`CameraPath`](crate::CameraPath). Part number n of
-/// `movable` follows `motions[n]`; the name in that motion ([`PartMotion::part`]) is ignored.
+/// `movable` follows `motions[n]`; the name in that motion ([`Motion::part`]) is ignored.
 ///
 /// # Errors
 /// [`MoveError::Count`] if there is not one motion for each part; other errors for a part that its
 /// motion cannot move at that time.
-pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> Result<Mesh, MoveError> {
+pub fn moved(movable: &Movable, motions: &[Motion], at: f64) -> Result<Mesh, MoveError> {
     movable.check_count(motions.len())?;
     let parts = motions.iter().enumerate();
     let maps = parts.map(|(part, motion)| motion.map(movable.span(part, motion.up()), at));
@@ -255,15 +270,13 @@ pub fn moved(movable: &Movable, motions: &[PartMotion], at: f64) -> Result<Mesh,
 mod tests {
     use super::*;
 
-    fn sway(axis: DVec3, degrees: f64) -> PartMotion {
-        PartMotion {
+    fn sway(axis: DVec3, degrees: f64) -> Motion {
+        Motion::Sway {
             part: "tree".into(),
-            motion: Motion::Sway {
-                axis,
-                up: DVec3::Y,
-                degrees,
-                seconds: 2.0,
-            },
+            axis,
+            up: DVec3::Y,
+            degrees,
+            seconds: 2.0,
         }
     }
 
@@ -290,13 +303,11 @@ mod tests {
             translation: DVec3::ZERO,
             degrees,
         };
-        let turn = PartMotion {
+        let turn = Motion::Rigid {
             part: "lamp".into(),
-            motion: Motion::Rigid {
-                pivot: DVec3::X,
-                axis: DVec3::Y * 3.0,
-                keys: vec![key(0.0, 0.0), key(1.0, 90.0)],
-            },
+            pivot: DVec3::X,
+            axis: DVec3::Y * 3.0,
+            keys: vec![key(0.0, 0.0), key(1.0, 90.0)],
         };
         turn.check().unwrap();
         let map = turn.map([0.0; 2], 2.0);
@@ -318,9 +329,9 @@ mod tests {
             key(4.0, DVec3::X * 2.0, 90.0),
         ];
         let part = "door".to_owned();
-        let motion = PartMotion {
+        let motion = Motion::Posed {
             part: part.clone(),
-            motion: Motion::Posed { keys: keys.clone() },
+            keys: keys.clone(),
         };
         motion.check().unwrap();
         let place = |at| motion.map([0.0; 2], at)(DVec3::Y).0;
@@ -333,9 +344,8 @@ mod tests {
         let refusal = |change: fn(&mut Vec<PoseKey>)| {
             let mut keys = keys.clone();
             change(&mut keys);
-            let motion = Motion::Posed { keys };
             let part = part.clone();
-            PartMotion { part, motion }.check().unwrap_err()
+            Motion::Posed { part, keys }.check().unwrap_err()
         };
         let none = refusal(Vec::clear);
         assert!(none.contains("none of the keys"), "{none}");

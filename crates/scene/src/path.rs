@@ -2,17 +2,16 @@
 //! mesh with them.
 
 use crate::{
-    camera::View,
+    camera::{View, is_y, y_axis},
     keys::{not_later, spline},
-    light::DirectionalLight,
-    light_kind::{Light, LightKind, PointLight, SpotLight},
+    light_kind::{Light, OwnLight},
     mesh::Mesh,
-    motion::{PartMotion, moved},
+    motion::{Motion, moved},
     movable::Movable,
-    vector::Vector,
+    vector::{SomeVector, Vector, is_default},
 };
 use glam::DVec3;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The most frames that a path may have: five and a half minutes at thirty per second.
 const MOST_FRAMES: f64 = 10_000.0;
@@ -20,9 +19,8 @@ const MOST_FRAMES: f64 = 10_000.0;
 /// Path of a moving camera. Between keyframes, eye and direction follow Catmull-Rom splines
 /// (Catmull, Rom 1974, over uneven times). Two keyframes make a straight line, two equal keyframes
 /// a camera that stands still. The light and parts of the mesh may move as well.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "files", derive(Deserialize))]
-#[cfg_attr(feature = "files", serde(from = "crate::scene_file::PathText"))]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(from = "PathText", into = "PathText")]
 pub struct CameraPath {
     /// View that is changed from frame to frame: it holds the path's name and everything that stays
     /// constant. Its eye and direction are replaced by those of the keyframes.
@@ -36,11 +34,93 @@ pub struct CameraPath {
     /// after the last key the light stands still.
     pub light_keys: Vec<LightKey>,
     /// Motions of parts of the mesh, at most one for each part.
-    pub moves: Vec<PartMotion>,
+    pub moves: Vec<Motion>,
+}
+
+/// A path as scene files write it.
+#[derive(Deserialize, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, rename = "Path")]
+pub(crate) struct PathText {
+    name: String,
+    /// Direction up in the picture.
+    #[serde(default = "y_axis", with = "Vector", skip_serializing_if = "is_y")]
+    up: DVec3,
+    /// Opening angle from bottom to top: more than 0, less than 180.
+    fov_y_degrees: f64,
+    /// Distance of the near plane, more than 0.
+    near: f64,
+    /// Distance of the far plane, more than `near`.
+    far: f64,
+    /// One sun in the place of the scene's lights.
+    #[serde(default, with = "OwnLight", skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<crate::DirectionalLight>"))]
+    light: Option<Light>,
+    #[serde(default = "thirty")]
+    frames_per_second: f64,
+    /// The camera's way, a smooth curve through its keys.
+    keys: Vec<CameraKey>,
+    /// The light's way.
+    #[serde(default, skip_serializing_if = "is_default")]
+    light_keys: Vec<LightKey>,
+    /// Parts of the mesh that move.
+    #[serde(default, skip_serializing_if = "is_default")]
+    moves: Vec<Motion>,
+}
+
+fn thirty() -> f64 {
+    30.0
+}
+
+impl From<CameraPath> for PathText {
+    fn from(path: CameraPath) -> Self {
+        let view = path.view;
+        Self {
+            name: view.name,
+            up: view.up,
+            fov_y_degrees: view.fov_y_degrees,
+            near: view.near,
+            far: view.far,
+            light: view.light,
+            frames_per_second: path.frames_per_second,
+            keys: path.keys,
+            light_keys: path.light_keys,
+            moves: path.moves,
+        }
+    }
+}
+
+impl From<PathText> for CameraPath {
+    fn from(mut text: PathText) -> Self {
+        for motion in &mut text.moves {
+            if let Motion::Sway { up, .. } = motion {
+                *up = text.up;
+            }
+        }
+        let mut view = View {
+            name: text.name,
+            up: text.up,
+            fov_y_degrees: text.fov_y_degrees,
+            near: text.near,
+            far: text.far,
+            light: text.light,
+            ..View::default()
+        };
+        if let Some(first) = text.keys.first() {
+            (view.eye, view.direction) = (first.eye, first.direction);
+        }
+        Self {
+            view,
+            frames_per_second: text.frames_per_second,
+            keys: text.keys,
+            light_keys: text.light_keys,
+            moves: text.moves,
+        }
+    }
 }
 
 /// Keyframe of a camera: its position and direction at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "Key")]
 pub struct CameraKey {
@@ -56,7 +136,7 @@ pub struct CameraKey {
 }
 
 /// Keyframe of the light of a camera path: its position and direction at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct LightKey {
@@ -64,16 +144,27 @@ pub struct LightKey {
     pub at: f64,
     /// Direction in which the light travels, world space, of any length above 0; `None` for a point
     /// light.
-    #[serde(default, deserialize_with = "Vector::some")]
+    #[serde(default, with = "SomeVector", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub direction: Option<DVec3>,
     /// Position of a spot or point light, world space; `None` for a directional light.
-    #[serde(default, deserialize_with = "Vector::some")]
+    #[serde(default, with = "SomeVector", skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub position: Option<DVec3>,
 }
 
 impl CameraPath {
+    /// Creates a path of 30 frames per second on which only the camera moves.
+    pub fn new(view: View, keys: Vec<CameraKey>) -> Self {
+        Self {
+            view,
+            frames_per_second: thirty(),
+            keys,
+            light_keys: Vec::new(),
+            moves: Vec::new(),
+        }
+    }
+
     /// Returns the number of frames. Frame 0 is at the first keyframe, the last frame at the last
     /// keyframe or less than a frame before it.
     pub fn frames(&self) -> u32 {
@@ -103,7 +194,7 @@ impl CameraPath {
         if self.moves.is_empty() {
             return Ok(None);
         }
-        let parts = self.moves.iter().map(|it| it.part.as_str());
+        let parts = self.moves.iter().map(Motion::part);
         let movable = Movable::new(mesh, &parts.collect::<Vec<_>>());
         let movable =
             movable.map_err(|reason| format!("path {:?}: moves: {reason}", self.view.name))?;
@@ -143,20 +234,17 @@ impl CameraPath {
         let place = |get: fn(&LightKey) -> DVec3| spline(&self.light_keys, |key| key.at, get, at);
         let direction = place(|key| key.direction.unwrap_or_default().normalize_or_zero());
         let position = place(|key| key.position.unwrap_or_default());
-        let kind = match light.kind {
-            LightKind::Directional(light) => DirectionalLight { direction, ..light }.into(),
-            LightKind::Spot(light) => SpotLight {
-                direction,
-                position,
-                ..light
+        let mut light = light.clone();
+        let parameters = light.kind.parameters();
+        for (value, now) in [
+            (parameters.position, position),
+            (parameters.direction, direction),
+        ] {
+            if let Some(value) = value {
+                *value = now;
             }
-            .into(),
-            LightKind::Point(light) => PointLight { position, ..light }.into(),
-        };
-        Light {
-            kind,
-            ..light.clone()
         }
+        light
     }
 
     /// Checks that the keys of the light are of the kind that the view's own light is.
@@ -167,14 +255,16 @@ impl CameraPath {
         let (Some(light), Some(_)) = (&self.view.light, self.light_keys.first()) else {
             return Ok(());
         };
-        let (direction, position, needs) = match light.kind {
-            LightKind::Directional(_) => (true, false, "`direction` alone"),
-            LightKind::Spot(_) => (true, true, "`position` and `direction`"),
-            LightKind::Point(_) => (false, true, "`position` alone"),
+        let has = (
+            light.kind.position().is_some(),
+            light.kind.direction().is_some(),
+        );
+        let needs = match has {
+            (true, true) => "`position` and `direction`",
+            (true, false) => "`position` alone",
+            (false, _) => "`direction` alone",
         };
-        let fits = |key: &LightKey| {
-            (key.direction.is_some(), key.position.is_some()) == (direction, position)
-        };
+        let fits = |key: &LightKey| (key.position.is_some(), key.direction.is_some()) == has;
         match self.light_keys.iter().find(|key| !fits(key)) {
             None => Ok(()),
             Some(key) => Err(format!(
@@ -187,11 +277,8 @@ impl CameraPath {
 
     fn check_moves(&self) -> Result<(), String> {
         for (index, it) in self.moves.iter().enumerate() {
-            if self.moves[..index]
-                .iter()
-                .any(|other| other.part == it.part)
-            {
-                let part = &it.part;
+            let part = it.part();
+            if self.moves[..index].iter().any(|other| other.part() == part) {
                 return Err(format!("moves: {part:?} is there twice"));
             }
             it.check()?;
@@ -250,26 +337,22 @@ impl CameraPath {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::light::DirectionalLight;
 
     fn path(keys: &[(f64, DVec3, DVec3)]) -> CameraPath {
         let keys = keys
             .iter()
             .map(|&(at, eye, direction)| CameraKey { at, eye, direction });
+        let view = View {
+            name: "walk".into(),
+            direction: DVec3::X,
+            near: 1.0,
+            far: 100.0,
+            ..View::default()
+        };
         CameraPath {
-            view: View {
-                name: "walk".into(),
-                eye: DVec3::ZERO,
-                direction: DVec3::X,
-                up: DVec3::Y,
-                fov_y_degrees: 60.0,
-                near: 1.0,
-                far: 100.0,
-                light: None,
-            },
             frames_per_second: 10.0,
-            keys: keys.collect(),
-            light_keys: Vec::new(),
-            moves: Vec::new(),
+            ..CameraPath::new(view, keys.collect())
         }
     }
 

@@ -1,11 +1,11 @@
 //! Generated masks for meshes whose textures are not available.
 
 use crate::{mask::Mask, texture::Wrap};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// Pattern of a generated mask of 128 × 128 texels, which repeats without a seam. It replaces a
 /// texture that is not available.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Pattern {
     /// Leaves on twigs; about half of the texels are holes.

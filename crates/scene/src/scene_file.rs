@@ -20,32 +20,32 @@
 //! ```
 
 use crate::{
-    camera::{View, y_axis},
+    camera::View,
     error::SceneError,
     generate::Generator,
     light::DirectionalLight,
-    light_kind::{Light, LightKind, PointLight, SpotLight, own_light},
+    light_kind::Light,
     material_use::MaterialUse,
-    motion::{Motion, PartMotion, PoseKey, RigidKey},
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
-    path::{CameraKey, CameraPath, LightKey},
-    vector::Vector,
+    path::CameraPath,
+    vector::{SomeVector, Vector, is_default},
 };
 use glam::DVec3;
 use serde::{
-    Deserialize, Deserializer,
+    Deserialize, Deserializer, Serialize, Serializer,
     de::{DeserializeOwned, Error},
 };
 use skiagraph_located_ron::{
     diagnostics::{Code, Diagnostic, Diagnostics},
-    reader::{Node, from_all_fields},
+    fields::from_all_fields,
+    reader::Node,
     span::SourceFile,
 };
 use std::collections::HashMap;
 
 /// Content of a scene file. `SceneFile::parse` checks everything in it, but loads no mesh. Serde
 /// alone refuses the lists `lights`, `views` and `paths`.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, rename = "scene")]
 pub struct SceneFile {
@@ -55,18 +55,26 @@ pub struct SceneFile {
     pub name: String,
     /// Description of the scene in one line, for the list that `skiagraph scenes` prints; may be
     /// empty.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub description: String,
     /// Source of the scene's triangles.
     pub mesh: MeshSource,
     /// Direction up, of any length above 0, of a ground that is added just below the mesh; `None`
     /// adds no ground.
     #[serde(default, deserialize_with = "ground")]
+    #[serde(
+        serialize_with = "SomeVector::serialize",
+        skip_serializing_if = "Option::is_none"
+    )]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub ground: Option<DVec3>,
     /// Lights of the scene: at least one, no two of the same name. They light each view that has no
     /// light of its own.
-    #[serde(default, rename = "light", deserialize_with = "only_light")]
+    #[serde(
+        default,
+        rename(deserialize = "light"),
+        deserialize_with = "only_light"
+    )]
     #[cfg_attr(feature = "schema", schemars(with = "Option<DirectionalLight>"))]
     #[cfg_attr(
         feature = "schema",
@@ -74,10 +82,12 @@ pub struct SceneFile {
     )]
     pub lights: Vec<Light>,
     /// Views of the scene: at least one, no two of the same name. The first is the default.
-    #[serde(skip)]
+    #[serde(skip_deserializing)]
+    #[cfg_attr(feature = "schema", schemars(skip))]
     pub views: Vec<View>,
     /// Camera paths of the scene, no two of the same name; may be empty.
-    #[serde(skip)]
+    #[serde(skip_deserializing, skip_serializing_if = "is_default")]
+    #[cfg_attr(feature = "schema", schemars(skip))]
     pub paths: Vec<CameraPath>,
 }
 
@@ -85,7 +95,7 @@ pub struct SceneFile {
 const LISTS: [&str; 3] = ["lights", "views", "paths"];
 
 /// Source of a scene's triangles.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[cfg_attr(
     feature = "schema",
     derive(schemars::JsonSchema),
@@ -100,20 +110,20 @@ pub enum MeshSource {
         /// folder of the user's cache.
         file: String,
         /// Names of the groups or objects that are left out: the whole text after `g` or `o`.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         leave_out: Vec<String>,
         /// Diagonal that splits a quad into triangles.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         quads: QuadDiagonal,
         /// Treatment of concave polygons.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         concave: Concave,
         /// Parts of the file's materials that are read.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         materials: ObjMaterials,
         /// Sentence that tells where the file can be downloaded, for the message that it is
         /// missing; `None` for a file that is not public.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         source: Option<String>,
     },
     /// A glTF 2.0 file, `.gltf` or `.glb`.
@@ -122,23 +132,37 @@ pub enum MeshSource {
         /// `Obj`.
         file: String,
         /// Parts of the file's materials that are read.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         materials: MaterialUse,
         /// Sentence that tells where the file can be downloaded, for the message that it is
         /// missing; `None` for a file that is not public.
-        #[serde(default)]
+        #[serde(default, skip_serializing_if = "is_default")]
         source: Option<String>,
     },
     /// A mesh that this crate generates. A scene file names it, for example `"park"` or
     /// `"city:100000"`.
     Generated(
-        #[serde(deserialize_with = "generator")]
+        #[serde(deserialize_with = "generator", serialize_with = "generator_text")]
         #[cfg_attr(feature = "schema", schemars(with = "String"))]
         Generator,
     ),
 }
 
 impl SceneFile {
+    /// Creates a scene that is a mesh alone, without lights and views.
+    pub fn new(name: impl Into<String>, mesh: MeshSource) -> Self {
+        Self {
+            format: 1,
+            name: name.into(),
+            description: String::new(),
+            mesh,
+            ground: None,
+            lights: Vec::new(),
+            views: Vec::new(),
+            paths: Vec::new(),
+        }
+    }
+
     /// Reads a scene from the text of a scene file. `file` is the name of the file in error
     /// messages.
     ///
@@ -275,219 +299,13 @@ impl Item for CameraPath {
     const CHECK: fn(&Self) -> Result<(), String> = Self::check;
 }
 
-#[derive(Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "NamedLight")
-)]
-#[serde(deny_unknown_fields, rename = "light")]
-pub(crate) enum NamedLightText {
-    /// A light as far away as the sun.
-    Directional {
-        name: String,
-        /// Direction in which the light travels.
-        #[serde(with = "Vector")]
-        direction: DVec3,
-        /// Diameter as seen from the scene: 0 to less than 90.
-        #[serde(default)]
-        angle_degrees: f64,
-    },
-    /// A lamp with a cone.
-    Spot {
-        name: String,
-        #[serde(with = "Vector")]
-        position: DVec3,
-        /// Direction of the cone's axis.
-        #[serde(with = "Vector")]
-        direction: DVec3,
-        /// The whole opening angle: more than 0, less than 180.
-        cone_degrees: f64,
-        /// Radius of its disc, in the mesh's units.
-        #[serde(default)]
-        radius: f64,
-    },
-    /// A lamp that shines everywhere.
-    Point {
-        name: String,
-        #[serde(with = "Vector")]
-        position: DVec3,
-        /// Radius of its ball, in the mesh's units.
-        #[serde(default)]
-        radius: f64,
-    },
-}
-
-impl From<NamedLightText> for Light {
-    fn from(text: NamedLightText) -> Self {
-        let (name, kind): (_, LightKind) = match text {
-            NamedLightText::Directional {
-                name,
-                direction,
-                angle_degrees,
-            } => {
-                let light = DirectionalLight {
-                    direction,
-                    angle_degrees,
-                };
-                (name, light.into())
-            }
-            NamedLightText::Spot {
-                name,
-                position,
-                direction,
-                cone_degrees,
-                radius,
-            } => {
-                let spot = SpotLight {
-                    position,
-                    direction,
-                    cone_degrees,
-                    radius,
-                };
-                (name, spot.into())
-            }
-            NamedLightText::Point {
-                name,
-                position,
-                radius,
-            } => (name, PointLight { position, radius }.into()),
-        };
-        Self { name, kind }
-    }
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, rename = "Path")]
-pub(crate) struct PathText {
-    name: String,
-    /// Direction up in the picture.
-    #[serde(default = "y_axis", with = "Vector")]
-    up: DVec3,
-    /// Opening angle from bottom to top: more than 0, less than 180.
-    fov_y_degrees: f64,
-    /// Distance of the near plane, more than 0.
-    near: f64,
-    /// Distance of the far plane, more than `near`.
-    far: f64,
-    /// One sun in the place of the scene's lights.
-    #[serde(default, deserialize_with = "own_light")]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<DirectionalLight>"))]
-    light: Option<Light>,
-    #[serde(default = "thirty")]
-    frames_per_second: f64,
-    /// The camera's way, a smooth curve through its keys.
-    keys: Vec<CameraKey>,
-    /// The light's way.
-    #[serde(default)]
-    light_keys: Vec<LightKey>,
-    /// Parts of the mesh that move.
-    #[serde(default)]
-    moves: Vec<MotionText>,
-}
-
-fn thirty() -> f64 {
-    30.0
-}
-
-#[derive(Deserialize)]
-#[cfg_attr(
-    feature = "schema",
-    derive(schemars::JsonSchema),
-    schemars(rename = "Motion")
-)]
-#[serde(deny_unknown_fields, rename = "moves")]
-enum MotionText {
-    /// The part is turned about an axis, then shifted.
-    Rigid {
-        /// Name of the part: a group or object of OBJ, a node of glTF.
-        part: String,
-        /// Point on the axis.
-        #[serde(default, with = "Vector")]
-        pivot: DVec3,
-        #[serde(default = "y_axis", with = "Vector")]
-        axis: DVec3,
-        keys: Vec<RigidKey>,
-    },
-    /// The part is turned about the origin and shifted from key to key, in a straight line.
-    Posed {
-        /// Name of the part.
-        part: String,
-        keys: Vec<PoseKey>,
-    },
-    /// The part bends along the axis as by wind; its foot stands.
-    Sway {
-        /// Name of the part.
-        part: String,
-        #[serde(with = "Vector")]
-        axis: DVec3,
-        /// Angle to which its top bends.
-        degrees: f64,
-        /// Period.
-        seconds: f64,
-    },
-}
-
-impl MotionText {
-    /// On a path with that direction up.
-    fn motion(self, up: DVec3) -> PartMotion {
-        let (part, motion) = match self {
-            Self::Rigid {
-                part,
-                pivot,
-                axis,
-                keys,
-            } => (part, Motion::Rigid { pivot, axis, keys }),
-            Self::Posed { part, keys } => (part, Motion::Posed { keys }),
-            Self::Sway {
-                part,
-                axis,
-                degrees,
-                seconds,
-            } => {
-                let motion = Motion::Sway {
-                    axis,
-                    up,
-                    degrees,
-                    seconds,
-                };
-                (part, motion)
-            }
-        };
-        PartMotion { part, motion }
-    }
-}
-
-impl From<PathText> for CameraPath {
-    fn from(text: PathText) -> Self {
-        let first = text.keys.first();
-        Self {
-            view: View {
-                name: text.name,
-                eye: first.map_or(DVec3::ZERO, |key| key.eye),
-                direction: first.map_or(DVec3::ZERO, |key| key.direction),
-                up: text.up,
-                fov_y_degrees: text.fov_y_degrees,
-                near: text.near,
-                far: text.far,
-                light: text.light,
-            },
-            frames_per_second: text.frames_per_second,
-            keys: text.keys,
-            light_keys: text.light_keys,
-            moves: text
-                .moves
-                .into_iter()
-                .map(|motion| motion.motion(text.up))
-                .collect(),
-        }
-    }
-}
-
 fn generator<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Generator, D::Error> {
     let name = String::deserialize(deserializer)?;
     name.parse().map_err(D::Error::custom)
+}
+
+fn generator_text<S: Serializer>(generator: &Generator, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_str(generator)
 }
 
 fn ground<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DVec3>, D::Error> {

@@ -1,15 +1,7 @@
 //! Writes scene files, as [`SceneFile::parse`] reads them.
 
-use crate::{
-    camera::View,
-    light::DirectionalLight,
-    light_kind::{Light, LightKind, PointLight, SpotLight},
-    motion::{Motion, PartMotion},
-    path::{CameraPath, LightKey},
-    scene_file::{MeshSource, SceneFile},
-};
-use glam::DVec3;
-use std::fmt::Debug;
+use crate::{camera::View, light_kind::Light, scene_file::SceneFile};
+use skiagraph_located_ron::writer::to_text;
 
 /// Writes a scene as the text of a scene file, which [`SceneFile::parse`] reads again, with one
 /// view or key in a line.
@@ -19,235 +11,41 @@ use std::fmt::Debug;
 /// express. A path may have one that is among the scene's lights: a comment in the text then names
 /// the light.
 pub fn scene_text(scene: &SceneFile) -> Result<String, String> {
-    let mut text = format!("(\n    format: 1,\n    name: {:?},\n", scene.name);
-    if !scene.description.is_empty() {
-        text += &format!("    description: {:?},\n", scene.description);
+    let mut scene = scene.clone();
+    let is_lamp = |light: &Light| light.kind.directional().is_none();
+    let mut comments = Vec::new();
+    for path in &mut scene.paths {
+        let light = &mut path.view.light;
+        let lamp = light.take_if(|light| is_lamp(light) && scene.lights.contains(light));
+        comments
+            .push(lamp.map(|lamp| format!("        // Under its light: --light {}\n", lamp.name)));
     }
-    text += &format!("    mesh: {},\n", mesh(&scene.mesh));
-    if let Some(up) = scene.ground {
-        text += &format!("    ground: {},\n", vector(up));
-    }
-    let lights: Vec<String> = scene.lights.iter().map(light).collect();
-    let views = scene.views.iter().map(view);
-    let views: Vec<String> = views.collect::<Result<_, _>>()?;
-    let paths = scene.paths.iter().map(|it| path(it, &scene.lights));
-    let paths: Vec<String> = paths.collect::<Result<_, _>>()?;
-    for (name, items) in [("lights", lights), ("views", views), ("paths", paths)] {
-        text += &list(1, name, &items);
-    }
-    Ok(text + ")\n")
-}
-
-/// A field that is a list, so many levels deep; nothing for an empty one.
-fn list(depth: usize, name: &str, items: &[String]) -> String {
-    if items.is_empty() {
-        return String::new();
-    }
-    let indent = "    ".repeat(depth);
-    let line = |item: &String| format!("{indent}    {item},\n");
-    let lines: String = items.iter().map(line).collect();
-    format!("{indent}{name}: [\n{lines}{indent}],\n")
-}
-
-/// A number as short as it can be read again.
-fn number(value: f64) -> String {
-    let value = value + 0.0; // No −0.
-    if value != 0.0 && !(1e-6..1e16).contains(&value.abs()) {
-        format!("{value:e}")
-    } else {
-        value.to_string()
-    }
-}
-
-fn vector(xyz: DVec3) -> String {
-    format!("({}, {}, {})", number(xyz.x), number(xyz.y), number(xyz.z))
-}
-
-fn mesh(mesh: &MeshSource) -> String {
-    let (kind, file, setup, source) = match mesh {
-        MeshSource::Generated(generator) => return format!("Generated(\"{generator}\")"),
-        MeshSource::Obj {
-            file,
-            leave_out,
-            quads,
-            concave,
-            materials,
-            source,
-        } => {
-            let setup = vec![
-                changed("leave_out", leave_out),
-                changed("quads", quads),
-                changed("concave", concave),
-                changed("materials", materials),
-            ];
-            ("Obj", file, setup, source)
-        }
-        MeshSource::Gltf {
-            file,
-            materials,
-            source,
-        } => ("Gltf", file, vec![changed("materials", materials)], source),
-    };
-    let source = source.as_ref().map(|source| format!("source: {source:?}"));
-    let fields = [Some(format!("file: {file:?}"))].into_iter();
-    let fields = fields.chain(setup).chain([source]).flatten();
-    format!("{kind}({})", fields.collect::<Vec<_>>().join(", "))
-}
-
-/// A field, unless it has the value that it has by default; `Debug` writes these values as in RON.
-fn changed<T: Debug + Default + PartialEq>(name: &str, value: &T) -> Option<String> {
-    (*value != T::default()).then(|| format!("{name}: {value:?}"))
-}
-
-fn light(light: &Light) -> String {
-    let name = &light.name;
-    match light.kind {
-        LightKind::Directional(distant) => format!("Directional(name: {name:?}, {})", sun(distant)),
-        LightKind::Spot(SpotLight {
-            position,
-            direction,
-            cone_degrees,
-            radius,
-        }) => format!(
-            "Spot(name: {name:?}, position: {}, direction: {}, cone_degrees: {}{})",
-            vector(position),
-            vector(direction),
-            number(cone_degrees),
-            not_0("radius", radius)
-        ),
-        LightKind::Point(PointLight { position, radius }) => {
-            let (position, radius) = (vector(position), not_0("radius", radius));
-            format!("Point(name: {name:?}, position: {position}{radius})")
-        }
-    }
-}
-
-fn sun(light: DirectionalLight) -> String {
-    let angle = not_0("angle_degrees", light.angle_degrees);
-    format!("direction: {}{angle}", vector(light.direction))
-}
-
-/// A field behind others, unless it is 0.
-fn not_0(name: &str, value: f64) -> String {
-    match value {
-        0.0 => String::new(),
-        value => format!(", {name}: {}", number(value)),
-    }
-}
-
-fn view(view: &View) -> Result<String, String> {
-    let (eye, direction) = (vector(view.eye), vector(view.direction));
-    Ok(format!(
-        "(name: {:?}, eye: {eye}, direction: {direction}, {})",
-        view.name,
-        lens(view)?.join(", ")
-    ))
-}
-
-/// Fields that views and paths have in common.
-fn lens(view: &View) -> Result<Vec<String>, String> {
-    let mut fields = vec![
-        format!("fov_y_degrees: {}", number(view.fov_y_degrees)),
-        format!("near: {}", number(view.near)),
-        format!("far: {}", number(view.far)),
-    ];
-    if view.up != DVec3::Y {
-        fields.insert(0, format!("up: {}", vector(view.up)));
-    }
-    match view.light.as_ref().map(|light| light.kind) {
-        None => {}
-        Some(LightKind::Directional(light)) => fields.push(format!("light: ({})", sun(light))),
-        Some(lamp) => {
+    let paths = scene.paths.iter().map(|path| &path.view);
+    for View { name, light, .. } in scene.views.iter().chain(paths) {
+        if let Some(lamp) = light.as_ref().filter(|light| is_lamp(light)) {
             return Err(format!(
-                "{:?} has a {} light of its own, and a scene file has such lights for all views \
-                 only",
-                view.name,
-                lamp.word()
+                "{name:?} has a {} light of its own, and a scene file has such lights for all \
+                 views only",
+                lamp.kind.word()
             ));
         }
     }
-    Ok(fields)
+    let written = to_text(&scene).map_err(|error| error.to_string())?;
+    let (mut text, mut comments) = (String::new(), comments.into_iter());
+    for line in written.lines() {
+        if line == "        (" {
+            text += &comments.next().flatten().unwrap_or_default();
+        }
+        text += &format!("{line}\n");
+    }
+    Ok(text)
 }
 
-/// A path under a lamp of the scene is drawn under it with `--light`, as a comment says.
-fn path(path: &CameraPath, lights: &[Light]) -> Result<String, String> {
-    const INDENT: &str = "            ";
-    let mut view = path.view.clone();
-    let is_lamp = |light: &Light| light.kind.directional().is_none() && lights.contains(light);
-    let mut text = match view.light.take_if(|light| is_lamp(light)) {
-        Some(lamp) => format!("// Under its light: --light {}\n        (\n", lamp.name),
-        None => "(\n".to_owned(),
-    };
-    text += &format!("{INDENT}name: {:?},\n", view.name);
-    for field in lens(&view)? {
-        text += &format!("{INDENT}{field},\n");
-    }
-    let rate = number(path.frames_per_second);
-    text += &format!("{INDENT}frames_per_second: {rate},\n");
-    let keys = path.keys.iter().map(|key| {
-        let (at, eye) = (number(key.at), vector(key.eye));
-        format!(
-            "(at: {at}, eye: {eye}, direction: {})",
-            vector(key.direction)
-        )
-    });
-    let light_keys = path.light_keys.iter().map(light_key);
-    let moves = path.moves.iter().map(moves);
-    for (name, items) in [
-        ("keys", keys.collect::<Vec<String>>()),
-        ("light_keys", light_keys.collect()),
-        ("moves", moves.collect()),
-    ] {
-        text += &list(3, name, &items);
-    }
-    Ok(text + "        )")
-}
-
-fn light_key(key: &LightKey) -> String {
-    let mut text = format!("(at: {}", number(key.at));
-    for (field, coordinates) in [("direction", key.direction), ("position", key.position)] {
-        if let Some(coordinates) = coordinates {
-            text += &format!(", {field}: {}", vector(coordinates));
-        }
-    }
-    text + ")"
-}
-
-fn moves(moved: &PartMotion) -> String {
-    let part = &moved.part;
-    match &moved.motion {
-        Motion::Rigid { pivot, axis, keys } => {
-            let keys = keys.iter().map(|key| {
-                let (at, shift) = (number(key.at), vector(key.translation));
-                let degrees = number(key.degrees);
-                format!("(at: {at}, translation: {shift}, degrees: {degrees})")
-            });
-            let keys: Vec<String> = keys.collect();
-            let (pivot, axis, keys) = (vector(*pivot), vector(*axis), keys.join(", "));
-            format!("Rigid(part: {part:?}, pivot: {pivot}, axis: {axis}, keys: [{keys}])")
-        }
-        Motion::Posed { keys } => {
-            let keys = keys.iter().map(|key| {
-                let (at, shift) = (number(key.at), vector(key.translation));
-                let turn = key.rotation.to_array().map(number).join(", ");
-                format!("(at: {at}, translation: {shift}, rotation: ({turn}))")
-            });
-            let keys: Vec<String> = keys.collect();
-            let keys = keys.join(",\n                    ");
-            format!(
-                "Posed(part: {part:?}, keys: [\n                    {keys},\n                ])"
-            )
-        }
-        Motion::Sway {
-            axis,
-            degrees,
-            seconds,
-            ..
-        } => format!(
-            "Sway(part: {part:?}, axis: {}, degrees: {}, seconds: {})",
-            vector(*axis),
-            number(*degrees),
-            number(*seconds)
-        ),
-    }
+/// Writes a view as an entry of a scene file's `views`, in one line. A light of its own is written
+/// only if it is directional; views in scene files cannot have others.
+pub fn view_text(view: &View) -> String {
+    let mut view = view.clone();
+    view.light
+        .take_if(|light| light.kind.directional().is_none());
+    to_text(&view).unwrap_or_default()
 }

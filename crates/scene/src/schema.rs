@@ -1,9 +1,6 @@
 //! The JSON Schema of scene files (feature `schema`).
 
-use crate::{
-    camera::View,
-    scene_file::{NamedLightText, PathText, SceneFile},
-};
+use crate::{camera::View, light_kind::NamedLightText, path::PathText, scene_file::SceneFile};
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Value, json};
 use skiagraph_located_ron::schema::plain;

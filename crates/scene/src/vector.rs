@@ -1,7 +1,12 @@
-//! Vectors and turns in scene files.
+//! Vectors, turns and defaults in scene files.
 
 use glam::{DQuat, DVec3};
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// True of a field's value that is not written.
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
 
 // How a scene file writes a vector: `(x, y, z)`.
 #[cfg_attr(
@@ -16,18 +21,30 @@ impl Vector {
         <(f64, f64, f64)>::deserialize(deserializer).map(DVec3::from)
     }
 
-    /// For the defaults of fields.
-    #[cfg(feature = "schema")]
-    pub fn serialize<S: serde::Serializer>(
-        vector: &DVec3,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        serde::Serialize::serialize(&vector.to_array(), serializer)
+    pub fn serialize<S: Serializer>(vector: &DVec3, serializer: S) -> Result<S::Ok, S::Error> {
+        // No −0.
+        (*vector + 0.0).to_array().serialize(serializer)
+    }
+}
+
+// A vector of a field that may be left out.
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(inline, with = "Option<Vector>")
+)]
+pub(crate) enum SomeVector {}
+
+impl SomeVector {
+    pub fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Option<DVec3>, D::Error> {
+        Vector::deserialize(input).map(Some)
     }
 
-    /// One that is written, of a field that may be left out.
-    pub fn some<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<DVec3>, D::Error> {
-        Self::deserialize(deserializer).map(Some)
+    pub fn serialize<S: Serializer>(
+        vector: &Option<DVec3>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        Vector::serialize(&vector.unwrap_or_default(), serializer)
     }
 }
 
@@ -41,7 +58,7 @@ pub(crate) enum Turn {}
 
 impl Turn {
     /// Reads a quaternion and scales it to length 1; one of length 1 keeps its bits. (0, 0, 0, 0)
-    /// is returned as it is, and `PartMotion::check` refuses it.
+    /// is returned as it is, and `Motion::check` refuses it.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<DQuat, D::Error> {
         let (x, y, z, w) = <(f64, f64, f64, f64)>::deserialize(deserializer)?;
         let rotation = DQuat::from_xyzw(x, y, z, w);
@@ -51,9 +68,7 @@ impl Turn {
         Ok(rotation.normalize())
     }
 
-    /// For the defaults of fields.
-    #[cfg(feature = "schema")]
-    pub fn serialize<S: serde::Serializer>(turn: &DQuat, serializer: S) -> Result<S::Ok, S::Error> {
-        serde::Serialize::serialize(&turn.to_array(), serializer)
+    pub fn serialize<S: Serializer>(turn: &DQuat, serializer: S) -> Result<S::Ok, S::Error> {
+        turn.to_array().map(|part| part + 0.0).serialize(serializer)
     }
 }

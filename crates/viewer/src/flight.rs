@@ -69,15 +69,14 @@ pub fn fly(view: &mut View, by: DVec3, bounds: (DVec3, DVec3)) {
 /// `yaw` about the view's up direction, and towards it by `pitch`. Angles are radians.
 pub fn turn_light(light: &mut LightKind, view: &View, yaw: f64, pitch: f64, centre: DVec3) {
     let turn = |direction| turned(direction, view, yaw, pitch);
-    match light {
-        LightKind::Directional(light) => light.direction = turn(light.direction),
-        LightKind::Spot(light) => light.direction = turn(light.direction),
-        LightKind::Point(light) => {
-            let arm = light.position - centre;
-            if arm != DVec3::ZERO {
-                light.position = centre + turn(arm) * arm.length();
-            }
-        }
+    let light = light.parameters();
+    if let Some(direction) = light.direction {
+        *direction = turn(*direction);
+    } else if let Some(position) = light.position
+        && *position != centre
+    {
+        let arm = *position - centre;
+        *position = centre + turn(arm) * arm.length();
     }
 }
 
@@ -88,14 +87,9 @@ mod tests {
 
     fn view() -> View {
         View {
-            name: "main".into(),
             eye: DVec3::new(0.0, 2.0, 8.0),
-            direction: DVec3::NEG_Z,
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
-            near: 0.1,
             far: 100.0,
-            light: None,
+            ..View::default()
         }
     }
 

@@ -203,14 +203,11 @@ mod tests {
     #[test]
     fn thinned_pixels_look_where_theirs_did() {
         let view = View {
-            name: "main".into(),
             eye: DVec3::new(1.0, 2.0, 3.0),
             direction: DVec3::new(0.3, -0.2, -1.0),
-            up: DVec3::Y,
             fov_y_degrees: 50.0,
-            near: 0.1,
             far: 100.0,
-            light: None,
+            ..View::default()
         };
         for size in [[64, 48], [27, 18], [61, 43]] {
             let whole = view.camera(size);

@@ -1,38 +1,12 @@
 //! Saves the current view: as text to paste into a scene file, or as a new scene file.
 
-use glam::DVec3;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::write::write_new;
-use skiagraph_scene::{LightKind, SceneFile, SceneLibrary, View};
+use skiagraph_scene::{SceneFile, SceneLibrary, View, view_text};
 use std::{
     fs,
     path::{Path, PathBuf},
 };
-
-/// Returns the view as an entry of a scene file's `views`, in RON. A light of its own is written
-/// only if it is directional; views in scene files cannot have others.
-pub fn entry(view: &View) -> String {
-    let three = |v: DVec3| format!("({}, {}, {})", v.x, v.y, v.z);
-    let mut text = format!(
-        "(name: {:?}, eye: {}, direction: {}",
-        view.name,
-        three(view.eye),
-        three(view.direction)
-    );
-    if view.up != DVec3::Y {
-        text += &format!(", up: {}", three(view.up));
-    }
-    let (fov, near, far) = (view.fov_y_degrees, view.near, view.far);
-    text += &format!(", fov_y_degrees: {fov}, near: {near}, far: {far}");
-    if let Some(LightKind::Directional(sun)) = view.light.as_ref().map(|light| light.kind) {
-        text += &format!(", light: (direction: {}", three(sun.direction));
-        if sun.has_extent() {
-            text += &format!(", angle_degrees: {}", sun.angle_degrees);
-        }
-        text += ")";
-    }
-    text + ")"
-}
 
 /// Writes a copy of the file of the scene named `scene`, with the view added. The copy is beside
 /// the original, or in the working directory for a built-in scene, under a name that is free.
@@ -95,7 +69,7 @@ fn with_view(text: &str, view: &View) -> Option<String> {
     // One of them may stand in a comment; then the view is not read.
     places.find_map(|at| {
         let (before, behind) = text.split_at(at);
-        let text = format!("{before}\n        {},{behind}", entry(view));
+        let text = format!("{before}\n        {},{behind}", view_text(view));
         let read = SceneFile::parse(&text, "").ok()?;
         read.views
             .iter()
@@ -107,6 +81,7 @@ fn with_view(text: &str, view: &View) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
     use skiagraph_scene::{DirectionalLight, Light};
 
     fn view() -> View {
@@ -116,12 +91,12 @@ mod tests {
             direction: DVec3::new(1.0 / 3.0, -1.0, 0.0),
             up: DVec3::Z,
             fov_y_degrees: 47.5,
-            near: 0.25,
             far: 1e18,
             light: Some(Light::only(DirectionalLight {
                 direction: DVec3::new(0.1, -0.7, 0.2),
                 angle_degrees: 0.53,
             })),
+            ..View::default()
         }
     }
 

@@ -17,8 +17,8 @@ use skiagraph_compare::graphs::preset;
 use skiagraph_compare::measuring::device;
 use skiagraph_compare::records::check::{CheckReport, FileReport};
 use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
-use skiagraph_passes::{names::LIGHT, registry, uniforms::LIGHT_KINDS};
-use skiagraph_scene::DirectionalLight;
+use skiagraph_passes::{names::LIGHT, registry};
+use skiagraph_scene::{DirectionalLight, LightKind};
 use std::{
     sync::{Arc, mpsc},
     time::Duration,
@@ -112,13 +112,11 @@ fn trial<'a>(args: &CheckArgs, adapter: Option<&'a Capabilities>) -> Result<Tria
             trial.light = Some(DirectionalLight::new(*direction).into());
         }
         (None, Some(LightArgument::Name(kind))) => {
-            trial.light = planning::of_each_kind()
-                .into_iter()
-                .find(|it| it.word() == kind);
+            trial.light = LightKind::EACH.into_iter().find(|it| it.word() == kind);
             if trial.light.is_none() {
                 return Err(CliError::Usage(format!(
                     "--light {kind} is a light of a scene: name it with --scene, or a kind: {}",
-                    LIGHT_KINDS.join(", ")
+                    LightKind::WORDS.join(", ")
                 )));
             }
         }

@@ -290,7 +290,7 @@ impl<'a> Room<'a> {
             fov_y_degrees,
             near: far * 1e-4,
             far,
-            light: None,
+            ..View::default()
         }
     }
 

@@ -141,19 +141,16 @@ impl From<DMat4> for Matrix {
 }
 
 impl LightRecord {
-    fn new(light: &LightKind) -> Self {
-        let (direction, cone_degrees, angle_degrees) = match light {
-            LightKind::Directional(sun) => (Some(sun.direction), None, Some(sun.angle_degrees)),
-            LightKind::Spot(spot) => (Some(spot.direction), Some(spot.cone_degrees), None),
-            LightKind::Point(_) => (None, None, None),
-        };
+    fn new(mut light: LightKind) -> Self {
+        let kind = light.word().into();
+        let parameters = light.parameters();
         Self {
-            kind: light.word().into(),
-            direction: direction.map(|direction| direction.normalize().to_array()),
-            position: light.position().map(|at| at.to_array()),
-            cone_degrees,
-            angle_degrees,
-            radius: light.radius(),
+            kind,
+            direction: parameters.direction.map(|it| it.normalize().to_array()),
+            position: parameters.position.map(|at| at.to_array()),
+            cone_degrees: parameters.cone_degrees.copied(),
+            angle_degrees: parameters.angle_degrees.copied(),
+            radius: parameters.radius.copied(),
         }
     }
 }
@@ -222,7 +219,7 @@ impl CameraRecord {
             aspect: camera.half_width / camera.half_height,
             near: camera.near,
             far: camera.far,
-            light: LightRecord::new(&scene.light_of(view)),
+            light: LightRecord::new(scene.light_of(view)),
             views: spaces
                 .iter()
                 .map(|(name, z)| NamedMatrix {

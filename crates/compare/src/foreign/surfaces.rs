@@ -255,19 +255,13 @@ fn lies_at(candidate: &Candidate, [least, greatest]: [f64; 2]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::DVec3;
     use skiagraph_scene::View;
 
     fn camera() -> Camera {
         let view = View {
-            name: "main".into(),
-            eye: DVec3::ZERO,
-            direction: DVec3::NEG_Z,
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
             near: 0.5,
             far: 100.0,
-            light: None,
+            ..View::default()
         };
         view.camera([4, 3])
     }

@@ -12,7 +12,8 @@
 //! ```
 
 use skiagraph_graph::{Code, Diagnostic, Graph};
-use skiagraph_passes::{SceneProvider, uniforms::LIGHT_KINDS};
+use skiagraph_passes::SceneProvider;
+use skiagraph_scene::LightKind;
 
 /// Splits the words `directional`, `spot` and `point` into two lists in this order: the kinds of
 /// light that a graph takes, and those that it does not. A document that lists no kinds takes
@@ -20,10 +21,10 @@ use skiagraph_passes::{SceneProvider, uniforms::LIGHT_KINDS};
 pub fn split(graph: &Graph) -> [Vec<&'static str>; 2] {
     let says: Vec<&str> = graph.lights().map(|word| word.as_str()).collect();
     let takes = |word: &&'static str| match says[..] {
-        [] => *word == LIGHT_KINDS[0],
+        [] => *word == LightKind::WORDS[0],
         _ => says.contains(word),
     };
-    let (takes, refuses) = LIGHT_KINDS.into_iter().partition(takes);
+    let (takes, refuses) = LightKind::WORDS.into_iter().partition(takes);
     [takes, refuses]
 }
 
@@ -41,9 +42,9 @@ pub fn kind_and_number(provider: &SceneProvider) -> (&'static str, usize) {
 /// Returns the mistake of a document that lists another kind of light than `directional`, `spot` or
 /// `point`; `None` if it lists only these.
 pub fn unknown(graph: &Graph) -> Option<Diagnostic> {
-    let is_unknown = |word: &str| !LIGHT_KINDS.contains(&word);
+    let is_unknown = |word: &str| !LightKind::WORDS.contains(&word);
     let word = graph.lights().find(|word| is_unknown(word.as_str()))?;
     let text = format!("unknown kind of light `{}`", word.value);
     let mistake = Diagnostic::error(Code::UnknownVariant, text).at(word.span.clone(), "");
-    Some(mistake.suggest(word.as_str(), LIGHT_KINDS))
+    Some(mistake.suggest(word.as_str(), LightKind::WORDS))
 }

@@ -12,7 +12,7 @@
 //! ```
 
 use crate::graphs::light_kinds;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use skiagraph_gpu::{
     Provider,
     device::{Gpu, partial},
@@ -22,9 +22,7 @@ use skiagraph_graph::{
     Span,
 };
 use skiagraph_passes::{SceneProvider, registry};
-use skiagraph_scene::{
-    DirectionalLight, Light, LightKind, Mesh, PointLight, Scene, SpotLight, View,
-};
+use skiagraph_scene::{Light, LightKind, Mesh, Scene, View};
 use std::{iter, sync::Arc};
 
 /// Capabilities of an adapter that a plan depends on.
@@ -177,7 +175,7 @@ pub fn check(
     let lights = match (trial.light, &graph) {
         (Some(light), _) => vec![light],
         (None, Some(graph)) => stand_ins(graph),
-        (None, None) => of_each_kind().to_vec(),
+        (None, None) => LightKind::EACH.to_vec(),
     };
     // Under a light that it refuses, other faults of a graph may follow from that.
     let refuses = |kind: &str| {
@@ -342,40 +340,23 @@ fn count_of(lights: usize) -> String {
     }
 }
 
-/// Returns an example light of each kind, in the order of
-/// [`LIGHT_KINDS`](skiagraph_passes::uniforms::LIGHT_KINDS).
-pub fn of_each_kind() -> [LightKind; 3] {
-    let (position, radius) = (DVec3::Z, 0.0);
-    [
-        DirectionalLight::new(DVec3::NEG_Z).into(),
-        LightKind::Spot(SpotLight {
-            position,
-            direction: DVec3::NEG_Z,
-            cone_degrees: 90.0,
-            radius,
-        }),
-        LightKind::Point(PointLight { position, radius }),
-    ]
-}
-
-/// Returns one example light of each kind that a graph takes, in the order directional, spot,
-/// point; one of every kind if it takes none of these.
+/// Returns one example light of each kind that a graph takes, in the order of
+/// [`LightKind::EACH`]; one of every kind if it takes none of these.
 pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
-    let examples = of_each_kind();
-    let taken = examples
+    let taken = LightKind::EACH
         .iter()
         .filter(|it| light_kinds::takes(graph, it.word()));
     let taken: Vec<LightKind> = taken.copied().collect();
     if taken.is_empty() {
-        examples.to_vec()
+        LightKind::EACH.to_vec()
     } else {
         taken
     }
 }
 
 /// Returns a provider of scene resources for planning without a scene, for a viewport in pixels. It
-/// describes every resource that a scene can have, under the first kind of light (directional,
-/// spot, point) that the graph takes, with as many lights, 3 at most, as the graph needs.
+/// describes every resource that a scene can have, under the first kind of light
+/// ([`LightKind::EACH`]) that the graph takes, with as many lights, 3 at most, as the graph needs.
 pub fn placeholder(viewport: [u32; 2], graph: &Graph) -> SceneProvider {
     let (described, lights) = (described(viewport, 1), stand_ins(graph));
     let with = |count| lit(&described, &lights, count);
@@ -401,14 +382,8 @@ fn lit(described: &SceneProvider, lights: &[LightKind], count: usize) -> ScenePr
 /// Describes all that a scene can give, of the least scene that has it and so many triangles.
 fn described(viewport: [u32; 2], triangles: usize) -> SceneProvider {
     let view = View {
-        name: "main".into(),
-        eye: DVec3::ZERO,
-        direction: DVec3::NEG_Z,
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
-        near: 0.1,
         far: 10.0,
-        light: None,
+        ..View::default()
     };
     let mesh = Mesh {
         positions: [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]
@@ -423,10 +398,7 @@ fn described(viewport: [u32; 2], triangles: usize) -> SceneProvider {
         name: "check".into(),
         mesh,
         views: vec![view.clone()],
-        lights: vec![Light {
-            name: "light".into(),
-            kind: of_each_kind()[0],
-        }],
+        lights: vec![Light::only(LightKind::EACH[0])],
     };
     let mut provider = SceneProvider::new(Arc::new(scene));
     provider.set_view(&view, viewport);

@@ -27,9 +27,7 @@ use crate::graphs::method::Method;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::wording::size;
 use glam::DVec3;
-use skiagraph_scene::{
-    CameraPath, DirectionalLight, LightKind, Motion, PartMotion, PointLight, SpotLight, View,
-};
+use skiagraph_scene::{CameraPath, LightKind, LightParameters, Motion, View};
 
 /// Returns the id of a cell, 16 hexadecimal digits: a hash of the scene's name and number of
 /// triangles; the name, camera and light of the view or path; the viewport in pixels; the preset
@@ -132,15 +130,17 @@ fn path_lines(path: &CameraPath, lines: &mut Vec<String>) {
         let (direction, position) = (text(direction), text(position));
         lines.push(format!("light key {} {direction} {position}", key.at));
     }
-    for PartMotion { part, motion } in &path.moves {
-        lines.push(format!("moves {part}"));
+    for motion in &path.moves {
+        lines.push(format!("moves {}", motion.part()));
         motion_lines(motion, lines);
     }
 }
 
 fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
     match motion {
-        Motion::Rigid { pivot, axis, keys } => {
+        Motion::Rigid {
+            pivot, axis, keys, ..
+        } => {
             let [pivot, axis] = [*pivot, *axis].map(vector);
             lines.push(format!("rigid {pivot} {axis}"));
             for key in keys {
@@ -148,7 +148,7 @@ fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
                 lines.push(format!("rigid key {at} {shift} {turn}"));
             }
         }
-        Motion::Posed { keys } => {
+        Motion::Posed { keys, .. } => {
             lines.push("posed".into());
             for key in keys {
                 let (at, shift) = (key.at, vector(key.translation));
@@ -161,6 +161,7 @@ fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
             up,
             degrees,
             seconds,
+            ..
         } => {
             let [axis, up] = [*axis, *up].map(vector);
             lines.push(format!("sway {axis} {up} {degrees} {seconds}"));
@@ -168,27 +169,21 @@ fn motion_lines(motion: &Motion, lines: &mut Vec<String>) {
     }
 }
 
-pub(crate) fn light_text(light: LightKind) -> String {
+pub(crate) fn light_text(mut light: LightKind) -> String {
     let word = light.word();
-    let numbers = match light {
-        LightKind::Directional(DirectionalLight {
-            direction,
-            angle_degrees,
-        }) => format!("{} {angle_degrees}", vector(direction)),
-        LightKind::Spot(SpotLight {
-            position,
-            direction,
-            cone_degrees,
-            radius,
-        }) => {
-            let [position, direction] = [position, direction].map(vector);
-            format!("{position} {direction} {cone_degrees} {radius}")
-        }
-        LightKind::Point(PointLight { position, radius }) => {
-            format!("{} {radius}", vector(position))
-        }
-    };
-    format!("light {word} {numbers}")
+    let LightParameters {
+        position,
+        direction,
+        angle_degrees,
+        cone_degrees,
+        radius,
+    } = light.parameters();
+    let vectors = [position, direction].into_iter().flatten();
+    let numbers = [angle_degrees, cone_degrees, radius].into_iter().flatten();
+    let words = vectors
+        .map(|it| vector(*it))
+        .chain(numbers.map(|it| it.to_string()));
+    format!("light {word} {}", words.collect::<Vec<_>>().join(" "))
 }
 
 #[cfg(test)]
@@ -197,7 +192,7 @@ mod tests {
     use crate::graphs::shadow_method::load_methods;
     use glam::DQuat;
     use skiagraph_passes::EmbeddedSources;
-    use skiagraph_scene::{PoseKey, RigidKey, SceneLibrary};
+    use skiagraph_scene::{DirectionalLight, PoseKey, RigidKey, SceneLibrary};
     use std::collections::BTreeSet;
     use std::sync::Arc;
 
@@ -236,12 +231,17 @@ mod tests {
         };
         let motions = [
             Motion::Rigid {
+                part: "leg".into(),
                 pivot: DVec3::ZERO,
                 axis: DVec3::Y,
                 keys: vec![rigid],
             },
-            Motion::Posed { keys: vec![pose] },
+            Motion::Posed {
+                part: "leg".into(),
+                keys: vec![pose],
+            },
             Motion::Sway {
+                part: "leg".into(),
                 axis: DVec3::X,
                 up: DVec3::Y,
                 degrees: 6.0,

@@ -70,21 +70,15 @@ pub fn step(
 
 /// A light that is turned or shifted by a step.
 fn moved_light(light: &LightKind, step: f64) -> LightKind {
-    match *light {
-        LightKind::Directional(mut light) => {
-            let across = light.direction.any_orthogonal_vector().normalize_or_zero();
-            light.direction += across * (step * light.direction.length());
-            light.into()
-        }
-        LightKind::Spot(mut light) => {
-            light.position.x += step * (1.0 + light.position.length());
-            light.into()
-        }
-        LightKind::Point(mut light) => {
-            light.position.x += step * (1.0 + light.position.length());
-            light.into()
-        }
+    let mut light = *light;
+    let parameters = light.parameters();
+    if let Some(position) = parameters.position {
+        position.x += step * (1.0 + position.length());
+    } else if let Some(direction) = parameters.direction {
+        let across = direction.any_orthogonal_vector().normalize_or_zero();
+        *direction += across * (step * direction.length());
     }
+    light
 }
 
 /// A mesh of which every position is shifted by a step.

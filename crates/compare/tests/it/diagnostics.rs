@@ -28,14 +28,12 @@ fn texels_per_pixel_of_a_floor_are_those_worked_by_hand() {
     let folder = tempfile::tempdir().unwrap();
     let floor = "v -20 0 -20\nv 20 0 -20\nv 20 0 20\nv -20 0 20\nf 4 3 2 1\n";
     let view = View {
-        name: "main".into(),
         eye: DVec3::new(0.0, 10.0, 0.0),
         direction: DVec3::NEG_Y,
         up: DVec3::Z,
         fov_y_degrees: 90.0,
-        near: 0.1,
         far: 100.0,
-        light: None,
+        ..View::default()
     };
     let light = DirectionalLight::new(DVec3::NEG_Y);
     let scene = mesh(folder.path(), floor, view, light);

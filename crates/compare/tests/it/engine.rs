@@ -27,11 +27,8 @@ fn engine_scene() -> Result<Scene, Box<dyn Error>> {
         name: "above".into(),
         eye: DVec3::new(0.0, 6.0, 7.0),
         direction: DVec3::new(0.0, -6.0, -7.0),
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
-        near: 0.1,
         far: 50.0,
-        light: None,
+        ..View::default()
     };
     let sun = DirectionalLight::new(DVec3::new(0.6, -1.0, 0.3));
     Ok(Scene {

@@ -11,13 +11,9 @@ fn shadow(file: &str) -> (u64, u64) {
     let faults = concat!(env!("CARGO_MANIFEST_DIR"), "/../scene/tests/faults");
     let mut view = View {
         name: "all".into(),
-        eye: DVec3::ZERO,
-        direction: DVec3::NEG_Z,
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
         near: 1.0,
         far: 1e4,
-        light: None,
+        ..View::default()
     };
     let light = DirectionalLight::new(DVec3::new(-0.4, -1.0, -0.55));
     let scene = mesh_file(&Path::new(faults).join(file), view.clone(), light);

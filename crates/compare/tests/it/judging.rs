@@ -206,11 +206,9 @@ fn what_blocks_certain_wrong_pixels_is_counted() {
         name: "above".into(),
         eye: DVec3::new(0.0, 12.0, 0.0),
         direction: DVec3::new(0.001, -1.0, 0.001),
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
         near: 1.0,
         far: 100.0,
-        light: None,
+        ..View::default()
     };
     let light = DirectionalLight::new(DVec3::new(1.0, -1.5, 0.4));
     let scene = mesh(folder.path(), SHEET_AND_BOX, view, light);
@@ -255,11 +253,10 @@ fn box_from_afar(folder: &Path, near: f64) -> Comparison {
         name: "afar".into(),
         eye: DVec3::new(300.0, 3000.0, 10.0),
         direction: DVec3::new(-300.0, -3000.0, -10.0),
-        up: DVec3::Y,
         fov_y_degrees: 0.2,
         near,
         far: 10000.0,
-        light: None,
+        ..View::default()
     };
     let light = DirectionalLight::new(DVec3::new(-0.4, -1.0, -0.55));
     let scene = mesh(folder, BOX_OVER_FLOOR, view, light);

@@ -317,11 +317,8 @@ fn a_mesh_of_ones_own_is_shown() {
         name: "above".into(),
         eye: DVec3::new(-3.0, 5.0, 0.0),
         direction: DVec3::new(3.0, -5.0, 0.0),
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
-        near: 0.1,
         far: 100.0,
-        light: None,
+        ..View::default()
     };
     let light = DirectionalLight::new(DVec3::NEG_Y);
     let scene = mesh(folder.path(), &text, view, light);

@@ -23,14 +23,11 @@ const SHEETS: &str = "v -4 0 4\nv 4 0 4\nv 4 0 -4\nv -4 0 -4\nf 1 2 3 4\n\
 fn sheets(methods: &[&str]) -> Comparison {
     let folder = tempfile::tempdir().unwrap();
     let view = View {
-        name: "main".into(),
         eye: DVec3::new(3.0, 5.0, 8.0),
         direction: DVec3::new(-0.35, -0.6, -1.0),
-        up: DVec3::Y,
         fov_y_degrees: 50.0,
-        near: 0.1,
         far: 40.0,
-        light: None,
+        ..View::default()
     };
     let light = DirectionalLight::new(DVec3::new(-0.3, -1.0, -0.4));
     let scene = mesh(folder.path(), SHEETS, view, light);

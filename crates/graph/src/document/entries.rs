@@ -20,8 +20,10 @@ use crate::{
     source::span::Located,
 };
 use serde::Deserialize;
-use skiagraph_located_ron::reader::{
-    Field, Node, from_fields, from_some_fields, missing_field, unknown_field,
+use skiagraph_located_ron::{
+    fields::{from_fields, from_some_fields},
+    mistakes::{missing_field, unknown_field},
+    reader::{Field, Node},
 };
 
 /// The tags that are no pass kinds.

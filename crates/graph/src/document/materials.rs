@@ -12,7 +12,10 @@ use crate::{
     source::span::Located,
 };
 use serde::{Deserialize, Deserializer};
-use skiagraph_located_ron::reader::{Node, raw, read, refuse, unknown_word};
+use skiagraph_located_ron::{
+    mistakes::unknown_word,
+    reader::{Node, raw, read, refuse},
+};
 
 /// A declared material.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ use crate::{
     source::span::Located,
 };
 use serde::Deserialize;
-use skiagraph_located_ron::reader::{Field, from_fields};
+use skiagraph_located_ron::{fields::from_fields, reader::Field};
 use std::collections::{BTreeMap, HashSet};
 
 /// A param: a value from outside.

@@ -5,7 +5,10 @@ use crate::{
     errors::{document::DocumentError, edit::EditError},
     source::span::{Located, SourceFile, Span},
 };
-use skiagraph_located_ron::reader::{Field, Node, field_twice, unknown_field};
+use skiagraph_located_ron::{
+    mistakes::{field_twice, unknown_field},
+    reader::{Field, Node},
+};
 use std::{
     collections::{HashMap, HashSet},
     sync::Arc,

@@ -23,7 +23,7 @@ use crate::{
     source::span::Located,
 };
 use serde::de::DeserializeOwned;
-use skiagraph_located_ron::reader::{Node, from_fields};
+use skiagraph_located_ron::{fields::from_fields, reader::Node};
 
 /// Reads a document and reports its mistakes. The readable part is returned in any case, so that
 /// later phases find more mistakes in one go.

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{diagnostics::diagnostic::Diagnostic, source::span::Span};
 use serde::de::DeserializeOwned;
-use skiagraph_located_ron::reader::{Field, from_some_fields};
+use skiagraph_located_ron::{fields::from_some_fields, reader::Field};
 use std::{fmt, sync::Arc};
 
 /// Function that reads the fields of an entry as the body of a pass kind.

@@ -22,11 +22,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             name: String::new(),
             eye: DVec3::new(time - 1.0, 9.0, 9.0),
             direction: DVec3::new(0.0, -1.0, -1.0),
-            up: DVec3::Y,
             fov_y_degrees: 40.0,
-            near: 0.1,
             far: 100.0,
-            light: None,
+            ..View::default()
         };
         let places = [
             DAffine3::IDENTITY,

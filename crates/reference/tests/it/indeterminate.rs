@@ -163,11 +163,9 @@ proptest! {
             name: String::new(),
             eye: place(eye),
             direction: DVec3::new(0.01, -0.5, 0.02) - eye,
-            up: DVec3::Y,
-            fov_y_degrees: 60.0,
             near: 1e-3 * f64::from(scale),
             far: 1e3 * f64::from(scale),
-            light: None,
+            ..View::default()
         };
         let camera = view.camera([40, 30]);
         let light = light(direction.0, direction.1, direction.2);

@@ -31,11 +31,10 @@ fn far_above(near: f64) -> Camera {
         name: "far".into(),
         eye: DVec3::new(300.0, 3000.0, 10.0),
         direction: DVec3::new(-300.0, -3000.0, -10.0),
-        up: DVec3::Y,
         fov_y_degrees: 1.0,
         near,
         far: 10_000.0,
-        light: None,
+        ..View::default()
     };
     view.camera(VIEWPORT)
 }

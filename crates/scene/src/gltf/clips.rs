@@ -11,7 +11,7 @@ use crate::{
     error::beginning,
     light_kind::{Light, LightKind},
     mesh::Mesh,
-    motion::{Motion, PartMotion, PoseKey},
+    motion::{Motion, PoseKey},
     path::{CameraKey, CameraPath, LightKey},
 };
 use glam::{DMat3, DMat4, DQuat, DVec3};
@@ -39,7 +39,7 @@ pub struct Clip {
     /// The view that moves, and its direction up.
     cameras: Vec<(usize, DVec3, Vec<CameraKey>)>,
     lights: Vec<(usize, Vec<LightKey>)>,
-    moves: Vec<PartMotion>,
+    moves: Vec<Motion>,
 }
 
 impl Clip {
@@ -94,16 +94,16 @@ impl Clip {
                 if let Some(light) = light.filter(|_| several_lights) {
                     name += &format!("_{}", light.name);
                 }
+                let view = View {
+                    name,
+                    light: light.cloned(),
+                    ..view.clone()
+                };
                 let path = CameraPath {
-                    view: View {
-                        name,
-                        light: light.cloned(),
-                        ..view.clone()
-                    },
                     frames_per_second: RATE,
-                    keys: keys.clone(),
                     light_keys: moved.map_or_else(Vec::new, |(_, keys)| keys.clone()),
                     moves: self.moves.clone(),
+                    ..CameraPath::new(view, keys.clone())
                 };
                 paths.push(path.check().map(|()| path));
             }
@@ -287,7 +287,7 @@ impl<'a> Poses<'a> {
         }
         for (light, &node) in placed.lights.iter().enumerate() {
             if let Some(worlds) = self.frames(node, frames) {
-                let keys = light_keys(&worlds, &placed.kinds[light]);
+                let keys = light_keys(&worlds, placed.kinds[light]);
                 clip.lights.push((light, keys));
             }
         }
@@ -338,8 +338,7 @@ impl<'a> Poses<'a> {
                 ));
                 continue;
             }
-            let motion = Motion::Posed { keys };
-            clip.moves.push(PartMotion { part, motion });
+            clip.moves.push(Motion::Posed { part, keys });
         }
     }
 }
@@ -404,19 +403,14 @@ fn camera_keys(worlds: &[DMat4], place: &str, notes: &mut Vec<String>) -> (DVec3
     (up, keys)
 }
 
-fn light_keys(worlds: &[DMat4], kind: &LightKind) -> Vec<LightKey> {
+fn light_keys(worlds: &[DMat4], kind: LightKind) -> Vec<LightKey> {
     let keys = worlds.iter().enumerate().map(|(frame, world)| {
         let direction = (-world.z_axis.truncate()).normalize_or_zero();
         let position = world.w_axis.truncate();
-        let (direction, position) = match kind {
-            LightKind::Directional(_) => (Some(direction), None),
-            LightKind::Spot(_) => (Some(direction), Some(position)),
-            LightKind::Point(_) => (None, Some(position)),
-        };
         LightKey {
             at: at(frame),
-            direction,
-            position,
+            direction: kind.direction().map(|_| direction),
+            position: kind.position().map(|_| position),
         }
     });
     keys.collect()

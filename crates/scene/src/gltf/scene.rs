@@ -223,7 +223,7 @@ impl Reader<'_> {
             fov_y_degrees: needed("yfov")?.to_degrees(),
             near,
             far,
-            light: None,
+            ..View::default()
         };
         let mend = |why| format!("{why} (mend camera {index})");
         view.check_parts().map_err(mend)?;

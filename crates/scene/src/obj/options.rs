@@ -1,12 +1,12 @@
 //! Options for reading an OBJ file.
 
 use crate::{material_use::MaterialUse, pattern::Pattern};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Diagonal that splits a quad of an OBJ file into two triangles. Larger polygons are split into a
 /// fan from the diagonal's first corner.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum QuadDiagonal {
     /// From corner 0 to corner 2: triangles (0, 1, 2) and (0, 2, 3). Most importers do this.
@@ -29,7 +29,7 @@ impl QuadDiagonal {
 
 /// Treatment of a concave polygon of an OBJ file whose fan of triangles would cover area outside
 /// it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Concave {
     /// The polygon is cut into triangles within its outline. A polygon whose outline crosses itself
@@ -42,7 +42,7 @@ pub enum Concave {
 }
 
 /// Parts of an OBJ file's materials that are read.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ObjMaterials {
     /// Nothing is read: files of materials and textures may be missing.

@@ -254,13 +254,9 @@ proptest! {
 fn view(mesh: &Mesh) -> View {
     let (min, max) = mesh.bounds().unwrap();
     View {
-        name: "main".into(),
         eye: max.as_dvec3(),
         direction: (min - max).as_dvec3(),
-        up: DVec3::Y,
-        fov_y_degrees: 60.0,
-        near: 0.1,
         far: 100.0,
-        light: None,
+        ..View::default()
     }
 }

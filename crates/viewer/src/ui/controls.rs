@@ -5,7 +5,7 @@ use crate::saving;
 use crate::state::{Drag, Viewer};
 use egui::{ComboBox, RichText, Ui};
 use skiagraph_compare::wording::size;
-use skiagraph_scene::{SceneLibrary, View};
+use skiagraph_scene::{SceneLibrary, View, view_text};
 
 /// Edges that methods may run at.
 const SIZES: [[u32; 2]; 6] = [
@@ -81,7 +81,7 @@ fn scene(ui: &mut Ui, viewer: &mut Viewer) {
             .on_hover_text("as an entry of a scene file's `views`")
             .clicked()
         {
-            ui.copy_text(saving::entry(&view));
+            ui.copy_text(view_text(&view));
             viewer.notice = Some(("the view is on the clipboard".into(), false));
         }
         let save = ui

@@ -3,7 +3,7 @@
 use crate::state::Viewer;
 use egui::{DragValue, Slider, Ui};
 use glam::DVec3;
-use skiagraph_scene::{Light, LightKind};
+use skiagraph_scene::Light;
 use std::ops::RangeInclusive;
 
 /// Widest sun, degrees.
@@ -15,20 +15,20 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer) {
     };
     let (_, radius) = viewer.extent();
     let mut kind = before;
-    match &mut kind {
-        LightKind::Directional(sun) => {
-            direction(ui, &mut sun.direction);
-            number(ui, &mut sun.angle_degrees, "wide", 0.0..=WIDEST, "°");
-        }
-        LightKind::Spot(lamp) => {
-            place(ui, &name, &mut lamp.position, radius);
-            direction(ui, &mut lamp.direction);
-            number(ui, &mut lamp.cone_degrees, "cone", 1.0..=179.0, "°");
-            number(ui, &mut lamp.radius, "wide", 0.0..=radius / 10.0, "");
-        }
-        LightKind::Point(bulb) => {
-            place(ui, &name, &mut bulb.position, radius);
-            number(ui, &mut bulb.radius, "wide", 0.0..=radius / 10.0, "");
+    let light = kind.parameters();
+    if let Some(position) = light.position {
+        place(ui, &name, position, radius);
+    }
+    if let Some(way) = light.direction {
+        direction(ui, way);
+    }
+    for (value, text, range, suffix) in [
+        (light.angle_degrees, "wide", 0.0..=WIDEST, "°"),
+        (light.cone_degrees, "cone", 1.0..=179.0, "°"),
+        (light.radius, "wide", 0.0..=radius / 10.0, ""),
+    ] {
+        if let Some(value) = value {
+            number(ui, value, text, range, suffix);
         }
     }
     if kind == before {

@@ -69,10 +69,9 @@ fn towards(light: &LightKind, position: Vec3) -> (Vec3, f32, bool) {
     };
     let rounded = place.as_vec3();
     let way = (rounded - position) + (place - rounded.as_dvec3()).as_vec3();
-    let shines = match light {
-        LightKind::Spot(spot) => {
-            let against = -spot.direction.normalize().as_vec3();
-            way.dot(against) >= spot.edge_cosine() as f32 * way.length()
+    let shines = match (light.direction(), light.edge_cosine()) {
+        (Some(axis), Some(edge)) => {
+            way.dot(-axis.normalize().as_vec3()) >= edge as f32 * way.length()
         }
         _ => true,
     };

@@ -58,7 +58,7 @@ pub fn from_above(height: f64, viewport: [u32; 2]) -> Camera {
         fov_y_degrees: 90.0,
         near: 0.01 * height,
         far: 10.0 * height,
-        light: None,
+        ..View::default()
     }
     .camera(viewport)
 }

@@ -105,9 +105,10 @@ impl SceneSelection {
             };
             write(path, file, &views)?;
         }
-        let paths = match is_mesh {
-            true => paths,
-            false => library.paths(args.scene()).map_err(explain)?,
+        let paths = if is_mesh {
+            paths
+        } else {
+            library.paths(args.scene()).map_err(explain)?
         };
         let under_lights = |views| under_lights(&own.scene, views, args.light_name());
         let (views, further) = (under_lights(views)?, under_lights(further)?);

@@ -1,8 +1,7 @@
 //! Errors of methods at equal cost, read off their curves over the sizes of shadow maps.
 
 use crate::summary::Row;
-use crate::summary_table::Summary;
-use crate::verdict::main_choice;
+use crate::verdict::{Verdict, main_choice};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::records::regimes::Regime;
@@ -16,12 +15,12 @@ type Point = [f64; 3];
 
 /// Returns a sentence with the error that each method would have at the cost of the fastest exact
 /// one, if it chose its map for that; `None` if there is no exact method, or none was measured with
-/// three map sizes. Between two sizes map and error are interpolated by the logarithms of the times.
-/// The error is the share of wrong pixels outside the band; under a light with an extent, where no
-/// method is exact, there is no such sentence.
-pub fn sentence(summary: &Summary) -> Option<String> {
-    let (rows, when) = (&summary.rows, main_choice(&summary.rows));
-    let exact = &rows[*summary.verdict().fastest_exact.get(&when)?];
+/// three map sizes. Between two sizes map and error are interpolated by the logarithms of the
+/// times. The error is the share of wrong pixels outside the band; under a light with an extent,
+/// where no method is exact, there is no such sentence.
+pub fn sentence(rows: &[Row], verdict: &Verdict) -> Option<String> {
+    let when = main_choice(rows);
+    let exact = &rows[*verdict.fastest_exact.get(&when)?];
     let cost = exact.frame_ms(when)?;
     let point = |row: &Row| -> Option<Point> {
         let edge = f64::from(row.map_size()?);

@@ -246,9 +246,10 @@ pub fn remembering(run: &Run) -> Option<String> {
             )
         }
     };
-    Some(match steady.begin.is_empty() {
-        true => line,
-        false => format!("{line}; from empty memory, wrong outside the band: {early} frames"),
+    Some(if steady.begin.is_empty() {
+        line
+    } else {
+        format!("{line}; from empty memory, wrong outside the band: {early} frames")
     })
 }
 

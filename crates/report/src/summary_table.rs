@@ -265,7 +265,7 @@ impl<'a> Summary<'a> {
         if !self.verdict().fastest_exact.is_empty() {
             notes.push("* the fastest with no wrong pixel outside the band".into());
         }
-        notes.extend(equal_cost::sentence(self));
+        notes.extend(equal_cost::sentence(&self.rows, &self.verdict()));
         notes.extend(self.open_parts());
         notes.extend(self.wrong_surfaces());
         notes.extend(self.rows.iter().filter_map(|row| {

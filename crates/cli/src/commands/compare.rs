@@ -144,9 +144,10 @@ impl Loaded {
         } else {
             preset::named_or_all(&args.presets, &sources)
         };
-        let sizes = match args.map_curve {
-            true => &MAP_CURVE[..],
-            false => &args.map_size,
+        let sizes = if args.map_curve {
+            &MAP_CURVE[..]
+        } else {
+            &args.map_size
         };
         let methods = method::load(
             &names,

@@ -27,7 +27,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct MovingParts {
     parts: Arc<Movable>,
-    /// The mesh with these parts elsewhere than at rest; `None` if each frame has a mesh of its own.
+    /// The mesh with these parts elsewhere than at rest; `None` if each frame has its own mesh.
     elsewhere: Option<Mesh>,
 }
 
@@ -137,9 +137,9 @@ impl FrameSequence {
         behind.find(|mesh| mesh.positions != meshes[index].positions)
     }
 
-    /// Sets the mesh of `scene` in a provider of its resources before [`show`](Self::show): in parts
-    /// of which each that moves is a piece of its own, or as a whole if no part moves. `cut` is how
-    /// the provider's mesh is cut, which stays if it is the same.
+    /// Sets the mesh of `scene` in a provider of its resources before [`show`](Self::show): in
+    /// parts of which each that moves is a piece of its own, or as a whole if no part moves. `cut`
+    /// is how the provider's mesh is cut, which stays if it is the same.
     pub fn begin(
         &self,
         scene: &Scene,

@@ -107,13 +107,8 @@ impl MeasureContext<'_> {
                 let (outputs, judgement) = steady::judge(session, drawn, steady.as_mut(), truth)?;
                 account.add(self.path, 0, outputs, judgement)?;
                 step.set_done(1);
-                timing::sample(
-                    session,
-                    self.path.frames,
-                    (&mut executor, provider),
-                    [0, 1],
-                    |_| (),
-                )?
+                let drawn = (&mut executor, &*provider);
+                timing::sample(session, self.path.frames, drawn, [0, 1], |_| ())?
             }
             ViewOrPath::Path(_) => {
                 let walked = (method, steady.is_some());
@@ -142,12 +137,7 @@ impl MeasureContext<'_> {
         let pictures = self.pictures.as_ref();
         let mut pictures = pictures.map(RefCell::take).unwrap_or_default();
         if let Some(images) = &mut images {
-            for picture in account.second.drain(..) {
-                images.worst_second.push(picture.name.clone());
-                if images.shaded != picture.name {
-                    pictures.push(picture);
-                }
-            }
+            file_second(&mut pictures, std::mem::take(&mut account.second), images);
         }
         let measured = Measured {
             certain: counts.certain,
@@ -373,6 +363,16 @@ impl MeasureContext<'_> {
         }
         pictures.replace(files);
         Ok(images)
+    }
+}
+
+/// Adds the pictures of a path's worst second to those of a run; the worst frame may be among them.
+fn file_second(pictures: &mut Vec<PictureFile>, second: Vec<PictureFile>, images: &mut Images) {
+    for picture in second {
+        images.worst_second.push(picture.name.clone());
+        if images.shaded != picture.name {
+            pictures.push(picture);
+        }
     }
 }
 

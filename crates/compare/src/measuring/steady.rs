@@ -49,7 +49,7 @@ pub fn settle(
         let shown = contents.get(VISIBILITY);
         pictures.add(shown.map_or(Shown::Bits(0), Shown::new));
         let frames = pictures.frames as u32;
-        if frames.is_power_of_two() && frames.trailing_zeros() % 2 == 0 {
+        if frames.is_power_of_two() && frames.trailing_zeros().is_multiple_of(2) {
             let (_, judgement) = judged(preset, (contents, layer), ground_truth)?;
             begin.push(EarlyPicture {
                 frames,

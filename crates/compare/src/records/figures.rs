@@ -307,7 +307,8 @@ fn list() -> Vec<Figure> {
     ]);
     for (place, frames) in (220..).step_by(2).zip([1, 4, 16, 64]) {
         let early = |name: &str, place, error: fn(&EarlyPicture) -> f64| {
-            let figure = measured(format!("after_{frames}_{}", name.to_lowercase()), Plain, move |by| {
+            let csv = format!("after_{frames}_{}", name.to_lowercase());
+            let figure = measured(csv, Plain, move |by| {
                 let mut begin = by.steady.as_ref()?.begin.iter();
                 Some(error(begin.find(|picture| picture.frames == frames)?))
             });

@@ -675,8 +675,8 @@ pub struct Images {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub projection: Option<String>,
     /// File names of the pictures of the kind `shaded` of each frame of the second of a path in
-    /// which the most pixels shimmer, in order; of a shorter path all its frames. Absent for a still
-    /// view.
+    /// which the most pixels shimmer, in order; of a shorter path all its frames. Absent for a
+    /// still view.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub worst_second: Vec<String>,
 }

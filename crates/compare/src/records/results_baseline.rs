@@ -78,8 +78,8 @@ pub struct CellChange {
     pub now: Option<Figures>,
     /// Change of the errors; a method that could not run this time is worse.
     pub errors: Change,
-    /// Changes of the times: of the frames in which every pass runs (of a path, of its frames), then
-    /// of each regime. Empty if times are not compared, for example on another machine.
+    /// Changes of the times: of the frames in which every pass runs (of a path, of its frames),
+    /// then of each regime. Empty if times are not compared, for example on another machine.
     pub times: Vec<TimeChange>,
 }
 

@@ -73,8 +73,8 @@ pub fn paths(tables: &[Shown]) -> String {
 /// with methods that remember: RMSE, and FLIP, which tells noises of one RMSE apart. The last mark
 /// of a method is the mean of its steady state.
 pub fn begins(tables: &[Shown]) -> String {
-    type Error = fn(&EarlyPicture) -> f64;
-    let errors: [(&str, Error, fn(&Cycle) -> f64); 2] = [
+    type Error = (&'static str, fn(&EarlyPicture) -> f64, fn(&Cycle) -> f64);
+    let errors: [Error; 2] = [
         ("RMSE", |early| early.rmse, |cycle| cycle.rmse_mean),
         ("FLIP", |early| early.flip, |cycle| cycle.flip_mean),
     ];

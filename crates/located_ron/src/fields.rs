@@ -12,8 +12,8 @@ use serde::de::{
 };
 use std::{cell::Cell, collections::HashSet, iter::Enumerate, slice};
 
-/// Deserialises a struct from fields that [`Node::fields`] returned, each from its own text.
-/// `whole` is the place of the struct, where a missing field is reported.
+/// Deserialises a struct from fields that [`Node::fields`](crate::reader::Node::fields) returned,
+/// each from its own text. `whole` is the place of the struct, where a missing field is reported.
 ///
 /// # Errors
 /// The first mistake as a diagnostic at its place: an unknown field (if `T` denies unknown fields),

@@ -127,8 +127,9 @@ function drawViewer() {
 }
 
 function caption(pane, side) {
-  const error = setOf(pane)?.frame_error;
-  const text = `${pane.label}${error ? `: ${error}` : ''} · ${kinds[pane.kind]}`;
+  const { label, frame_error: error } = setOf(pane) ?? {};
+  const name = pane.kind === 'second' ? label : `${pane.label}${error ? `: ${error}` : ''}`;
+  const text = `${name} · ${kinds[pane.kind]}`;
   return el('span', { class: `caption ${side}` }, text);
 }
 

@@ -153,7 +153,7 @@ impl<'a> Summary<'a> {
                 *line = wrapped(line, TERMINAL);
             }
         }
-        lines.push(format!("\n{}\n", terminal(&self.table(false))));
+        lines.push(format!("\n{}\n", terminal(&self.table())));
         lines.extend(sentences);
         lines.join("\n") + "\n"
     }
@@ -161,7 +161,7 @@ impl<'a> Summary<'a> {
     /// Returns the summary as a section in Markdown: heading, table and verdict.
     pub fn markdown(&self) -> String {
         let mut text = format!("\n## In short: {}, {}\n", self.what(), size(self.viewport));
-        text += &format!("\n{}", self.table(false).markdown());
+        text += &format!("\n{}", self.table().markdown());
         let sentences = self.verdict().sentences;
         if !sentences.is_empty() {
             text += &format!("\n{}\n", sentences.join("\n"));
@@ -215,14 +215,13 @@ impl<'a> Summary<'a> {
     }
 
     /// Returns the table: a row for each method, setting and map size, in the order of
-    /// [`rows`](Self::rows); for the page with more columns. A star marks, in each column of times,
-    /// the fastest method without wrong pixels outside the band (the pixels whose answer rounding
-    /// decides).
-    pub fn table(&self, is_page: bool) -> Table {
+    /// [`rows`](Self::rows). A star marks, in each column of times, the fastest method without wrong
+    /// pixels outside the band (the pixels whose answer rounding decides).
+    pub fn table(&self) -> Table {
         let regimes = self.regimes();
         let untimed = Regime::ALL.into_iter().filter(|it| !regimes.contains(it));
         let untimed: Vec<String> = untimed.map(|regime| time_name(Some(regime))).collect();
-        let mut columns = columns::summary(&self.runs, is_page);
+        let mut columns = columns::summary(&self.runs);
         columns.retain(|column| !untimed.contains(&column.figure.name));
         let fastest = self.verdict().fastest_exact.into_iter();
         let fastest: BTreeSet<_> = fastest.map(|(when, row)| (time_name(when), row)).collect();

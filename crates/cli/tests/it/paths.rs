@@ -57,7 +57,14 @@ fn figures_lines_and_pictures_say_of_which_path_and_frame_they_are() {
         assert!((rmse - error(&frames[worst])).abs() < 1e-8, "{name}");
         let images = run["images"].as_object().unwrap();
         assert_eq!(count(&images["frame"]), worst as u64, "{name}");
-        for (kind, file) in images.iter().filter(|(kind, _)| *kind != "frame") {
+        let second = images["worst_second"].as_array().unwrap();
+        assert!((9..=10).contains(&second.len()), "{name}: {second:?}");
+        for file in second {
+            let file = file.as_str().unwrap();
+            assert!(folder.path().join("out").join(file).is_file(), "{file}");
+        }
+        let single = |(kind, _): &(&String, &Value)| !["frame", "worst_second"].contains(&&***kind);
+        for (kind, file) in images.iter().filter(single) {
             let file = file.as_str().unwrap();
             assert!(file.ends_with(&format!(".{worst:04}.png")), "{name} {kind}");
             assert!(folder.path().join("out").join(file).is_file(), "{file}");

@@ -159,6 +159,8 @@ fn set_times(run: &mut Value) {
         ("/regimes/0/frame", 0.25),
         ("/regimes/1/frame", 0.5),
         ("/regimes/2/frame", 1.0),
+        ("/regimes/3/frame", 1.5),
+        ("/regimes/4/frame", 2.0),
     ];
     for (frame, share) in [("/frame", 1.0)].into_iter().chain(regimes) {
         for clock in ["gpu_frames", "wall_frames"] {

@@ -91,11 +91,9 @@ pub fn terminal(runs: &[&Run]) -> Vec<Column> {
 }
 
 /// Returns the columns of the summary of `runs` over all views, in order, behind that of the
-/// methods; for the page with its own.
-pub fn summary(runs: &[&Run], is_page: bool) -> Vec<Column> {
-    let page = is_page.then(|| of_table(Table::Page, runs));
-    let columns = of_table(Table::Summary, runs);
-    columns.chain(page.into_iter().flatten()).collect()
+/// methods.
+pub fn summary(runs: &[&Run]) -> Vec<Column> {
+    of_table(Table::Summary, runs).collect()
 }
 
 /// Returns the columns of a document's table of `runs` in two lists: those to the left and those to

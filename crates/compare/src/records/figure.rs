@@ -69,8 +69,6 @@ pub enum Table {
     Document,
     /// The summary over all views, in a terminal, in documents and on the page.
     Summary,
-    /// The page's table alone, behind the summary's columns.
-    Page,
 }
 
 /// Unit of a figure.

@@ -11,7 +11,7 @@
 //! ```
 
 use crate::records::figure::Over::{Rms, Sum, Worst};
-use crate::records::figure::Table::{Document, Page, Summary, Terminal};
+use crate::records::figure::Table::{Document, Summary, Terminal};
 use crate::records::figure::Unit::{self, Bytes, Count, Ms, Percent, Plain, Rate, Text};
 use crate::records::figure::{Case, Figure, Taken};
 use crate::records::regimes::{Regime, When, quartiles_name, time_name, word};
@@ -400,12 +400,8 @@ fn percentile(percent: u8, word: &str) -> Figure {
         let times = &case.run.measured.as_ref()?.frame;
         times.percentile(percent, case.by_wall)
     });
-    let (place, head) = (90 + u16::from(percent), format!("{word} ms"));
-    let figure = figure.shown(Terminal, place, &*head);
-    figure
-        .shown(Page, place, head)
-        .over_views(Worst)
-        .limited(word)
+    let figure = figure.shown(Terminal, 90 + u16::from(percent), format!("{word} ms"));
+    figure.over_views(Worst).limited(word)
 }
 
 /// A figure of the map's texels, where the graph tells it.

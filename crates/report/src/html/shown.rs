@@ -55,7 +55,7 @@ pub fn shown<'a>(sources: &[Source], summaries: &'a [(usize, Summary<'a>)]) -> V
         Shown {
             source,
             summary,
-            table: summary.table(true),
+            table: summary.table(),
             title,
         }
     };

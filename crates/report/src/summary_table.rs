@@ -215,8 +215,8 @@ impl<'a> Summary<'a> {
     }
 
     /// Returns the table: a row for each method, setting and map size, in the order of
-    /// [`rows`](Self::rows). A star marks, in each column of times, the fastest method without wrong
-    /// pixels outside the band (the pixels whose answer rounding decides).
+    /// [`rows`](Self::rows). A star marks, in each column of times, the fastest method without
+    /// wrong pixels outside the band (the pixels whose answer rounding decides).
     pub fn table(&self) -> Table {
         let regimes = self.regimes();
         let untimed = Regime::ALL.into_iter().filter(|it| !regimes.contains(it));

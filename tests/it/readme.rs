@@ -278,7 +278,8 @@ fn the_tutorials_suns_are_as_wide_as_it_says() {
     let wide_suns = file.matches("angle_degrees: 5)").count();
     assert_eq!(
         (file.matches("angle_degrees: 0.53").count(), wide_suns),
-        (1, 3)
+        (1, 4),
+        "three views and a path"
     );
     let tutorial = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
     let tutorial: Vec<&str> = tutorial.split_whitespace().collect();

@@ -136,7 +136,7 @@ pub struct Comparison {
     /// [parts chosen for it](crate::own_scene_notes::notes), one line each; empty to record none.
     pub notes: Vec<String>,
     /// Parts of the mesh that move on a path of the scene: on still views, too, frames are timed
-    /// before which they have moved. `None` for a scene that stands still.
+    /// before which they have moved. `None` for a scene that stands still, or to time none.
     pub moving: Option<Arc<MovingParts>>,
 }
 

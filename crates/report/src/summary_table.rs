@@ -260,11 +260,11 @@ impl<'a> Summary<'a> {
 
     /// Returns remarks on the table, a line each.
     pub fn notes(&self) -> Vec<String> {
-        let mut notes = Vec::new();
-        if !self.verdict().fastest_exact.is_empty() {
+        let (mut notes, verdict) = (Vec::new(), self.verdict());
+        if !verdict.fastest_exact.is_empty() {
             notes.push("* the fastest with no wrong pixel outside the band".into());
         }
-        notes.extend(equal_cost::sentence(&self.rows, &self.verdict()));
+        notes.extend(equal_cost::sentence(&self.rows, &verdict));
         notes.extend(self.open_parts());
         notes.extend(self.wrong_surfaces());
         notes.extend(self.rows.iter().filter_map(|row| {

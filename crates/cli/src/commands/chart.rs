@@ -31,7 +31,7 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
         ChartKind::Front => charts::front(&kept, viewport, error)?,
         ChartKind::Growth if error.is_some() => {
             let why = "--error: a chart of growth draws no error";
-            return Err(CliError::Input(why.into()));
+            return Err(CliError::Usage(why.into()));
         }
         ChartKind::Growth => charts::growth(&kept, viewport)?,
         ChartKind::Frames => charts::frames_of_paths(&kept, viewport, error)?,

@@ -167,18 +167,20 @@ impl Loaded {
         let comparison = |scene| -> Result<Comparison, CliError> {
             let mut selection = SceneSelection::load(scene)?;
             let notes = std::mem::take(&mut selection.notes);
-            let paths = selection.paths.clone();
+            // Without timed frames of regimes the mesh stays in one piece.
+            let regime_frames = args.regime_frames.unwrap_or(args.frames);
+            let moving = (regime_frames > 0).then(|| moving(&selection.paths, &selection.scene));
             let (scene, views) = views(args, scene, selection, &methods, session)?;
             Ok(Comparison {
                 views,
-                moving: moving(&paths, &scene),
+                moving: moving.flatten(),
                 viewports: unique(args.size.iter().map(|Size(size)| *size)),
                 methods: methods.clone(),
                 tuned: Default::default(),
                 protocol: Protocol {
                     frames: args.frames,
                     warmup: args.warmup,
-                    regime_frames: args.regime_frames.unwrap_or(args.frames),
+                    regime_frames,
                     jitter: args.jitter,
                     oracle: args.oracle,
                     reference_samples: args.reference_samples,

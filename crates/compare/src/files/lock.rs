@@ -40,8 +40,8 @@ const RETRY: Duration = Duration::from_millis(20);
 /// After so long it is said that something is waited for.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Locks the lock file named `files` in `folder`, which must exist, and
-/// waits while another process holds it. Tells the sink after two seconds of waiting.
+/// Locks the lock file named `files` in `folder`, which must exist, and waits while another process
+/// holds it. Tells the sink after two seconds of waiting.
 ///
 /// # Errors
 /// [`CompareError::Interrupted`] if the sink asks for an early end and the wait takes more than two

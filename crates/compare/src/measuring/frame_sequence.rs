@@ -133,8 +133,8 @@ impl FrameSequence {
         let Some(meshes) = self.meshes.as_deref() else {
             return self.moving.as_ref()?.elsewhere.as_ref();
         };
-        let mut behind = meshes[index + 1..].iter().chain(&meshes[..index]);
-        behind.find(|mesh| mesh.positions != meshes[index].positions)
+        let mut next_meshes = meshes[index + 1..].iter().chain(&meshes[..index]);
+        next_meshes.find(|mesh| mesh.positions != meshes[index].positions)
     }
 
     /// Sets the mesh of `scene` in a provider of its resources before [`show`](Self::show): in

@@ -276,8 +276,7 @@ impl<'a> Series<'a> {
         );
         let (scene, protocol) = (&self.comparison.scene, self.comparison.protocol);
         let frames = FrameSequence::new(view, scene, protocol.jitter, None)?;
-        let moving = self.comparison.moving.as_ref();
-        let frames = frames.with_moving(moving.filter(|_| protocol.regime_frames > 0));
+        let frames = frames.with_moving(self.comparison.moving.as_ref());
         frames.begin(scene, &mut self.provider, &mut self.cut);
         frames.show(0, viewport, &mut self.provider)?;
         let methods = self.methods.iter();

@@ -68,9 +68,8 @@ pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, C
     }
 }
 
-/// Locks the lock file named `files` in `folder`, which must exist,
-/// without waiting; `None` if it is held already, by this process or another. Tells the sink if the
-/// file system has no locks.
+/// Locks the lock file named `files` in `folder`, which must exist, without waiting; `None` if it is
+/// held already, by this process or another. Tells the sink if the file system has no locks.
 ///
 /// # Errors
 /// The lock file cannot be created or locked.

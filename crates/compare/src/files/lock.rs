@@ -40,8 +40,8 @@ const RETRY: Duration = Duration::from_millis(20);
 /// After so long it is said that something is waited for.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Locks the lock file named `files` in `folder`, which must exist, and waits while another process
-/// holds it. Tells the sink after two seconds of waiting.
+/// Locks the lock file named `files` in `folder`, which must exist, and waits while another
+/// process holds it. Tells the sink after two seconds of waiting.
 ///
 /// # Errors
 /// [`CompareError::Interrupted`] if the sink asks for an early end and the wait takes more than two
@@ -68,8 +68,8 @@ pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, C
     }
 }
 
-/// Locks the lock file named `files` in `folder`, which must exist, without waiting; `None` if it is
-/// held already, by this process or another. Tells the sink if the file system has no locks.
+/// Locks the lock file named `files` in `folder`, which must exist, without waiting; `None` if it
+/// is held already, by this process or another. Tells the sink if the file system has no locks.
 ///
 /// # Errors
 /// The lock file cannot be created or locked.

@@ -557,14 +557,15 @@ fn chart_says_what_is_missing() {
             &["good", "--out", "nowhere/a.svg"],
             "there is no folder nowhere",
         ),
-        (
-            &["good", "--kind", "growth", "--error", "rmse"],
-            "--error: a chart of growth draws no error",
-        ),
     ] {
         let error = refused(arguments);
         assert!(error.contains(message), "{arguments:?}: {error}");
     }
+    let usage = ["chart", "good", "--kind", "growth", "--error", "rmse"];
+    let output = skiagraph(folder, &usage);
+    assert_exit(&output, 2);
+    let message = "--error: a chart of growth draws no error";
+    assert!(stderr(&output).contains(message), "{}", stderr(&output));
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod terminal;
 use args::cli::{Cli, Command};
 use clap::{Parser, error::ErrorKind};
 use error::CliError;
+use skiagraph_gpu::block_on;
 use std::process::ExitCode;
 
 /// Without a session, in a container say, Mesa's loader asks for this folder and complains above
@@ -47,20 +48,31 @@ fn main() -> ExitCode {
     };
     #[cfg(unix)]
     with_runtime_dir();
+    let outcome = block_on(run(&cli));
+    // Where the process ends in the middle of work, that is what is told.
+    terminal::stop::take_end();
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => terminal::console::report(&error),
+    }
+}
+
+/// Runs the command that was typed. Here alone the program waits.
+async fn run(cli: &Cli) -> Result<(), CliError> {
     let gpu = &cli.gpu;
-    let outcome = match &cli.command {
+    match &cli.command {
         Command::Compare(args) if args.plan.is_some() => commands::cells::plan(args, gpu),
-        Command::Compare(args) if args.cells.is_some() => commands::cells::measure(args, gpu),
-        Command::Compare(args) => commands::compare::compare(args, gpu),
-        Command::Run(args) => commands::run::run(args, gpu),
+        Command::Compare(args) if args.cells.is_some() => commands::cells::measure(args, gpu).await,
+        Command::Compare(args) => commands::compare::compare(args, gpu).await,
+        Command::Run(args) => commands::run::run(args, gpu).await,
         Command::Chart(args) => commands::chart::chart(args),
         Command::Report(args) => commands::report::report(args),
         Command::Merge(args) => commands::merge::merge(args),
         Command::Completions(args) => commands::completions::completions(args),
-        Command::Profile(args) => commands::profile::profile(args, gpu),
-        Command::Stress(args) => commands::stress::stress(args, gpu),
-        Command::Judge(args) => commands::judge::judge(args, gpu),
-        Command::Truth(args) => commands::judge::truth(args, gpu),
+        Command::Profile(args) => commands::profile::profile(args, gpu).await,
+        Command::Stress(args) => commands::stress::stress(args, gpu).await,
+        Command::Judge(args) => commands::judge::judge(args, gpu).await,
+        Command::Truth(args) => commands::judge::truth(args, gpu).await,
         Command::Check(args) => commands::check::check(args, gpu),
         Command::Graph(args) => commands::graph::graph(args),
         Command::Presets(args) => commands::presets::presets(args),
@@ -70,11 +82,5 @@ fn main() -> ExitCode {
         Command::Scenes => commands::scenes::scenes(),
         Command::Doctor(args) => commands::doctor::doctor(args, gpu),
         Command::View(args) => commands::view::view(args, gpu),
-    };
-    // Where the process ends in the middle of work, that is what is told.
-    terminal::stop::take_end();
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => terminal::console::report(&error),
     }
 }

@@ -7,6 +7,7 @@
 //!     measuring::{device::{self, GpuRequest}, series::run},
 //!     sink::{Session, Silent},
 //! };
+//! use skiagraph_gpu::block_on;
 //! use skiagraph_passes::EmbeddedSources;
 //! use skiagraph_scene::SceneLibrary;
 //! use std::sync::Arc;
@@ -15,7 +16,7 @@
 //! let methods = load_methods(&["light_buffer", "nsm@bias=0"], &[], &[1024], &EmbeddedSources)?;
 //! let gpu = device::open(&GpuRequest::default(), methods.iter().map(|it| &it.preset.graph))?;
 //! let comparison = Comparison::new(Arc::new(scene), methods)?;
-//! for run in run(&comparison, Session::new(&gpu, &Silent))?.runs {
+//! for run in block_on(run(&comparison, Session::new(&gpu, &Silent)))?.runs {
 //!     let measured = run.measured.ok_or("cannot run here")?;
 //!     println!("{}: {} wrong of {}", run.preset, measured.wrong.total, run.pixels.facing_light);
 //! }
@@ -26,7 +27,8 @@
 //! which it is seen, and a [`Protocol`](comparison::Protocol). [`run`](measuring::series::run)
 //! returns [`Results`](records::results::Results): for each run its times, and the pixels that are
 //! wrong against an exact reference. A [`Sink`](sink::Sink) receives the progress of the work and
-//! may end it early. To write results into a folder, and to continue from earlier ones in it, use a
+//! may end it early. What waits for the GPU is `async` and waits nowhere else, so a host that cannot
+//! wait drives it as well; [`block_on`](skiagraph_gpu::block_on) waits on its thread. To write results into a folder, and to continue from earlier ones in it, use a
 //! [`Series`](measuring::series::Series) step by step. In this way an engine's own tests can find
 //! out which methods are right on a scene of that engine (`crates/compare/tests/it/engine.rs` in
 //! the repository).

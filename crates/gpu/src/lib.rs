@@ -38,6 +38,7 @@ mod provider;
 mod readback;
 mod signal;
 pub mod timing;
+mod waiting;
 
 pub use error::ExecuteError;
 pub use frame::{
@@ -48,3 +49,4 @@ pub use pipelines::pipelines::Pipelines;
 pub use provider::{CpuWork, Provider, ProviderError};
 pub use readback::{Content, Readback};
 pub use timing::{FrameTiming, PassStatistics, PassTiming};
+pub use waiting::{block_on, submitted_work};

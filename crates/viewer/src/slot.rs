@@ -98,9 +98,9 @@ impl Slot {
     ///
     /// # Errors
     /// If the device is lost.
-    pub fn take_snapshot(
+    pub async fn take_snapshot(
         &mut self,
-        session: Session,
+        session: Session<'_>,
         provider: &mut SceneProvider,
         desired: &DesiredMethod,
         how: &How,
@@ -118,7 +118,7 @@ impl Slot {
             }
         }
         if self.executor.is_some() {
-            match self.run(session, provider, how) {
+            match self.run(session, provider, how).await {
                 Ok(snapshot) => self.last = snapshot,
                 Err(error) => {
                     if let Some(planned) = self.planned.clone() {
@@ -179,16 +179,16 @@ impl Slot {
         Ok(())
     }
 
-    fn run(
+    async fn run(
         &mut self,
-        session: Session,
+        session: Session<'_>,
         provider: &mut SceneProvider,
         how: &How,
     ) -> Result<MethodSnapshot, ExecuteError> {
         let (Some(executor), Some(preset)) = (&mut self.executor, &self.preset) else {
             return Ok(self.last.clone());
         };
-        frame::grow(session, executor, provider)?;
+        frame::grow(session, executor, provider).await?;
         let names: Vec<String> = executor
             .plan()
             .outputs()
@@ -202,7 +202,7 @@ impl Slot {
             .with_all(how.all_passes)
             .with_read(&read)
             .with_seconds(how.seconds);
-        let (report, wall) = frame::run(session, executor, &desired)?;
+        let (report, wall) = frame::run(session, executor, &desired).await?;
         let plan = executor.plan();
         Ok(MethodSnapshot {
             layer: layer_of(plan, provider.light_number()),

@@ -12,7 +12,7 @@ use skiagraph_compare::measuring::{
 };
 use skiagraph_compare::pictures::colours::ClipPlanes;
 use skiagraph_compare::sink::{Session, Silent};
-use skiagraph_gpu::{Content, Executor, device::Gpu, timing::Trust};
+use skiagraph_gpu::{Content, Executor, block_on, device::Gpu, timing::Trust};
 use skiagraph_graph::Sources;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Progress, unshadowed};
@@ -150,21 +150,21 @@ impl Worker {
                 }
             }
             if let Some(desired) = desired.as_ref().filter(|_| is_changed)
-                && let Err(error) = self.show(desired)
+                && let Err(error) = block_on(self.show(desired))
             {
                 (self.tell)(Event::Broken(error.to_string()));
             }
         }
     }
 
-    fn show(&mut self, desired: &DesiredState) -> Result<(), CompareError> {
+    async fn show(&mut self, desired: &DesiredState) -> Result<(), CompareError> {
         if !self.load(desired) {
             return Ok(());
         }
         self.fill_slots(desired)?;
         // A device that a method has lost is opened anew once, without that method.
         for _ in 0..=desired.methods.len() {
-            match self.take_snapshot(desired)? {
+            match self.take_snapshot(desired).await? {
                 Ok(snapshot) => {
                     (self.tell)(Event::Frame(Box::new(snapshot)));
                     return Ok(());
@@ -249,7 +249,7 @@ impl Worker {
         Ok(())
     }
 
-    fn take_snapshot(
+    async fn take_snapshot(
         &mut self,
         desired: &DesiredState,
     ) -> Result<Result<FrameSnapshot, Lost>, CompareError> {
@@ -264,7 +264,9 @@ impl Worker {
         view.check().map_err(CompareError::Input)?;
         stage.provider.set_view(&view, desired.size);
         let camera = view.camera(desired.size);
-        let primitives = stage.primitives(session, &*self.sources, desired.size)?;
+        let primitives = stage
+            .primitives(session, &*self.sources, desired.size)
+            .await?;
         let light = stage.provider.light();
         let (scene, progress) = (&stage.loaded.scene, Progress::default());
         let facing = unshadowed(&scene.mesh, &camera, &light, &primitives, progress);
@@ -278,7 +280,10 @@ impl Worker {
         };
         let mut methods = Vec::new();
         for (slot, method) in self.slots.iter_mut().zip(&desired.methods) {
-            match slot.take_snapshot(session, &mut stage.provider, method, &how) {
+            match slot
+                .take_snapshot(session, &mut stage.provider, method, &how)
+                .await
+            {
                 Ok(snapshot) => methods.push(snapshot),
                 Err(lost) => return Ok(Err(lost)),
             }
@@ -300,9 +305,9 @@ impl Worker {
 
 impl Stage {
     /// The primitive that each pixel shows.
-    fn primitives(
+    async fn primitives(
         &mut self,
-        session: Session,
+        session: Session<'_>,
         sources: &dyn Sources,
         size: [u32; 2],
     ) -> Result<Vec<u32>, CompareError> {
@@ -317,9 +322,10 @@ impl Stage {
         let Some((executor, _)) = &mut self.primitives else {
             return Ok(Vec::new());
         };
-        let read = executor
-            .refresh(provider)
-            .and_then(|_| frame::read(session, executor, &["primitive"]));
+        let read = match executor.refresh(provider) {
+            Ok(_) => frame::read(session, executor, &["primitive"]).await,
+            Err(error) => Err(error),
+        };
         let contents = read.map_err(|error| {
             self.primitives = None;
             wrong(explain(&error))

@@ -49,7 +49,7 @@ pub fn plan(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 ///
 /// # Errors
 /// If the plan cannot be read, or is not of this program and these files; those of `compare`.
-pub fn measure(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+pub async fn measure(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let file = args.cells.as_deref().unwrap_or(Path::new(FILE));
     let plan = CellPlan::read(file)?;
     plan.check_version(COMMIT)?;
@@ -76,7 +76,7 @@ pub fn measure(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         out: &args.out,
     };
     check_all(&loaded.comparisons, session)?;
-    let done = many_machines::measure(&share, &scenes(&loaded), session)?;
+    let done = many_machines::measure(&share, &scenes(&loaded), session).await?;
     for (comparison, target) in loaded.comparisons.iter().zip(&loaded.targets) {
         write_graphs(comparison, &target.folder, session)?;
     }

@@ -69,7 +69,7 @@ pub const COMMIT: Option<&str> = option_env!("SKIAGRAPH_COMMIT");
 /// If a scene cannot be loaded, no GPU can be opened, earlier results cannot be continued, Ctrl-C
 /// stops the command, no method runs on this adapter, or, behind the results: a document has
 /// mistakes, a limit of `--fail-if` is exceeded, or a method is worse than in `--baseline`.
-pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+pub async fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let loaded = Loaded::new(args, gpu, std::env::args_os())?;
     let session = Session::new(&loaded.gpu, &Terminal);
@@ -80,7 +80,7 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         if args.tune && comparison.refusals(silent)?.is_empty() {
             // Refused before the search, not behind it.
             check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
-            tune(comparison, session).map_err(search_ended)?;
+            tune(comparison, session).await.map_err(search_ended)?;
         }
     }
     check_all(&comparisons, session)?;
@@ -88,11 +88,14 @@ pub fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
     }
     let mut measured = Measured::default();
-    let mut comparisons = comparisons.into_iter().zip(&targets);
-    let outcome = comparisons.try_for_each(|(comparison, target)| {
-        let baseline = baseline.as_ref();
-        measure(args, &comparison, baseline, target, session, &mut measured)
-    });
+    let outcome = async {
+        for (comparison, target) in comparisons.into_iter().zip(&targets) {
+            let baseline = baseline.as_ref();
+            measure(args, &comparison, baseline, target, session, &mut measured).await?;
+        }
+        Ok(())
+    }
+    .await;
     let shown = if targets.len() > 1 {
         overview(args, &targets, &measured.results)
     } else {
@@ -344,12 +347,12 @@ fn kept(args: &CompareArgs) -> Kept {
 }
 
 /// Measures a scene, prints and saves its results.
-fn measure(
+async fn measure(
     args: &CompareArgs,
     comparison: &Comparison,
     baseline: Option<&Baseline>,
     target: &Target,
-    session: Session,
+    session: Session<'_>,
     measured: &mut Measured,
 ) -> Result<(), CliError> {
     let folder = &target.folder;
@@ -376,7 +379,7 @@ fn measure(
         ));
     }
     write_graphs(comparison, folder, session)?;
-    let outcome = run(args, comparison, &mut series);
+    let outcome = run(args, comparison, &mut series).await;
     let results = finish(args, target, series, outcome, measured)?;
     judge(args, target, baseline, &results, measured)?;
     measured.folders.push(folder.clone());
@@ -440,7 +443,11 @@ fn light_name<'a>(
 }
 
 /// Measures what is missing, and prints every view and viewport when it is whole.
-fn run(args: &CompareArgs, comparison: &Comparison, series: &mut Series) -> Result<(), CliError> {
+async fn run(
+    args: &CompareArgs,
+    comparison: &Comparison,
+    series: &mut Series<'_>,
+) -> Result<(), CliError> {
     if args.format == Format::Markdown {
         let is_done = series.results.runs.len() == series.planned();
         let today = (!is_done).then(date::today);
@@ -457,7 +464,7 @@ fn run(args: &CompareArgs, comparison: &Comparison, series: &mut Series) -> Resu
             print(&markdown::view(view_or_path.name()))?;
         }
         for viewport in 0..comparison.viewports.len() {
-            let outcome = series.measure(index, viewport);
+            let outcome = series.measure(index, viewport).await;
             let (results, runs) = (&series.results, series.runs(index, viewport));
             match args.format {
                 Format::Table if args.details => {

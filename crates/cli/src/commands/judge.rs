@@ -19,7 +19,7 @@ use std::io::{IsTerminal, stdout};
 /// If a file cannot be read or is not a picture of the view, the scene cannot be loaded, no GPU can
 /// be opened, Ctrl-C stops the command, a file cannot be written, or a limit of `--fail-if` is
 /// exceeded.
-pub fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+pub async fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let surfaces = match (&args.ids, &args.depth) {
         (Some(ids), _) => Surfaces::Ids(ids.clone()),
         (None, Some(depth)) => Surfaces::Depth(depth.clone()),
@@ -46,7 +46,7 @@ pub fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     checked.map_err(CliError::Input)?;
     let (scene, view) = single_view(&args.scene)?;
     interrupt::install()?;
-    let judged = judge_pictures(&judging, scene, &view, &gpu.request(), &Terminal)?;
+    let judged = judge_pictures(&judging, scene, &view, &gpu.request(), &Terminal).await?;
     stop::take_end();
     if let Some(folder) = &args.out {
         judged.write(folder)?;
@@ -70,7 +70,7 @@ pub fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 /// # Errors
 /// If the scene cannot be loaded, no GPU can be opened, Ctrl-C stops the command, or a file cannot
 /// be written.
-pub fn truth(args: &TruthArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+pub async fn truth(args: &TruthArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let request = TruthRequest {
         viewport: args.size.0,
         oracle: args.oracle,
@@ -79,7 +79,7 @@ pub fn truth(args: &TruthArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     };
     let (scene, view) = single_view(&args.scene)?;
     interrupt::install()?;
-    let lines = write_truth(&request, scene, &view, &args.out, &gpu.request(), &Terminal)?;
+    let lines = write_truth(&request, scene, &view, &args.out, &gpu.request(), &Terminal).await?;
     print(&format!(
         "{}:\n  {}\n",
         args.out.display(),

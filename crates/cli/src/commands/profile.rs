@@ -30,7 +30,7 @@ use std::{path::Path, sync::Arc};
 /// # Errors
 /// If a graph or a baseline is faulty, a scene cannot be loaded, no GPU can be opened, Ctrl-C stops
 /// the command, or a file cannot be written.
-pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+pub async fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     check_writable(&files(args))?;
     let old = args.baseline.as_deref();
     let old = old.map(|path| Ok::<_, CliError>((path, read_back::profile(path)?)));
@@ -58,7 +58,7 @@ pub fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     for (method, (view, viewport)) in settled.collect_vec().iter().cartesian_product(places) {
         let (method, count) = (method.at(viewport), [args.warmup, args.frames]);
         let mut profile;
-        (profile, timed) = match profiling::profile(session, count, &method, &scene, view) {
+        (profile, timed) = match profiling::profile(session, count, &method, &scene, view).await {
             Err(CompareError::Interrupted { .. }) if !profiles.is_empty() && stop::raised() => {
                 return interrupted(args, &profiles, planned);
             }

@@ -26,7 +26,7 @@ use std::sync::Arc;
 /// # Errors
 /// If the graph has errors, a scene cannot be loaded, no GPU can be opened, or a file cannot be
 /// written.
-pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+pub async fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let (method, saves) = (&args.method, &args.save);
     let (preset, params) = &method.load(&preset::sources(&Terminal))?;
     if args.scene.view.as_deref() == Some("all") && !saves.is_empty() {
@@ -74,15 +74,16 @@ pub fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
             method.size,
             summary(&plan)
         ))?;
-        let poisoned = args
-            .poison
-            .then(|| poison::check(session, &plan, &mut provider, preset));
+        let poisoned = match args.poison {
+            true => Some(poison::check(session, &plan, &mut provider, preset).await?),
+            false => None,
+        };
         let still = ViewOrPath::Still(view.clone());
         let still = FrameSequence::new(&still, &scene, None, None)?;
         let frames = (sequence.as_ref().unwrap_or(&still), is_sequence);
-        record(frames, session, (preset, plan), &mut provider, saves)?;
+        record(frames, session, (preset, plan), &mut provider, saves).await?;
         if let Some(verdict) = poisoned {
-            print(&verdict?)?;
+            print(&verdict)?;
         }
     }
     Ok(())

@@ -87,9 +87,9 @@ fn path(
 ///
 /// # Errors
 /// If Ctrl-C stops the command, the executor fails, or a file cannot be written.
-pub fn record(
+pub async fn record(
     (sequence, are_numbered): (&FrameSequence, bool),
-    session: Session,
+    session: Session<'_>,
     (preset, plan): (&Preset, Plan),
     provider: &mut SceneProvider,
     saves: &[Save],
@@ -99,8 +99,13 @@ pub fn record(
     }
     let failed = |error| frame::failed(session, &preset.name, error);
     let viewport = plan.viewport();
-    let (mut executor, growth) = frame::settled(session, plan, provider).map_err(failed)?;
+    let (mut executor, growth) = frame::settled(session, plan, provider)
+        .await
+        .map_err(failed)?;
     print(&growth.text())?;
+    if let Some(pass) = executor.waits_in() {
+        print(&format!("  waits for the CPU, which works in {pass}\n"))?;
+    }
     let names = names(saves);
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let total = sequence.poses.len();
@@ -114,8 +119,10 @@ pub fn record(
         let decodings = decodings(executor.plan(), saves, ClipPlanes::new(&pose.view));
         let request = Frame::new().with_read(&names);
         let request = request.with_seconds(sequence.seconds(index));
-        let draw = |executor: &mut Executor| frame::run(session, executor, &request);
-        let drawn = frame::next(&mut executor, provider, draw).map_err(failed)?;
+        let draw = async |executor: &mut Executor| frame::run(session, executor, &request).await;
+        let drawn = frame::next(&mut executor, provider, draw)
+            .await
+            .map_err(failed)?;
         let contents = frame::contents(drawn.frame.0.readbacks);
         let files = saves.iter().map(|save| of_frame(save, index, are_numbered));
         let files: Vec<Save> = files.collect();

@@ -34,7 +34,7 @@ use std::sync::Arc;
 /// If no method can run, a case is unknown, no GPU can be opened, Ctrl-C stops the command, a file
 /// cannot be written, a guarantee is broken, rounding decides too many pixels of a case, or, behind
 /// the results of the others, a document has mistakes.
-pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+pub async fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if args.list {
         return print(&stress_matrix::catalogue());
     }
@@ -99,7 +99,9 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         cases: Vec::new(),
     };
     interrupt::install()?;
-    let outcome = run(&context, &cases, &mut report, args);
+    progress::begin_quietly("hard cases", cases.len() as u64, "cases");
+    let outcome = run(&context, &cases, &mut report, args).await;
+    Terminal.end_step(outcome.is_ok());
     stop::take_end();
     finish(&report, outcome, cases.len(), args)?;
     match &mistakes[..] {
@@ -109,17 +111,16 @@ pub fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 }
 
 /// Runs case after case; whatever is done is on disk at once.
-fn run(
-    context: &HardCaseContext,
+async fn run(
+    context: &HardCaseContext<'_>,
     cases: &[HardCase],
     report: &mut Report,
     args: &StressArgs,
 ) -> Result<(), CliError> {
-    progress::begin_quietly("hard cases", cases.len() as u64, "cases");
-    let outcome = (0..).zip(cases).try_for_each(|(done, case)| {
+    for (done, case) in (0..).zip(cases) {
         progress::set_part(case.name);
         Terminal.set_done(done);
-        report.cases.push(context.run(case)?);
+        report.cases.push(context.run(case).await?);
         if let Some(folder) = &args.out {
             write_whole(&folder.join("stress.json"), to_text(report).as_bytes())?;
         }
@@ -128,10 +129,8 @@ fn run(
             let kept = String::new();
             finish(&report, Err(CliError::Interrupted { kept }), wanted, &args)
         });
-        Ok(())
-    });
-    Terminal.end_step(outcome.is_ok());
-    outcome
+    }
+    Ok(())
 }
 
 /// Prints what is done, and says what came of it.

@@ -4,6 +4,7 @@
 //! ```no_run
 //! use skiagraph_compare::foreign::judging::{Judging, Surfaces, judge};
 //! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
+//! use skiagraph_gpu::block_on;
 //! use skiagraph_scene::SceneLibrary;
 //!
 //! let (scene, _) = SceneLibrary::default().load("park")?;
@@ -14,7 +15,7 @@
 //!     surfaces: Surfaces::Depth("depth.exr".into()),
 //!     ..Judging::default()
 //! };
-//! let judged = judge(&judging, scene, &view, &GpuRequest::default(), &Silent)?;
+//! let judged = block_on(judge(&judging, scene, &view, &GpuRequest::default(), &Silent))?;
 //! println!("{} pixels are unattributable", judged.record.unattributable);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -158,7 +159,7 @@ pub(crate) struct Truth<'a> {
 /// An empty list of pictures; a file that cannot be read or is not such a picture; pictures of
 /// different sizes; ids or depths that are not those of the scene under this camera; no GPU; an
 /// [early end](crate#terms).
-pub fn judge(
+pub async fn judge(
     judging: &Judging,
     scene: Scene,
     view: &View,
@@ -186,7 +187,7 @@ pub fn judge(
         Surfaces::Ids(_) => Named::Ids(raster),
         _ => Named::Depth(raster),
     });
-    let truth = truth((&scene, view, viewport), named, how, gpu, sink)?;
+    let truth = truth((&scene, view, viewport), named, how, gpu, sink).await?;
     let ground_truth = &truth.view.ground_truth;
     // Pixels that are not judged are kept apart as those of the band are.
     let mut judged_truth = ground_truth.clone();
@@ -265,7 +266,7 @@ pub(crate) enum Named {
 }
 
 /// Finds the truth of a view, and the pixels at which it is not unique.
-pub(crate) fn truth<'a>(
+pub(crate) async fn truth<'a>(
     (scene, view, viewport): (&'a Arc<Scene>, &View, [u32; 2]),
     named: Option<Named>,
     how: (OracleMode, u32),
@@ -292,7 +293,7 @@ pub(crate) fn truth<'a>(
             surfaces: "ids",
         });
     }
-    let rasterised = rasterised(scene, view, viewport, gpu, sink)?;
+    let rasterised = rasterised(scene, view, viewport, gpu, sink).await?;
     let rows = u64::from(viewport[1]);
     let step = Step::begin(sink, &format!("surfaces, {what}"), rows, "rows");
     let rows_done = |rows| step.set_done(rows);
@@ -354,7 +355,7 @@ fn open_pixels(
 }
 
 /// The surfaces that every method's G-buffer shows.
-fn rasterised(
+async fn rasterised(
     scene: &Arc<Scene>,
     view: &View,
     viewport: [u32; 2],
@@ -365,7 +366,9 @@ fn rasterised(
     let mut provider = SceneProvider::new(scene.clone());
     provider.set_view(view, viewport);
     let primary = PrimaryVisibility::load(&EmbeddedSources)?;
-    primary.ids(Session::new(&gpu, sink), viewport, &mut provider)
+    primary
+        .ids(Session::new(&gpu, sink), viewport, &mut provider)
+        .await
 }
 
 /// Share of the pixels whose id may be that of a hidden surface.

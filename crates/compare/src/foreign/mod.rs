@@ -3,12 +3,13 @@
 //! ```no_run
 //! use skiagraph_compare::foreign::judging::{Judging, judge};
 //! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
+//! use skiagraph_gpu::block_on;
 //! use skiagraph_scene::SceneLibrary;
 //!
 //! let (scene, _) = SceneLibrary::default().load("park")?;
 //! let view = scene.views[0].clone();
 //! let judging = Judging { pictures: vec!["factor.exr".into()], ..Judging::default() };
-//! let judged = judge(&judging, scene, &view, &GpuRequest::default(), &Silent)?;
+//! let judged = block_on(judge(&judging, scene, &view, &GpuRequest::default(), &Silent))?;
 //! println!("{} pixels wrong", judged.record.pictures[0].wrong_attributable());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

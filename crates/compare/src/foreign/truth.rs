@@ -3,13 +3,15 @@
 //! ```no_run
 //! use skiagraph_compare::foreign::truth::{TruthRequest, write_truth};
 //! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
+//! use skiagraph_gpu::block_on;
 //! use skiagraph_scene::SceneLibrary;
 //! use std::path::Path;
 //!
 //! let (scene, _) = SceneLibrary::default().load("park")?;
 //! let (view, gpu) = (scene.views[0].clone(), GpuRequest::default());
 //! let what = TruthRequest::new([640, 480]);
-//! for line in write_truth(&what, scene, &view, Path::new("truth"), &gpu, &Silent)? {
+//! let written = write_truth(&what, scene, &view, Path::new("truth"), &gpu, &Silent);
+//! for line in block_on(written)? {
 //!     println!("{line}");
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -64,7 +66,7 @@ impl TruthRequest {
 /// # Errors
 /// A view for which the reference cannot be computed, no GPU, an [early end](crate#terms), a file
 /// that cannot be written.
-pub fn write_truth(
+pub async fn write_truth(
     request: &TruthRequest,
     scene: Scene,
     view: &View,
@@ -75,7 +77,7 @@ pub fn write_truth(
     check_folder(folder)?;
     let (viewport, scene) = (request.viewport, Arc::new(scene));
     let how = (request.oracle, request.reference_samples);
-    let truth = truth((&scene, view, viewport), None, how, gpu, sink)?;
+    let truth = truth((&scene, view, viewport), None, how, gpu, sink).await?;
     let (ground_truth, seen) = (&truth.view.ground_truth, truth.view.seen());
     let pixels = &ground_truth.pixels;
     let light = scene.light_of(view);

@@ -33,8 +33,8 @@ pub struct Diagnostics {
 ///
 /// # Errors
 /// An early end, a lost device, outputs of another size than the reference.
-pub fn diagnose(
-    session: Session,
+pub async fn diagnose(
+    session: Session<'_>,
     method: &Method,
     truth_view: &GroundTruthView<'_>,
     (outputs, layer): (&Outputs, usize),
@@ -56,7 +56,9 @@ pub fn diagnose(
     };
     let drawn = plan.outputs();
     let drawn: Vec<&str> = drawn.iter().map(|output| output.name.as_str()).collect();
-    let rendered = frame::render(session, plan, provider, &drawn).map_err(Stop::from);
+    let rendered = frame::render(session, plan, provider, &drawn)
+        .await
+        .map_err(Stop::from);
     let mut contents = match attempt(session, method, rendered)? {
         Ok((contents, _)) => contents,
         Err(reason) => return none(&reason),

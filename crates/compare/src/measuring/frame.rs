@@ -6,11 +6,12 @@
 //! use skiagraph_graph::Plan;
 //! use skiagraph_passes::SceneProvider;
 //!
-//! # fn time(session: Session, plan: Plan, scene: &mut SceneProvider) -> Result<(), ExecuteError> {
-//! let (mut executor, growth) = frame::settled(session, plan, scene)?;
+//! # type Done = Result<(), ExecuteError>;
+//! # async fn time(session: Session<'_>, plan: Plan, scene: &mut SceneProvider) -> Done {
+//! let (mut executor, growth) = frame::settled(session, plan, scene).await?;
 //! print!("{}", growth.text());
 //! for _ in 0..10 {
-//!     let (report, wall) = frame::run(session, &mut executor, &Frame::default())?;
+//!     let (report, wall) = frame::run(session, &mut executor, &Frame::default()).await?;
 //!     println!("{wall:?}, without {}", report.skipped.join(", "));
 //! }
 //! # Ok(())
@@ -21,7 +22,9 @@ use crate::error::CompareError;
 use crate::records::samples::Upkeep;
 use crate::sink::Session;
 use crate::wording::frames;
-use skiagraph_gpu::{Content, ExecuteError, Executor, Frame, FrameReport, Provider, Readback};
+use skiagraph_gpu::{
+    Content, ExecuteError, Executor, Frame, FrameReport, Provider, Readback, submitted_work,
+};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, SceneProvider};
 use std::{
@@ -40,13 +43,13 @@ pub type Contents = BTreeMap<String, Content>;
 ///
 /// # Errors
 /// The errors of the executor.
-pub fn settled(
-    session: Session,
+pub async fn settled(
+    session: Session<'_>,
     plan: Plan,
     provider: &mut dyn Provider,
 ) -> Result<(Executor, Growth), ExecuteError> {
     let mut grown = Executor::on(session.gpu, plan, provider)?;
-    let growth = grow(session, &mut grown, provider)?;
+    let growth = grow(session, &mut grown, provider).await?;
     if growth.frames == 0 || !grown.plan().remembers() {
         return Ok((grown, growth));
     }
@@ -61,14 +64,14 @@ pub fn settled(
 ///
 /// # Errors
 /// The errors of the executor.
-pub fn render(
-    session: Session,
+pub async fn render(
+    session: Session<'_>,
     plan: Plan,
     provider: &mut dyn Provider,
     names: &[&str],
 ) -> Result<(Contents, Growth), ExecuteError> {
-    let (mut executor, growth) = settled(session, plan, provider)?;
-    Ok((read(session, &mut executor, names)?, growth))
+    let (mut executor, growth) = settled(session, plan, provider).await?;
+    Ok((read(session, &mut executor, names).await?, growth))
 }
 
 /// A frame that was drawn behind a change of the scene, and what the change cost.
@@ -86,10 +89,10 @@ pub struct Drawn<T> {
 ///
 /// # Errors
 /// The errors of the executor and of `draw`.
-pub fn next<T>(
+pub async fn next<T>(
     executor: &mut Executor,
     provider: &mut SceneProvider,
-    draw: impl FnOnce(&mut Executor) -> Result<T, ExecuteError>,
+    draw: impl AsyncFnOnce(&mut Executor) -> Result<T, ExecuteError>,
 ) -> Result<Drawn<T>, ExecuteError> {
     let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
     let times = |built: &[Built], name| {
@@ -101,7 +104,7 @@ pub fn next<T>(
     let time = began.elapsed();
     let is_new = |made: &&Built| made.times > times(&built, made.name);
     let made = provider.built().iter().filter(is_new).copied().collect();
-    let frame = draw(executor)?;
+    let frame = draw(executor).await?;
     executor.grow(provider)?;
     let uploaded = provider.work().uploaded - uploaded;
     Ok(Drawn {
@@ -118,14 +121,14 @@ pub fn next<T>(
 /// The errors of the executor; [`ExecuteError::Unfinished`] for a frame that was abandoned after
 /// the GPU's timeout, or because the session's sink asked for an early end. The device cannot be
 /// used after that.
-pub fn run(
-    session: Session,
+pub async fn run(
+    session: Session<'_>,
     executor: &mut Executor,
-    frame: &Frame,
+    frame: &Frame<'_>,
 ) -> Result<(FrameReport, Duration), ExecuteError> {
     let began = Instant::now();
     submit(session, executor, frame)?;
-    let report = wait(session, executor)?;
+    let report = wait(session, executor).await?;
     Ok((report, began.elapsed()))
 }
 
@@ -187,8 +190,8 @@ impl Growth {
 ///
 /// # Errors
 /// The errors of the executor.
-pub fn grow(
-    session: Session,
+pub async fn grow(
+    session: Session<'_>,
     executor: &mut Executor,
     provider: &mut dyn Provider,
 ) -> Result<Growth, ExecuteError> {
@@ -201,30 +204,34 @@ pub fn grow(
         ..Growth::default()
     };
     while !growth.buffers.is_empty() && !growth.is_settled && growth.frames < GROWING {
-        run(session, executor, &Frame::default())?;
+        run(session, executor, &Frame::default()).await?;
         growth.frames += 1;
         growth.is_settled = executor.grow(provider)?.is_none();
     }
     Ok(growth)
 }
 
-/// How often Ctrl-C is looked for while a frame is under way.
-const POLL_INTERVAL: Duration = Duration::from_millis(100);
-
 /// Waits for a submitted frame, but no longer than the GPU's timeout, and not after Ctrl-C. The
 /// device of a frame that is given up is of no more use.
-pub(crate) fn wait(session: Session, executor: &mut Executor) -> Result<FrameReport, ExecuteError> {
+pub(crate) async fn wait(
+    session: Session<'_>,
+    executor: &mut Executor,
+) -> Result<FrameReport, ExecuteError> {
     let began = Instant::now();
+    let mut is_over = false;
     loop {
-        let passes = match executor.finish_within(Some(POLL_INTERVAL)) {
+        let passes = match executor.finish_within(Some(Duration::ZERO)) {
             Err(ExecuteError::Unfinished { passes, .. }) => passes,
             done => return done,
         };
-        if is_over(session, began) {
+        if is_over {
             abandon(session);
             let after = began.elapsed();
             return Err(ExecuteError::Unfinished { after, passes });
         }
+        submitted_work(&session.gpu.device, &session.gpu.queue).await;
+        // A frame that is done by now counts.
+        is_over = self::is_over(session, began);
     }
 }
 
@@ -256,13 +263,13 @@ pub fn failed(session: Session, graph: &str, error: ExecuteError) -> CompareErro
 ///
 /// # Errors
 /// The errors of the executor.
-pub fn read(
-    session: Session,
+pub async fn read(
+    session: Session<'_>,
     executor: &mut Executor,
     names: &[&str],
 ) -> Result<Contents, ExecuteError> {
     let frame = Frame::new().with_read(names);
-    let (report, _) = run(session, executor, &frame)?;
+    let (report, _) = run(session, executor, &frame).await?;
     Ok(contents(report.readbacks))
 }
 
@@ -282,6 +289,7 @@ mod tests {
     use crate::graphs::preset;
     use crate::measuring::device::{self, GpuRequest};
     use crate::sink::Silent;
+    use skiagraph_gpu::block_on;
 
     /// As a driver's reset does it, but on demand.
     #[test]
@@ -294,9 +302,9 @@ mod tests {
         let request = Capabilities::new(&gpu).request([16, 16], &provider);
         let plan = preset[0].graph.plan(&request).unwrap();
         let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
-        run(session, &mut executor, &Frame::default()).unwrap();
+        block_on(run(session, &mut executor, &Frame::default())).unwrap();
         gpu.device.destroy();
-        let Err(lost) = run(session, &mut executor, &Frame::default()) else {
+        let Err(lost) = block_on(run(session, &mut executor, &Frame::default())) else {
             panic!("a destroyed device ran a frame");
         };
         assert!(is_fatal(&lost), "{lost}");

@@ -89,15 +89,17 @@ impl PrimaryVisibility {
     ///
     /// # Errors
     /// The graph cannot run, or has no output `primitive`.
-    pub fn ids(
+    pub async fn ids(
         &self,
-        session: Session,
+        session: Session<'_>,
         viewport: [u32; 2],
         provider: &mut dyn Provider,
     ) -> Result<Vec<u32>, CompareError> {
         let plan = self.plan(session, viewport, provider)?;
         let rendered = frame::render(session, plan, provider, &["primitive"]);
-        let (contents, _) = rendered.map_err(|error| frame::failed(session, GBUFFER, error))?;
+        let (contents, _) = rendered
+            .await
+            .map_err(|error| frame::failed(session, GBUFFER, error))?;
         contents
             .get("primitive")
             .and_then(Content::as_u32)

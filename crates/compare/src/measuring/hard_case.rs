@@ -9,7 +9,7 @@
 //! };
 //! use skiagraph_passes::EmbeddedSources;
 //!
-//! # fn judge(session: Session) -> Result<(), Box<dyn std::error::Error>> {
+//! # async fn judge(session: Session<'_>) -> Result<(), Box<dyn std::error::Error>> {
 //! let method = load_methods(&["light_buffer"], &[], &[], &EmbeddedSources)?.remove(0);
 //! let method = method.at([128, 128]).settled(session.gpu.device.features());
 //! let context = HardCaseContext {
@@ -20,7 +20,7 @@
 //!     pictures: None,
 //! };
 //! for hard in skiagraph_cases::cases() {
-//!     for cell in context.run(&hard)?.cells {
+//!     for cell in context.run(&hard).await?.cells {
 //!         println!("{}: {:?}", hard.name, cell.verdict);
 //!     }
 //! }
@@ -158,7 +158,7 @@ impl HardCaseContext<'_> {
     /// # Errors
     /// An [early end](crate#terms), a lost device, a picture that cannot be written. All other
     /// errors are part of the result.
-    pub fn run(&self, hard: &HardCase) -> Result<Case, CompareError> {
+    pub async fn run(&self, hard: &HardCase) -> Result<Case, CompareError> {
         let scene = Arc::new(hard.scene());
         let mut provider = SceneProvider::new(scene.clone());
         let mut case = Case {
@@ -173,7 +173,7 @@ impl HardCaseContext<'_> {
             wrong_surface: 0,
             cells: Vec::new(),
         };
-        let truth_view = match self.truth_view(&scene, &mut provider) {
+        let truth_view = match self.truth_view(&scene, &mut provider).await {
             Ok(truth_view) => truth_view,
             Err(error) if error.ends_all() => return Err(error),
             Err(error) => {
@@ -205,7 +205,7 @@ impl HardCaseContext<'_> {
                     failed: None,
                     images: None,
                 };
-                match self.count(method, &mut provider, ground_truth) {
+                match self.count(method, &mut provider, ground_truth).await {
                     Ok((outputs, judgement, counts)) => {
                         let certain = case.pixels.facing_light.saturating_sub(counts.uncertain);
                         let culls = set.is_none() && run.without_culling.is_some();
@@ -236,7 +236,7 @@ impl HardCaseContext<'_> {
     }
 
     /// The ground truth of a case's only view.
-    fn truth_view<'s>(
+    async fn truth_view<'s>(
         &self,
         scene: &'s Scene,
         provider: &mut SceneProvider,
@@ -246,7 +246,10 @@ impl HardCaseContext<'_> {
             return Err(CompareError::Input(what));
         };
         provider.set_view(view, self.viewport);
-        let ids = self.primary.ids(self.session, self.viewport, provider)?;
+        let ids = self
+            .primary
+            .ids(self.session, self.viewport, provider)
+            .await?;
         let (oracle, how) = (
             Oracle::new(&scene.mesh),
             (OracleMode::Exact, REFERENCE_SAMPLES),
@@ -257,7 +260,7 @@ impl HardCaseContext<'_> {
     }
 
     /// One frame of a method, counted; of one that remembers, the worst of its steady state.
-    fn count(
+    async fn count(
         &self,
         method: &Method,
         provider: &mut SceneProvider,
@@ -266,13 +269,14 @@ impl HardCaseContext<'_> {
         let (session, preset, truth) = (self.session, &*method.preset, &ground_truth.pixels);
         let plan = method.plan(self.viewport, Capabilities::new(session.gpu), provider);
         let plan = plan.map_err(|faults| CompareError::Input(reasons(faults.iter())))?;
-        let settled = frame::settled(session, plan, provider).map_err(Stop::from);
-        let shown = settled.and_then(|(mut executor, _)| {
+        let shown: Result<_, Stop> = async {
+            let (mut executor, _) = frame::settled(session, plan, provider).await?;
             // A case has one light.
             let truth = (ground_truth, 0);
-            let mut steady = steady::settle(session, (preset, &mut executor), truth)?;
-            steady::judge(session, (preset, &mut executor), steady.as_mut(), truth)
-        });
+            let mut steady = steady::settle(session, (preset, &mut executor), truth).await?;
+            steady::judge(session, (preset, &mut executor), steady.as_mut(), truth).await
+        }
+        .await;
         let (outputs, judgement) = shown.map_err(|stop| stop.into_error(session, &preset.name))?;
         let broken = |error: Error| CompareError::InvalidOutputs(error.to_string());
         let (visibility, status) = (strict(&outputs, ground_truth), &outputs.status);

@@ -34,10 +34,10 @@ const SLOPE_BIAS: &str = "slope_bias";
 ///
 /// # Errors
 /// An early end, a lost device.
-pub fn find(
-    session: Session,
+pub async fn find(
+    session: Session<'_>,
     method: &Method,
-    (truth_view, layer): (&GroundTruthView, usize),
+    (truth_view, layer): (&GroundTruthView<'_>, usize),
     (wrong, blockers): (u64, BlockerCounts),
     provider: &mut dyn Provider,
 ) -> Result<Option<Hint>, CompareError> {
@@ -57,7 +57,8 @@ pub fn find(
         let mut params = method.params.clone();
         params.extend(changes);
         let seen = (truth_view, layer);
-        let Some(wrong_then) = wrong_with(session, &method.with(params), seen, provider)? else {
+        let Some(wrong_then) = wrong_with(session, &method.with(params), seen, provider).await?
+        else {
             continue;
         };
         if 2 * wrong_then < wrong {
@@ -103,10 +104,10 @@ fn candidates(method: &Method, cause: Cause) -> Vec<ParamValues> {
 }
 
 /// Wrong pixels of a method outside the band; `None` if it cannot run.
-fn wrong_with(
-    session: Session,
+async fn wrong_with(
+    session: Session<'_>,
     method: &Method,
-    (truth_view, layer): (&GroundTruthView, usize),
+    (truth_view, layer): (&GroundTruthView<'_>, usize),
     provider: &mut dyn Provider,
 ) -> Result<Option<u64>, CompareError> {
     let names = method.preset.judged();
@@ -115,7 +116,9 @@ fn wrong_with(
     let Ok(plan) = method.plan(truth.pixels.viewport, capabilities, provider) else {
         return Ok(None);
     };
-    let rendered = frame::render(session, plan, provider, &names).map_err(Stop::from);
+    let rendered = frame::render(session, plan, provider, &names)
+        .await
+        .map_err(Stop::from);
     let Ok((contents, _)) = attempt(session, method, rendered)? else {
         return Ok(None);
     };

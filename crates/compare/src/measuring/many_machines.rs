@@ -143,10 +143,10 @@ pub fn plan(
 /// another machine has written meanwhile with other errors or answers; the errors of
 /// [`Series::measure`]; [`CompareError::InvalidOutputs`] for graphs whose outputs are not a shadow
 /// method's.
-pub fn measure(
-    share: &Share,
-    scenes: &[SceneCells],
-    session: Session,
+pub async fn measure(
+    share: &Share<'_>,
+    scenes: &[SceneCells<'_>],
+    session: Session<'_>,
 ) -> Result<ShardOutcome, CompareError> {
     let Share { plan, shard, out } = *share;
     let own_plan = self::plan(scenes, session, plan.head.arguments.clone())?;
@@ -168,6 +168,7 @@ pub fn measure(
             for viewport in 0..comparison.viewports.len() {
                 series
                     .measure(view, viewport)
+                    .await
                     .map_err(|error| match error {
                         CompareError::Interrupted { .. } => interrupted(share),
                         error => error,

@@ -9,13 +9,13 @@
 //! };
 //! use skiagraph_passes::{EmbeddedSources, SceneProvider};
 //!
-//! # fn wrong(mut provider: SceneProvider) -> Result<(), Box<dyn std::error::Error>> {
+//! # async fn wrong(mut provider: SceneProvider) -> Result<(), Box<dyn std::error::Error>> {
 //! let (preset, params) = load_one("nsm", &[], Some(1024), &EmbeddedSources)?;
 //! let gpu = device::open(&GpuRequest::default(), [&preset.graph])?;
 //! let method = Method::new(preset, params).settled(gpu.device.features());
 //! let plan = method.plan([512, 512], Capabilities::new(&gpu), &provider)?;
 //! let session = Session::new(&gpu, &Silent);
-//! let (contents, _) = frame::render(session, plan, &mut provider, &["visibility"])?;
+//! let (contents, _) = frame::render(session, plan, &mut provider, &["visibility"]).await?;
 //! println!("{:?}", contents["visibility"].size());
 //! # Ok(())
 //! # }

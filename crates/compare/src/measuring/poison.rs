@@ -10,12 +10,12 @@
 //! # use skiagraph_passes::EmbeddedSources;
 //!
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
-//! # fn check(session: Session, mut scene: SceneProvider) -> Done {
+//! # async fn check(session: Session<'_>, mut scene: SceneProvider) -> Done {
 //! let (preset, params) = load_one("my/method.ron", &[], None, &EmbeddedSources)?;
 //! let mut request = Capabilities::new(session.gpu).request([256, 256], &scene);
 //! request.params = params;
 //! let plan = preset.plan(&request, session.sink)?;
-//! println!("{}", poison::check(session, &plan, &mut scene, &preset)?);
+//! println!("{}", poison::check(session, &plan, &mut scene, &preset).await?);
 //! # Ok(())
 //! # }
 //! ```
@@ -44,23 +44,25 @@ const AGAIN: usize = 4;
 ///
 /// # Errors
 /// Names the outputs that depend on unwritten memory; a graph that cannot run.
-pub fn check(
-    session: Session,
+pub async fn check(
+    session: Session<'_>,
     plan: &Plan,
     provider: &mut dyn Provider,
     preset: &Preset,
 ) -> Result<String, CompareError> {
     let outputs = preset.graph.default_outputs();
-    let mut render = |pattern: u8| {
+    let mut render = async |pattern: u8| {
         let plan = plan
             .with(|request| request.poison = Some(pattern))
             .map_err(|diagnostics| GraphFaults::one(&preset.name, &diagnostics))?;
         // Which items of a buffer that is too small have room is chance.
         let rendered = frame::render(session, plan, provider, &outputs);
-        let rendered = rendered.map_err(|error| frame::failed(session, &preset.name, error));
+        let rendered = rendered
+            .await
+            .map_err(|error| frame::failed(session, &preset.name, error));
         rendered.map(|(contents, _)| contents)
     };
-    let [low, high] = [render(PATTERNS[0])?, render(PATTERNS[1])?];
+    let [low, high] = [render(PATTERNS[0]).await?, render(PATTERNS[1]).await?];
     let mut differing = differences(&low, &high);
     let mut unordered = BTreeSet::new();
     for _ in 0..AGAIN {
@@ -68,7 +70,7 @@ pub fn check(
             break;
         }
         for (pattern, before) in PATTERNS.into_iter().zip([&low, &high]) {
-            let again = differences(before, &render(pattern)?);
+            let again = differences(before, &render(pattern).await?);
             unordered.extend(again.into_iter().map(|(name, _)| name));
         }
         differing.retain(|(name, _)| !unordered.contains(name));

@@ -6,8 +6,8 @@
 //! use std::sync::Arc;
 //!
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
-//! # fn time(session: Session, method: &Method, scene: Arc<Scene>) -> Done {
-//! let (profile, _) = profile(session, [5, 100], method, &scene, &scene.views[0])?;
+//! # async fn time(session: Session<'_>, method: &Method, scene: Arc<Scene>) -> Done {
+//! let (profile, _) = profile(session, [5, 100], method, &scene, &scene.views[0]).await?;
 //! for pass in &profile.passes {
 //!     println!("{}: {:.3} ms on the CPU", pass.name, pass.cpu_ms.median);
 //! }
@@ -38,8 +38,8 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// The graph cannot be planned or run here; an [early end](crate#terms) before any frame was timed.
-pub fn profile(
-    session: Session,
+pub async fn profile(
+    session: Session<'_>,
     [warmup, frames]: [u32; 2],
     method: &Method,
     scene: &Arc<Scene>,
@@ -72,7 +72,7 @@ pub fn profile(
     };
     let failed = |stop: Stop| stop.into_error(session, &method.name);
     let settled = frame::settled(session, plan, &mut provider);
-    let (mut executor, _) = settled.map_err(|error| failed(error.into()))?;
+    let (mut executor, _) = settled.await.map_err(|error| failed(error.into()))?;
     let (passes, memory) = (executor.plan().passes(), memory(executor.plan()));
     let name = conditions_in_words(method, &view.name, viewport);
     let name = format!("{}, {name}", method.name);
@@ -81,7 +81,7 @@ pub fn profile(
     let still = FrameSequence::new(&ViewOrPath::Still(view.clone()), scene, None, None)?;
     let (drawn, set_done) = ((&mut executor, &provider), |frames| step.set_done(frames));
     let timed = timing::sample(session, &still, drawn, [warmup, frames], set_done);
-    let timed = timed.map_err(failed)?;
+    let timed = timed.await.map_err(failed)?;
     step.end();
 
     let samples = Samples::new(&timed, conditions.adapter.gpu_unavailable.is_none());

@@ -2,7 +2,7 @@
 
 use crate::comparison::Protocol;
 use crate::error::CompareError;
-use crate::graphs::contract::layer_of;
+use crate::graphs::contract::{layer_of, layers};
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
 use crate::graphs::shadow_method::Outputs;
@@ -86,33 +86,36 @@ impl MeasureContext<'_> {
     /// # Errors
     /// A method that the device refuses; outputs whose size, format or values a shadow method must
     /// not have ([`CompareError::InvalidOutputs`]); an early end, a lost device.
-    pub fn judge(
+    pub async fn judge(
         &self,
         (method, planned): (&Method, &Run),
         plan: Plan,
         provider: &mut SceneProvider,
-        step: &Step,
+        step: &Step<'_>,
     ) -> Result<Judged, Stop> {
         let session = self.session;
-        let (mut executor, _) = frame::settled(session, plan, provider)?;
+        let (mut executor, _) = frame::settled(session, plan, provider).await?;
         let plan = executor.plan();
         let (memory_bytes, saved_bytes) = (plan.memory_bytes(), plan.saved_bytes());
         let (scene_bytes, layer) = (scene_bytes(session, plan, provider)?, self.layer(plan));
+        let lights = Some(layers(plan)).filter(|lights| *lights > 1);
         let truth = (&self.truth_view.ground_truth, layer);
-        let mut steady = steady::settle(session, (&method.preset, &mut executor), truth)?;
+        let mut steady = steady::settle(session, (&method.preset, &mut executor), truth).await?;
         let mut account = Account::default();
         let timed = match self.view {
             ViewOrPath::Still(_) => {
                 let drawn = (&*method.preset, &mut executor);
-                let (outputs, judgement) = steady::judge(session, drawn, steady.as_mut(), truth)?;
+                let (outputs, judgement) =
+                    steady::judge(session, drawn, steady.as_mut(), truth).await?;
                 account.add(self.path, 0, outputs, judgement)?;
                 step.set_done(1);
                 let drawn = (&mut executor, &*provider);
-                timing::sample(session, self.path.frames, drawn, [0, 1], |_| ())?
+                timing::sample(session, self.path.frames, drawn, [0, 1], |_| ()).await?
             }
             ViewOrPath::Path(_) => {
                 let walked = (method, steady.is_some());
-                self.follow(walked, &mut executor, provider, (&mut account, step))?
+                self.follow(walked, &mut executor, provider, (&mut account, step))
+                    .await?
             }
         };
         let (frame, passes) = timing::times(&timed, self.timestamps)?;
@@ -126,11 +129,15 @@ impl MeasureContext<'_> {
         let counts = &account.counts;
         let wrong = counts.wrong.total.saturating_sub(counts.wrong.in_band);
         let explained = account.blockers.filter(|_| self.hints && !is_path);
-        let hint = explained.map(|blockers| {
-            let seen = (self.truth_view, layer);
-            hint::find(session, method, seen, (wrong, blockers), provider)
-        });
-        let diagnostics = diagnose(session, method, truth_view, (&outputs, layer), provider)?;
+        let hint = match explained {
+            Some(blockers) => {
+                let seen = (self.truth_view, layer);
+                hint::find(session, method, seen, (wrong, blockers), provider).await?
+            }
+            None => None,
+        };
+        let diagnostics =
+            diagnose(session, method, truth_view, (&outputs, layer), provider).await?;
         let place = is_path.then_some(index);
         let shown = (&outputs, &judgement, &diagnostics);
         let mut images = self.draw(method, place, &truth_view.ground_truth, shown)?;
@@ -146,8 +153,9 @@ impl MeasureContext<'_> {
             rays: account.rays,
             wrong: counts.wrong,
             certain_wrong_blockers: account.blockers,
-            hint: hint.transpose()?.flatten(),
+            hint,
             facing_mismatch: counts.facing_mismatch,
+            lights,
             answer: account.answer,
             graded: account.graded(),
             edges: account.edges,
@@ -179,25 +187,25 @@ impl MeasureContext<'_> {
     /// # Errors
     /// A method that the device refuses; an early end; a lost device; outputs whose size, format or
     /// values a shadow method must not have.
-    fn follow(
+    async fn follow(
         &self,
         (method, remembered): (&Method, bool),
         executor: &mut Executor,
         provider: &mut SceneProvider,
-        (account, step): (&mut Account, &Step),
+        (account, step): (&mut Account, &Step<'_>),
     ) -> Result<Vec<TimedFrame>, Stop> {
         let (warmup, layer) = (self.protocol.warmup, self.layer(executor.plan()));
         let (frames, viewport) = (self.path.frames, executor.plan().viewport());
         let names = method.preset.judged();
         let mut takes = Takes::new(self.session, frames, viewport, provider, [executor]);
         for _ in 0..if remembered { 0 } else { warmup } {
-            takes.take(Turn::new(Kind::EveryPass, 0, false))?;
+            takes.take(Turn::new(Kind::EveryPass, 0, false)).await?;
         }
         let has_pictures = self.pictures.is_some() && self.protocol.pictures;
         let mut second = WorstSecond::new(frames.second());
         takes.read(&names);
         for (frame, truth_view) in self.path.truth_views.iter().enumerate() {
-            takes.take(Turn::new(Kind::Path, frame, true))?;
+            takes.take(Turn::new(Kind::Path, frame, true)).await?;
             let Some((contents, made)) = takes.shown() else {
                 break;
             };
@@ -246,7 +254,7 @@ impl MeasureContext<'_> {
     ///
     /// # Errors
     /// An early end, a lost device.
-    pub fn times(
+    pub async fn times(
         &self,
         methods: &mut [Judged],
         group: u32,
@@ -258,7 +266,7 @@ impl MeasureContext<'_> {
         let frames = self.path.frames;
         let mut takes = Takes::new(self.session, frames, viewport, provider, executors);
         for (turn, count) in self.schedule().into_iter().zip(1..) {
-            takes.take(turn)?;
+            takes.take(turn).await?;
             done(count);
         }
         let timed = takes.end();

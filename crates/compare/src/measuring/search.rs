@@ -53,9 +53,9 @@ pub struct Found {
 ///
 /// # Errors
 /// The errors of `trial`.
-pub fn search<E>(
+pub async fn search<E>(
     axes: &[Axis],
-    trial: impl FnMut(&[usize], f64) -> Result<Trial, E>,
+    trial: impl AsyncFnMut(&[usize], f64) -> Result<Trial, E>,
 ) -> Result<Found, E> {
     let mut search = Search {
         axes,
@@ -68,9 +68,9 @@ pub fn search<E>(
             is_whole: true,
         },
     };
-    search.visit(vec![0; axes.len()])?;
+    search.visit(vec![0; axes.len()]).await?;
     while search.found.is_whole && search.found.error > 0.0 {
-        if !search.singles()? && !search.pairs()? {
+        if !search.singles().await? && !search.pairs().await? {
             break;
         }
     }
@@ -86,13 +86,13 @@ struct Search<'a, T> {
     found: Found,
 }
 
-impl<E, T: FnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
+impl<E, T: AsyncFnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
     /// Tries a combination; true if it is the best so far.
-    fn visit(&mut self, point: Point) -> Result<bool, E> {
+    async fn visit(&mut self, point: Point) -> Result<bool, E> {
         if !self.found.is_whole || !self.known.insert(point.clone()) {
             return Ok(false);
         }
-        match (self.trial)(&point, self.found.error)? {
+        match (self.trial)(&point, self.found.error).await? {
             Trial::Ended => {
                 self.found.is_whole = false;
                 return Ok(false);
@@ -115,12 +115,12 @@ impl<E, T: FnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
     }
 
     /// Tries all values of each param by itself, until none helps; true if any did.
-    fn singles(&mut self) -> Result<bool, E> {
+    async fn singles(&mut self) -> Result<bool, E> {
         let mut any = false;
         loop {
             let mut helps = false;
             for axis in 0..self.axes.len() {
-                helps |= self.change([(axis, None)])?;
+                helps |= self.change([(axis, None)]).await?;
             }
             if !helps {
                 return Ok(any);
@@ -130,7 +130,7 @@ impl<E, T: FnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
     }
 
     /// Tries all values of two params together; true as soon as the values of two help.
-    fn pairs(&mut self) -> Result<bool, E> {
+    async fn pairs(&mut self) -> Result<bool, E> {
         let axes = self.axes;
         let pairs =
             (0..axes.len()).flat_map(|one| (one + 1..axes.len()).map(move |two| (one, two)));
@@ -144,7 +144,7 @@ impl<E, T: FnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
         for (one, two) in pairs {
             let mut helps = false;
             for value in 0..axes[one].values {
-                helps |= self.change([(one, Some(value)), (two, None)])?;
+                helps |= self.change([(one, Some(value)), (two, None)]).await?;
             }
             if helps {
                 return Ok(true);
@@ -155,7 +155,10 @@ impl<E, T: FnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
 
     /// Changes the best combination: params with a value get it, the last one all of its values in
     /// turn. True if that helps.
-    fn change<const N: usize>(&mut self, changes: [(usize, Option<usize>); N]) -> Result<bool, E> {
+    async fn change<const N: usize>(
+        &mut self,
+        changes: [(usize, Option<usize>); N],
+    ) -> Result<bool, E> {
         let mut helps = false;
         let Some(&(last, _)) = changes.last() else {
             return Ok(false);
@@ -165,7 +168,7 @@ impl<E, T: FnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
             for &(axis, given) in &changes {
                 point[axis] = given.unwrap_or(value);
             }
-            helps |= self.visit(point)?;
+            helps |= self.visit(point).await?;
         }
         Ok(helps)
     }
@@ -175,6 +178,7 @@ impl<E, T: FnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
 mod tests {
     use super::*;
     use itertools::Itertools;
+    use skiagraph_gpu::block_on;
 
     const AXES: [Axis; 4] = [
         Axis {
@@ -204,7 +208,7 @@ mod tests {
     /// Searches with at most `most` trials; checks that none is repeated.
     fn searched(most: usize, error: impl Fn(&[usize]) -> f64) -> Found {
         let mut seen: Vec<Point> = Vec::new();
-        let outcome = search(&AXES, |point, best| {
+        let outcome = search(&AXES, async |point, best| {
             if seen.len() == most {
                 return Ok::<_, ()>(Trial::Ended);
             }
@@ -217,7 +221,7 @@ mod tests {
                 Trial::Worse
             })
         });
-        let outcome = outcome.unwrap();
+        let outcome = block_on(outcome).unwrap();
         assert_eq!(outcome.tried as usize, seen.len());
         outcome
     }

@@ -9,12 +9,12 @@
 //! use std::path::Path;
 //!
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
-//! # fn measure(comparison: &Comparison, session: Session) -> Done {
+//! # async fn measure(comparison: &Comparison, session: Session<'_>) -> Done {
 //! comparison.check(session)?;
 //! let mut series = Series::new(comparison, session, Some((Path::new("out"), Kept::Others)))?;
 //! for view in 0..comparison.views.len() {
 //!     for viewport in 0..comparison.viewports.len() {
-//!         series.measure(view, viewport)?; // and writes `out/results.json`
+//!         series.measure(view, viewport).await?; // and writes `out/results.json`
 //!         for run in series.runs(view, viewport) {
 //!             println!("{}", run.label());
 //!         }
@@ -30,7 +30,6 @@ use crate::graphs::contract::layer_of;
 use crate::graphs::faults::{is_mistake, reasons};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
-use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::frame_sequence::FrameSequence;
 use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView, trace};
 use crate::measuring::resume::Kept;
@@ -98,12 +97,12 @@ pub struct Series<'a> {
 /// # Errors
 /// The errors of [`Comparison::check`] and [`Series::measure`]; [`CompareError::InvalidOutputs`]
 /// for the graphs in [`Series::broken`].
-pub fn run(comparison: &Comparison, session: Session) -> Result<Results, CompareError> {
+pub async fn run(comparison: &Comparison, session: Session<'_>) -> Result<Results, CompareError> {
     comparison.check(session)?;
     let mut series = Series::new(comparison, session, None)?;
     for view in 0..comparison.views.len() {
         for viewport in 0..comparison.viewports.len() {
-            series.measure(view, viewport)?;
+            series.measure(view, viewport).await?;
         }
     }
     match series.broken.iter().join("\n") {
@@ -268,7 +267,7 @@ impl<'a> Series<'a> {
     ///
     /// # Panics
     /// If an index is out of range.
-    pub fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
+    pub async fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
         let places = self.places(view, viewport);
         let (view, viewport) = (
             &self.comparison.views[view],
@@ -287,7 +286,7 @@ impl<'a> Series<'a> {
         if !places.clone().any(|place| self.is_missing(place)) {
             return Ok(());
         }
-        let truth_views = self.truth_views(view, &frames, viewport)?;
+        let truth_views = self.truth_views(view, &frames, viewport).await?;
         let path = GroundTruthFrames::new(&frames, truth_views, self.session.sink)?;
         let Some(truth_view) = path.truth_views.first() else {
             return Ok(());
@@ -316,22 +315,22 @@ impl<'a> Series<'a> {
         let missing: Vec<(usize, &Method)> = missing
             .filter(|(place, _)| self.is_missing(*place))
             .collect();
-        self.measure_methods(&context, &missing)
+        self.measure_methods(&context, &missing).await
     }
 
     /// Judges methods one by one and keeps each with provisional times, so that an early end keeps
     /// it; then times them in turns, as many at once as fit the memory, with the first of all in
     /// each group.
-    fn measure_methods(
+    async fn measure_methods(
         &mut self,
-        context: &MeasureContext,
+        context: &MeasureContext<'_>,
         missing: &[(usize, &Method)],
     ) -> Result<(), CompareError> {
         let room = self.session.gpu.memory.map_or(ROOM, |bytes| bytes / 2);
         let (mut places, mut group): (Vec<usize>, Vec<Judged>) = Default::default();
         let mut groups = 0;
         for &(place, method) in missing {
-            let mut judged = match self.attempt(context, (place, method))? {
+            let mut judged = match self.attempt(context, (place, method)).await? {
                 Ok(judged) => judged,
                 Err(run) => {
                     self.keep(place, *run, &[])?;
@@ -340,7 +339,7 @@ impl<'a> Series<'a> {
             };
             let bytes: u64 = group.iter().map(Judged::bytes).sum();
             if group.len() > 1 && bytes + judged.bytes() > room {
-                self.time(context, &places, &mut group, groups)?;
+                self.time(context, &places, &mut group, groups).await?;
                 // The anchor stays.
                 places.truncate(1);
                 group.truncate(1);
@@ -351,13 +350,13 @@ impl<'a> Series<'a> {
             places.push(place);
             group.push(judged);
         }
-        self.time(context, &places, &mut group, groups)
+        self.time(context, &places, &mut group, groups).await
     }
 
     /// Times a group of methods in turns, and keeps their runs.
-    fn time(
+    async fn time(
         &mut self,
-        context: &MeasureContext,
+        context: &MeasureContext<'_>,
         places: &[usize],
         group: &mut [Judged],
         index: u32,
@@ -371,7 +370,9 @@ impl<'a> Series<'a> {
         let name = format!("{methods} in turns, {} {viewport}", context.view.name());
         let step = Step::begin(self.session.sink, &name, turns, "turns");
         let set_done = |turns| step.set_done(turns);
-        let runs = context.times(group, index, &self.provider, set_done)?;
+        let runs = context
+            .times(group, index, &self.provider, set_done)
+            .await?;
         step.end();
         // The anchor's run is that of its first group.
         let anchors = usize::from(index > 0);
@@ -390,9 +391,9 @@ impl<'a> Series<'a> {
     ///
     /// # Errors
     /// Ctrl-C, a lost device, a picture that cannot be written.
-    fn attempt(
+    async fn attempt(
         &mut self,
-        context: &MeasureContext,
+        context: &MeasureContext<'_>,
         (place, method): (usize, &Method),
     ) -> Result<Result<Judged, Box<Run>>, CompareError> {
         let (planned, path) = (&self.planned[place], context.path.frames);
@@ -422,7 +423,8 @@ impl<'a> Series<'a> {
             ViewOrPath::Path(_) => u64::from(context.protocol.warmup) + path.poses.len() as u64,
         };
         let step = Step::begin(self.session.sink, &name, frames, "frames");
-        let outcome = context.judge((method, planned), plan, &mut self.provider, &step);
+        let judged = context.judge((method, planned), plan, &mut self.provider, &step);
+        let outcome = judged.await;
         match attempt(self.session, method, outcome) {
             Err(CompareError::InvalidOutputs(reason)) => {
                 let run = unavailable(reason.clone());
@@ -516,7 +518,7 @@ impl<'a> Series<'a> {
     }
 
     /// The ground truth of each frame.
-    fn truth_views<'m>(
+    async fn truth_views<'m>(
         &mut self,
         view: &ViewOrPath,
         frames: &'m FrameSequence,
@@ -532,7 +534,8 @@ impl<'a> Series<'a> {
         } = self.comparison.protocol;
         let (session, count) = (self.session, frames.poses.len());
         let id = cell::truth_id(self.comparison, view, viewport);
-        let truth_view = |(index, pose): (usize, &CameraPose)| {
+        let mut truth_views = Vec::with_capacity(count);
+        for (index, pose) in frames.poses.iter().enumerate() {
             frames.show(index, viewport, &mut self.provider)?;
             let oracle: Rc<Oracle<'m>> = match &frames.meshes {
                 Some(meshes) => Rc::new(Oracle::new(&meshes[index])),
@@ -546,7 +549,7 @@ impl<'a> Series<'a> {
             let name = format!("visible triangles, {what}");
             let step = Step::begin(session.sink, &name, 1, "frames");
             let primary = &self.comparison.primary;
-            let ids = primary.ids(session, viewport, &mut self.provider)?;
+            let ids = primary.ids(session, viewport, &mut self.provider).await?;
             step.end();
             let (camera, light) = (pose.camera(viewport), self.provider.light());
             let (how, heard) = ((mode, reference_samples), (&*what, session.sink));
@@ -564,9 +567,9 @@ impl<'a> Series<'a> {
                 }
             };
             let (camera, seen) = ((camera, light), (ids, mode));
-            Ok(GroundTruthView::traced(oracle, camera, seen, truth))
-        };
-        frames.poses.iter().enumerate().map(truth_view).collect()
+            truth_views.push(GroundTruthView::traced(oracle, camera, seen, truth));
+        }
+        Ok(truth_views)
     }
 
     /// Returns the oracle of the scene's own mesh.

@@ -34,8 +34,8 @@ const SAME: f32 = 1.0 / 1024.0;
 ///
 /// # Errors
 /// The errors of [`judge`].
-pub fn settle(
-    session: Session,
+pub async fn settle(
+    session: Session<'_>,
     (preset, executor): (&Preset, &mut Executor),
     (ground_truth, layer): (&GroundTruth, usize),
 ) -> Result<Option<Steady>, Stop> {
@@ -45,7 +45,7 @@ pub fn settle(
     let (mut pictures, mut begin) = (Pictures::default(), Vec::new());
     while pictures.period.is_none() && pictures.frames < MOST {
         session.check_stopped()?;
-        let contents = frame::read(session, executor, &preset.judged())?;
+        let contents = frame::read(session, executor, &preset.judged()).await?;
         let shown = contents.get(VISIBILITY);
         pictures.add(shown.map_or(Shown::Bits(0), Shown::new));
         let frames = pictures.frames as u32;
@@ -154,8 +154,8 @@ impl Pictures {
 ///
 /// # Errors
 /// An early end; the errors of the executor; outputs that are not those of a shadow method.
-pub fn judge(
-    session: Session,
+pub async fn judge(
+    session: Session<'_>,
     (preset, executor): (&Preset, &mut Executor),
     steady: Option<&mut Steady>,
     (ground_truth, layer): (&GroundTruth, usize),
@@ -166,7 +166,7 @@ pub fn judge(
     let mut worst: Option<(usize, Outputs)> = None;
     for _ in 0..pictures {
         session.check_stopped()?;
-        let contents = frame::read(session, executor, &preset.judged())?;
+        let contents = frame::read(session, executor, &preset.judged()).await?;
         let (outputs, judgement) = judged(preset, (contents, layer), ground_truth)?;
         let is_worse = |(worst, _): &(usize, _)| judgement.is_worse_than(&judgements[*worst]);
         if worst.as_ref().is_none_or(is_worse) {

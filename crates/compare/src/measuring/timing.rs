@@ -160,7 +160,7 @@ impl<'t, 'e> Takes<'t, 'e> {
     ///
     /// # Errors
     /// An early end; positions that are not finite.
-    pub fn take(&mut self, turn: Turn) -> Result<(), CompareError> {
+    pub async fn take(&mut self, turn: Turn) -> Result<(), CompareError> {
         match turn.kind {
             Kind::EveryPass | Kind::Path => {
                 self.frames
@@ -179,7 +179,7 @@ impl<'t, 'e> Takes<'t, 'e> {
             if self.takes[index].timed.is_err() {
                 continue;
             }
-            let frame = self.frame(index, turn);
+            let frame = self.frame(index, turn).await;
             let take = &mut self.takes[index];
             match (frame, &mut take.timed) {
                 (Err(ExecuteError::Unfinished { .. }), _) if self.session.is_stopped() => {
@@ -202,26 +202,26 @@ impl<'t, 'e> Takes<'t, 'e> {
     }
 
     /// Times a frame of one executor.
-    fn frame(&mut self, index: usize, turn: Turn) -> Result<TimedFrame, ExecuteError> {
+    async fn frame(&mut self, index: usize, turn: Turn) -> Result<TimedFrame, ExecuteError> {
         let (executor, provider) = (&mut *self.takes[index].executor, &mut self.provider);
         let (session, first) = (self.session, self.first);
         let request = Frame::new().with_seconds(self.frames.seconds(turn.frame));
         let request = request.with_read(self.read);
-        let draw = |executor: &mut Executor| {
+        let draw = async |executor: &mut Executor| {
             // A frame with timing is never left out.
-            let is_rest = turn.kind == Kind::Moved(Regime::Nothing);
-            let rest = is_rest.then(|| rest(session, executor, &request));
-            if let Some((frame, cpu)) = rest.transpose()?.flatten() {
+            if turn.kind == Kind::Moved(Regime::Nothing)
+                && let Some((frame, cpu)) = rest(session, executor, &request).await?
+            {
                 return Ok((frame, cpu, Contents::new()));
             }
             let is_whole = turn.kind == Kind::EveryPass;
             let request = request.with_timing(true).with_all(is_whole);
             let began = first.elapsed();
-            let (mut report, wall) = frame::run(session, executor, &request)?;
+            let (mut report, wall) = frame::run(session, executor, &request).await?;
             let contents = frame::contents(std::mem::take(&mut report.readbacks));
             Ok((timed_frame(report, began, wall)?, Duration::ZERO, contents))
         };
-        let drawn = frame::next(executor, provider, draw)?;
+        let drawn = frame::next(executor, provider, draw).await?;
         let ((frame, rested, shown), upkeep) = (drawn.frame, drawn.upkeep);
         // Resources that no pass reads, made for others that one does, stay this method's own.
         let read = executor.plan().provided();
@@ -266,15 +266,15 @@ fn is_read(built: &Built, read: &[&str]) -> bool {
 
 /// Runs a frame without timing. If no pass ran, returns a frame without times, and the time that
 /// the CPU took.
-fn rest(
-    session: Session,
+async fn rest(
+    session: Session<'_>,
     executor: &mut Executor,
-    request: &Frame,
+    request: &Frame<'_>,
 ) -> Result<Option<(TimedFrame, Duration)>, ExecuteError> {
     let began = Instant::now();
     frame::submit(session, executor, request)?;
     let cpu = began.elapsed();
-    let report = frame::wait(session, executor)?;
+    let report = frame::wait(session, executor).await?;
     let passes = executor.plan().passes().len();
     let frame = || TimedFrame {
         began: Duration::ZERO,
@@ -292,8 +292,8 @@ fn rest(
 ///
 /// # Errors
 /// Those of the executor.
-pub fn sample(
-    session: Session,
+pub async fn sample(
+    session: Session<'_>,
     frames: &FrameSequence,
     (executor, provider): (&mut Executor, &SceneProvider),
     [warmup, timed]: [u32; 2],
@@ -304,7 +304,7 @@ pub fn sample(
     for index in 0..u64::from(warmup) + u64::from(timed) {
         // Warm-up frames are timed too: they then do the same work.
         let is_kept = index >= u64::from(warmup);
-        match takes.take(Turn::new(Kind::EveryPass, 0, is_kept)) {
+        match takes.take(Turn::new(Kind::EveryPass, 0, is_kept)).await {
             Err(CompareError::Interrupted { .. }) => break,
             taken => taken?,
         }

@@ -129,7 +129,7 @@ impl<'a> Trials<'a> {
     ///
     /// # Errors
     /// An early end; a lost device.
-    pub fn run(&mut self, params: &ParamValues, best: f64) -> Result<Trial, CompareError> {
+    pub async fn run(&mut self, params: &ParamValues, best: f64) -> Result<Trial, CompareError> {
         self.session.check_stopped()?;
         if self.left < 1 + self.views.len() as u64 {
             return Ok(Trial::Ended);
@@ -141,7 +141,7 @@ impl<'a> Trials<'a> {
         if self.holds_memory && !self.is_small(params)? {
             return Ok(Trial::Worse);
         }
-        let trial = self.judged(&set, best);
+        let trial = self.judged(&set, best).await;
         match attempt(self.session, self.method, trial) {
             Err(CompareError::InvalidOutputs(_)) => Ok(Trial::Worse),
             trial => trial.map(|trial| trial.unwrap_or(Trial::Worse)),
@@ -187,13 +187,13 @@ impl<'a> Trials<'a> {
     ///
     /// # Errors
     /// An early end, a lost device.
-    pub fn is_quick(&mut self, params: &ParamValues) -> Result<bool, CompareError> {
+    pub async fn is_quick(&mut self, params: &ParamValues) -> Result<bool, CompareError> {
         let (Some(most), Some(view)) = (self.limits.budgets.frame_ms, self.views.first()) else {
             return Ok(true);
         };
         let set = self.method.with(params.clone());
         self.provider.set_view(&view.view, self.viewport);
-        let timed = self.timed(&set, &view.view);
+        let timed = self.timed(&set, &view.view).await;
         Ok(match attempt(self.session, &set, timed)? {
             Ok(Some(ms)) => ms <= MARGIN * most,
             Ok(None) | Err(_) => false,
@@ -210,7 +210,7 @@ impl<'a> Trials<'a> {
     }
 
     /// Median milliseconds of a frame with every pass; `None` if it cannot be planned.
-    fn timed(&mut self, set: &Method, view: &View) -> Result<Option<f64>, Stop> {
+    async fn timed(&mut self, set: &Method, view: &View) -> Result<Option<f64>, Stop> {
         if !self.plan(set)? {
             return Ok(None);
         }
@@ -218,11 +218,11 @@ impl<'a> Trials<'a> {
             return Ok(None);
         };
         executor.refresh(self.provider)?;
-        frame::grow(self.session, executor, self.provider)?;
+        frame::grow(self.session, executor, self.provider).await?;
         let still = ViewOrPath::Still(view.clone());
         let frames = FrameSequence::new(&still, self.provider.scene(), None, None)?;
         let drawn = (executor, &*self.provider);
-        let timed = timing::sample(self.session, &frames, drawn, TIMED, |_| ())?;
+        let timed = timing::sample(self.session, &frames, drawn, TIMED, |_| ()).await?;
         let (frame, _) = timing::times(&timed, self.limits.has_timestamps)?;
         let spread = frame.spread(false).or_else(|| frame.spread(true));
         Ok(spread.map(|spread| spread.median))
@@ -249,7 +249,7 @@ impl<'a> Trials<'a> {
         !idle.is_empty()
     }
 
-    fn judged(&mut self, set: &Method, best: f64) -> Result<Trial, Stop> {
+    async fn judged(&mut self, set: &Method, best: f64) -> Result<Trial, Stop> {
         let (mut error, mut planned) = (0.0, None);
         let mut errors: Vec<(f64, &TrialView)> = Vec::new();
         for view in self.views.clone() {
@@ -261,7 +261,7 @@ impl<'a> Trials<'a> {
                 }
                 planned = Some(lights);
             }
-            let wrong = self.error_on(set, view)?;
+            let wrong = self.error_on(set, view).await?;
             errors.push((wrong, view));
             error += wrong / self.counted(view);
             if error > best {
@@ -310,15 +310,15 @@ impl<'a> Trials<'a> {
 
     /// Error on one view, in pixels: wrong ones outside the band, or the sum of squared errors of
     /// the shares of light.
-    fn error_on(&mut self, set: &Method, view: &TrialView) -> Result<f64, Stop> {
+    async fn error_on(&mut self, set: &Method, view: &TrialView<'_>) -> Result<f64, Stop> {
         let Some(executor) = &mut self.executor else {
             return Ok(f64::INFINITY);
         };
         executor.refresh(self.provider)?;
-        let growth = frame::grow(self.session, executor, self.provider)?;
+        let growth = frame::grow(self.session, executor, self.provider).await?;
         let names = set.preset.judged();
         let request = Frame::new().with_all(true).with_read(&names);
-        let (report, _) = frame::run(self.session, executor, &request)?;
+        let (report, _) = frame::run(self.session, executor, &request).await?;
         self.left = self.left.saturating_sub(1 + u64::from(growth.frames));
         let layer = layer_of(executor.plan(), self.provider.light_number()).unwrap_or_default();
         let shown = (frame::contents(report.readbacks), layer);

@@ -12,9 +12,9 @@
 //! };
 //!
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
-//! # fn fair(mut comparison: Comparison, session: Session) -> Done {
-//! tune(&mut comparison, session)?;
-//! for run in series::run(&comparison, session)?.runs {
+//! # async fn fair(mut comparison: Comparison, session: Session<'_>) -> Done {
+//! tune(&mut comparison, session).await?;
+//! for run in series::run(&comparison, session).await?.runs {
 //!     if let Some(tuned) = &run.tuned {
 //!         println!("{} is {} with {}", run.preset, tuned.of, tuned.words());
 //!     }
@@ -87,7 +87,7 @@ const LONGEST_SIDE: u32 = 8192;
 /// The errors of [`Comparison::check`]; a comparison of camera paths; no method with params to
 /// tune; no other view of the scene that can be generated; an [early end](crate#terms), a lost
 /// device, a reference that cannot be computed. The comparison is unchanged after an error.
-pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), CompareError> {
+pub async fn tune(comparison: &mut Comparison, session: Session<'_>) -> Result<(), CompareError> {
     comparison.check(Session::new(session.gpu, &Silent))?;
     let scene = comparison.scene.clone();
     let methods = comparison.settled(session);
@@ -104,7 +104,8 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
         session,
         &mut provider,
         (chosen_on, viewport),
-    )?;
+    )
+    .await?;
     let limits = Limits {
         work: most - most / RESERVE,
         budgets: comparison.budgets,
@@ -119,7 +120,7 @@ pub fn tune(comparison: &mut Comparison, session: Session) -> Result<(), Compare
         }
         let method = method.at(viewport);
         let trials = Trials::new(session, &method, &views, &mut provider, limits);
-        let Some((params, record)) = best(session, (&method, is_soft), trials, most)? else {
+        let Some((params, record)) = best(session, (&method, is_soft), trials, most).await? else {
             session.sink.note(&format!(
                 "{} is not tuned: it cannot run on the views that settings are chosen on, \
                  remembers earlier frames, or no pixel faces a light that it takes",
@@ -332,10 +333,10 @@ fn under_lights(other: &View, views: &[View]) -> Vec<View> {
 }
 
 /// The ground truth of views in a viewport.
-fn trial_views<'s>(
+async fn trial_views<'s>(
     comparison: &Comparison,
     scene: &'s Arc<Scene>,
-    session: Session,
+    session: Session<'_>,
     provider: &mut SceneProvider,
     (views, viewport): (Vec<View>, [u32; 2]),
 ) -> Result<Vec<TrialView<'s>>, CompareError> {
@@ -344,24 +345,25 @@ fn trial_views<'s>(
     step.end();
     let protocol = &comparison.protocol;
     let how = (protocol.oracle, protocol.reference_samples);
-    let trial_view = |view: View| {
+    let mut trial_views = Vec::with_capacity(views.len());
+    for view in views {
         provider.set_view(&view, viewport);
-        let ids = comparison.primary.ids(session, viewport, provider)?;
+        let ids = comparison.primary.ids(session, viewport, provider).await?;
         let (camera, light) = (view.camera(viewport), scene.light_of(&view));
         let what = format!("{} {}", view.name, size(viewport));
         let heard = (&*what, session.sink);
         let truth = GroundTruthView::new(oracle.clone(), camera, light, ids, how, heard)?;
-        Ok(TrialView { view, light, truth })
-    };
-    views.into_iter().map(trial_view).collect()
+        trial_views.push(TrialView { view, light, truth });
+    }
+    Ok(trial_views)
 }
 
 /// The best setting of a method: its params, and what is to be recorded but for the views; `None`
 /// if the method runs on none of the views.
-fn best(
-    session: Session,
+async fn best(
+    session: Session<'_>,
     (method, is_soft): (&Method, bool),
-    mut trials: Trials,
+    mut trials: Trials<'_>,
     most: u64,
 ) -> Result<Option<(ParamValues, Tuned)>, CompareError> {
     if trials.is_blind() {
@@ -372,6 +374,7 @@ fn best(
         values: axis.values.len(),
         is_word: axis.is_word,
     });
+    let ways: Vec<Axis> = ways.collect();
     let params_of = |point: &[usize]| {
         let mut params = method.params.clone();
         for (axis, &value) in axes.iter().zip(point).filter(|(_, value)| **value > 0) {
@@ -385,9 +388,9 @@ fn best(
     // Every setting that was the best so far, the defaults first.
     let mut bests: Vec<(ParamValues, f64)> = Vec::new();
     let mut default_error = None;
-    let outcome = search(&ways.collect::<Vec<_>>(), |point, best| {
+    let outcome = search(&ways, async |point, best| {
         let params = params_of(point);
-        let trial = trials.run(&params, best)?;
+        let trial = trials.run(&params, best).await?;
         step.set_done(most - trials.left());
         if let Trial::Error(error) = trial {
             if point.iter().all(|value| *value == 0) {
@@ -396,12 +399,13 @@ fn best(
             bests.push((params, error));
         }
         Ok::<_, CompareError>(trial)
-    })?;
+    });
+    let outcome = outcome.await?;
     bests.retain(|(params, error)| *error > outcome.error || *params == params_of(&outcome.point));
     trials.allow(most / RESERVE);
     let mut chosen = None;
     while let (None, Some(best)) = (&chosen, bests.pop()) {
-        chosen = within_budgets(method, &mut trials, best)?;
+        chosen = within_budgets(method, &mut trials, best).await?;
     }
     step.end();
     let Some(default_error) = default_error else {
@@ -431,13 +435,13 @@ fn best(
 /// A setting that keeps to the budgets, with the largest map that does and is no worse; with the
 /// largest smaller map if it keeps to them with none as large as its own. `None` if it keeps to
 /// them with no map. Without budgets the setting as it is.
-fn within_budgets(
+async fn within_budgets(
     method: &Method,
-    trials: &mut Trials,
+    trials: &mut Trials<'_>,
     (params, error): (ParamValues, f64),
 ) -> Result<Option<(ParamValues, f64)>, CompareError> {
-    let keeps = |params: &ParamValues, trials: &mut Trials| {
-        Ok::<_, CompareError>(trials.is_small(params)? && trials.is_quick(params)?)
+    let keeps = async |params: &ParamValues, trials: &mut Trials| {
+        Ok::<_, CompareError>(trials.is_small(params)? && trials.is_quick(params).await?)
     };
     let with = |size: u32| {
         let mut params = params.clone();
@@ -445,11 +449,11 @@ fn within_budgets(
         params
     };
     let (larger, smaller) = map_sizes(method);
-    if !keeps(&params, trials)? {
+    if !keeps(&params, trials).await? {
         for size in smaller {
             let params = with(size);
-            if keeps(&params, trials)?
-                && let Trial::Error(error) = trials.run(&params, f64::INFINITY)?
+            if keeps(&params, trials).await?
+                && let Trial::Error(error) = trials.run(&params, f64::INFINITY).await?
             {
                 return Ok(Some((params, error)));
             }
@@ -460,10 +464,10 @@ fn within_budgets(
     if trials.has_budgets() {
         for size in larger {
             let params = with(size);
-            if !keeps(&params, trials)? {
+            if !keeps(&params, trials).await? {
                 break;
             }
-            match trials.run(&params, best.1)? {
+            match trials.run(&params, best.1).await? {
                 Trial::Error(error) if error < best.1 => best = (params, error),
                 Trial::Error(_) | Trial::Worse | Trial::Same => {}
                 Trial::Ended => break,

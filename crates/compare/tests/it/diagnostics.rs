@@ -9,6 +9,7 @@ use skiagraph_compare::{
     measuring::{resume::Kept, series},
     sink::Session,
 };
+use skiagraph_gpu::block_on;
 use skiagraph_scene::{DirectionalLight, View};
 use std::fs;
 
@@ -148,6 +149,6 @@ fn diagnostics_of_another_format_are_told_and_left_out() {
         assert!(notes.contains(part), "{notes}");
     }
     // It is measured, and behind the results an error.
-    let error = series::run(&comparison, Session::new(gpu(), &heard)).unwrap_err();
+    let error = block_on(series::run(&comparison, Session::new(gpu(), &heard))).unwrap_err();
     assert!(error.to_string().contains("expected R32Float"), "{error}");
 }

@@ -8,6 +8,7 @@ use skiagraph_compare::{
     measuring::series::run,
     sink::{Session, Silent},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_passes::EmbeddedSources;
 use skiagraph_scene::{DirectionalLight, Indexed, Light, Scene, View};
 use std::{error::Error, sync::Arc};
@@ -48,7 +49,7 @@ fn shadows_of_our_scene_are_right() -> Result<(), Box<dyn Error>> {
     comparison.viewports = vec![[64, 64]];
     comparison.protocol.frames = 1; // times are not asked for
     comparison.protocol.regime_frames = 0;
-    let results = run(&comparison, Session::new(&gpu, &Silent))?;
+    let results = block_on(run(&comparison, Session::new(&gpu, &Silent)))?;
     let [exact, mapped] = &results.runs[..] else {
         return Err("two methods on one view are two runs".into());
     };

@@ -19,6 +19,7 @@ use skiagraph_compare::{
     },
     sink::{Session, Silent},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_reference::WrongCounts;
 use skiagraph_scene::Scene;
 use std::{fs, path::PathBuf, sync::Arc};
@@ -45,7 +46,7 @@ fn shown(scene: &Arc<Scene>, methods: &[&str], map: u32) -> Vec<Shown> {
     compared.protocol.data = Some(DataFormat::Npy);
     let session = Session::new(gpu(), &Silent);
     let mut series = Series::new(&compared, session, Some((folder.path(), Kept::Nothing))).unwrap();
-    series.measure(0, 0).unwrap();
+    block_on(series.measure(0, 0)).unwrap();
     let files: Vec<PathBuf> = fs::read_dir(folder.path())
         .unwrap()
         .map(|file| file.unwrap().path())
@@ -102,7 +103,13 @@ fn judging(pictures: Vec<PathBuf>) -> Judging {
 /// Judges pictures of the first view of a scene.
 fn judged(scene: &Arc<Scene>, judging: &Judging) -> Result<JudgedPictures, String> {
     let (scene, view) = ((**scene).clone(), scene.views[0].clone());
-    let judged = judge(judging, scene, &view, &GpuRequest::default(), &Silent);
+    let judged = block_on(judge(
+        judging,
+        scene,
+        &view,
+        &GpuRequest::default(),
+        &Silent,
+    ));
     judged
         .map(|judged| judged.record)
         .map_err(|error| error.to_string())
@@ -174,7 +181,15 @@ fn what_is_written_as_truth_judges_pictures() {
             ..TruthRequest::new(SIZE)
         };
         let (view, gpu) = (scene.views[0].clone(), GpuRequest::default());
-        let lines = write_truth(&request, (*scene).clone(), &view, &out, &gpu, &Silent).unwrap();
+        let lines = block_on(write_truth(
+            &request,
+            (*scene).clone(),
+            &view,
+            &out,
+            &gpu,
+            &Silent,
+        ))
+        .unwrap();
         let read = |name: &str| {
             let file = format!("{name}.{}", format.extension());
             assert!(
@@ -246,7 +261,15 @@ fn ids_of_another_camera_are_told() {
         format: DataFormat::Npy,
         ..TruthRequest::new(SIZE)
     };
-    write_truth(&request, (*scene).clone(), &view, out, &gpu, &Silent).unwrap();
+    block_on(write_truth(
+        &request,
+        (*scene).clone(),
+        &view,
+        out,
+        &gpu,
+        &Silent,
+    ))
+    .unwrap();
     // Upside down.
     let ids = Raster::read(&out.join("ids.npy")).unwrap();
     let rows = ids.values.chunks_exact(SIZE[0] as usize).rev().flatten();
@@ -530,14 +553,14 @@ fn bad_shadows_of_the_right_camera_have_a_rank_and_acne_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let (view, gpu) = (scene.views[0].clone(), GpuRequest::default());
     let request = TruthRequest::new(SIZE);
-    write_truth(
+    block_on(write_truth(
         &request,
         (*scene).clone(),
         &view,
         folder.path(),
         &gpu,
         &Silent,
-    )
+    ))
     .unwrap();
     let acne = shown(&scene, &["nsm@cull=none,bias=0,slope_bias=0"], 512).remove(0);
     let striped = write(&folder, "acne.exr", &acne.shares);

@@ -6,7 +6,7 @@ use skiagraph_compare::{
     measuring::frame::{self, Contents},
     sink::{Session, Silent},
 };
-use skiagraph_gpu::Frame;
+use skiagraph_gpu::{Frame, block_on};
 use skiagraph_graph::Plan;
 use skiagraph_passes::SceneProvider;
 use std::{fs, path::Path};
@@ -32,10 +32,10 @@ fn frames(
 ) -> (String, Vec<Contents>) {
     let session = Session::new(gpu(), &Silent);
     let (plan, mut provider) = planned(name, folder, side);
-    let (mut executor, growth) = frame::settled(session, plan, &mut provider).unwrap();
+    let (mut executor, growth) = block_on(frame::settled(session, plan, &mut provider)).unwrap();
     let frames = (0..count).map(|_| {
         let frame = Frame::new().with_read(read);
-        let (report, _) = frame::run(session, &mut executor, &frame).unwrap();
+        let (report, _) = block_on(frame::run(session, &mut executor, &frame)).unwrap();
         frame::contents(report.readbacks)
     });
     let frames = frames.collect();

@@ -10,6 +10,7 @@ use skiagraph_compare::{
     records::stress::Guarantee,
     sink::{Session, Silent},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_passes::EmbeddedSources;
 use std::{fs, path::Path};
 
@@ -34,7 +35,7 @@ fn judge(methods: &[MethodRun], name: &str, side: u32, pictures: Option<&Path>) 
         viewport: [side; 2],
         pictures,
     };
-    let case = context.run(&case(name).unwrap());
+    let case = block_on(context.run(&case(name).unwrap()));
     serde_json::to_value(case.unwrap_or_else(|error| panic!("{error}"))).unwrap()
 }
 

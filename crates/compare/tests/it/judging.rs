@@ -15,6 +15,7 @@ use skiagraph_compare::{
     },
     sink::{Session, Silent},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_graph::Sources;
 use skiagraph_passes::EmbeddedSources;
 use skiagraph_reference::OracleMode;
@@ -29,7 +30,7 @@ fn png(path: &Path) -> image::RgbImage {
 
 /// Why a comparison ends early.
 fn refused(comparison: &Comparison) -> String {
-    let outcome = series::run(comparison, Session::new(gpu(), &Silent));
+    let outcome = block_on(series::run(comparison, Session::new(gpu(), &Silent)));
     outcome.unwrap_err().to_string()
 }
 
@@ -324,7 +325,7 @@ fn what_fits_is_measured_and_the_rest_says_why_it_does_not() {
         comparison.viewports = vec![[16, 16]];
         let graphs = comparison.methods.iter().map(|method| &method.preset.graph);
         let gpu = device::open(&request, graphs).unwrap();
-        series::run(&comparison, Session::new(&gpu, &Silent))
+        block_on(series::run(&comparison, Session::new(&gpu, &Silent)))
     };
     let runs = compare(&["lit.ron", "nsm"]).unwrap().runs;
     assert!(runs[0].measured.is_some());

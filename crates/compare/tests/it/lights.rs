@@ -20,6 +20,7 @@ use skiagraph_compare::{
     },
     sink::Session,
 };
+use skiagraph_gpu::block_on;
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use std::{fs, path::Path};
 
@@ -370,7 +371,7 @@ fn whatever_cannot_run_is_a_row_with_its_reason() {
         heard.notes()
     );
     let mut series = Series::new(&compared, session, None).unwrap();
-    series.measure(0, 0).unwrap();
+    block_on(series.measure(0, 0)).unwrap();
     let runs = &series.results.runs;
     assert_eq!(runs.len(), rows.len());
     for ((word, expected), run) in rows.iter().zip(runs) {

@@ -7,6 +7,7 @@ use skiagraph_compare::{
     measuring::{poison, view_or_path::ViewOrPath},
     sink::{Session, Silent},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_passes::SceneProvider;
 use std::{fs, path::Path};
 
@@ -22,7 +23,12 @@ fn checked(name: &str, folder: &Path) -> Result<String, CompareError> {
     let preset = &comparison.methods[0].preset;
     let request = Capabilities::new(gpu()).request(viewport, &provider);
     let plan = preset.plan(&request, &Silent)?;
-    poison::check(Session::new(gpu(), &Silent), &plan, &mut provider, preset)
+    block_on(poison::check(
+        Session::new(gpu(), &Silent),
+        &plan,
+        &mut provider,
+        preset,
+    ))
 }
 
 #[test]

@@ -8,6 +8,7 @@ use skiagraph_compare::{
     records::{profile::Profile, read_back},
     sink::{Session, Silent},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_passes::EmbeddedSources;
 use std::{fs, path::Path};
 
@@ -16,7 +17,13 @@ fn profile(name: &str, viewport: [u32; 2], map_size: &[u32]) -> Profile {
     let method = load_methods(&[name], &[], map_size, &EmbeddedSources).unwrap();
     let method = method[0].at(viewport).settled(gpu().device.features());
     let session = Session::new(gpu(), &Silent);
-    let timed = profiling::profile(session, [0, 6], &method, &park(), &park().views[0]);
+    let timed = block_on(profiling::profile(
+        session,
+        [0, 6],
+        &method,
+        &park(),
+        &park().views[0],
+    ));
     timed.unwrap_or_else(|error| panic!("{error}")).0
 }
 

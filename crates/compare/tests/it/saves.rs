@@ -12,6 +12,7 @@ use skiagraph_compare::{
     },
     sink::{Session, Silent},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_passes::SceneProvider;
 use skiagraph_scene::{DirectionalLight, Scene, View};
 use std::{collections::BTreeSet, fs, path::Path, sync::Arc};
@@ -109,7 +110,7 @@ fn saved_of(
     let names: BTreeSet<&str> = decodings.iter().map(|(.., name)| name.as_str()).collect();
     let names: Vec<&str> = names.into_iter().collect();
     let session = Session::new(gpu(), &Silent);
-    let (contents, _) = frame::render(session, plan, &mut provider, &names).unwrap();
+    let (contents, _) = block_on(frame::render(session, plan, &mut provider, &names)).unwrap();
     let write =
         |(save, decoding, name): &(&Save, Decoding, String)| write(save, &contents[name], decoding);
     decodings.iter().map(write).collect()

@@ -13,6 +13,7 @@ use skiagraph_compare::{
     },
     sink::{Session, Silent, Sink},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{FolderSources, LayeredSources};
 use skiagraph_passes::EmbeddedSources;
@@ -124,7 +125,7 @@ pub fn timed(mut comparison: Comparison, [warmup, frames, regime_frames]: [u32; 
 
 /// The runs of a comparison, as `results.json` has them.
 pub fn runs(comparison: &Comparison) -> Vec<Value> {
-    let results = series::run(comparison, Session::new(gpu(), &Silent));
+    let results = block_on(series::run(comparison, Session::new(gpu(), &Silent)));
     let results = results.unwrap_or_else(|error| panic!("{error}"));
     let runs = results.runs.iter();
     runs.map(|run| serde_json::to_value(run).unwrap()).collect()
@@ -190,7 +191,7 @@ pub fn keep(
     let mut series = Series::new(comparison, session, Some((out, kept)))?;
     for view in 0..comparison.views.len() {
         for viewport in 0..comparison.viewports.len() {
-            series.measure(view, viewport)?;
+            block_on(series.measure(view, viewport))?;
         }
     }
     series.save(&[])?;

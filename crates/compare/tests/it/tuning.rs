@@ -11,6 +11,7 @@ use skiagraph_compare::{
     records::{hint::Cause, results::Run},
     sink::{Session, Silent},
 };
+use skiagraph_gpu::block_on;
 use skiagraph_scene::{DirectionalLight, View};
 use std::path::Path;
 
@@ -41,7 +42,7 @@ fn session() -> Session<'static> {
 }
 
 fn runs(comparison: &Comparison) -> Vec<Run> {
-    let results = series::run(comparison, session());
+    let results = block_on(series::run(comparison, session()));
     results.unwrap_or_else(|error| panic!("{error}")).runs
 }
 
@@ -52,7 +53,7 @@ fn wrong(run: &Run) -> u64 {
 #[test]
 fn what_helps_on_other_views_helps_on_the_judged_one() {
     let mut comparison = sheets(&["nsm", "rt"]);
-    tune(&mut comparison, session()).unwrap_or_else(|error| panic!("{error}"));
+    block_on(tune(&mut comparison, session())).unwrap_or_else(|error| panic!("{error}"));
     let runs = runs(&comparison);
     let [nsm, tuned, rt] = &runs[..] else {
         panic!("three runs, not {}", runs.len())
@@ -116,7 +117,7 @@ fn of_several_views_every_second_one_is_chosen_on() {
         .iter()
         .map(|view| view.name().into())
         .collect();
-    tune(&mut comparison, session()).unwrap_or_else(|error| panic!("{error}"));
+    block_on(tune(&mut comparison, session())).unwrap_or_else(|error| panic!("{error}"));
     let judged: Vec<&str> = comparison.views.iter().map(|view| view.name()).collect();
     assert_eq!(judged, [&*names[0], &*names[2]]);
     for tuning in comparison.tuned.values() {
@@ -136,7 +137,7 @@ fn a_budget_of_memory_gives_the_largest_map_that_keeps_it() {
     let mut large = sheets(&["nsm@cull=none,slope_bias=1,fit=receivers,bias=0"]);
     large.budgets.memory_bytes = Some(24 << 20);
     let sizes = [small, large].map(|mut comparison| {
-        tune(&mut comparison, session()).unwrap_or_else(|error| panic!("{error}"));
+        block_on(tune(&mut comparison, session())).unwrap_or_else(|error| panic!("{error}"));
         let runs = runs(&comparison);
         let tuned = runs.last().unwrap();
         let measured = tuned.measured.as_ref().unwrap();
@@ -150,7 +151,7 @@ fn a_budget_of_memory_gives_the_largest_map_that_keeps_it() {
 #[test]
 fn what_cannot_be_tuned_is_told() {
     let refused = |mut comparison: Comparison| {
-        let error = tune(&mut comparison, session()).unwrap_err();
+        let error = block_on(tune(&mut comparison, session())).unwrap_err();
         error.to_string()
     };
     let exact = refused(sheets(&["rt", "light_buffer"]));

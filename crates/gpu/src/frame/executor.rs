@@ -108,6 +108,13 @@ impl Executor {
         &self.runner.pipelines
     }
 
+    /// Returns the name of the first pass that works on the CPU
+    /// ([`CpuWork`](crate::CpuWork)), for which [`submit`](Self::submit) waits within a frame.
+    /// `None` if all passes run on the GPU.
+    pub fn waits_in(&self) -> Option<&str> {
+        Some(&self.runner.state.on_cpu()?.name.value)
+    }
+
     /// Encodes the passes of a frame into `encoder`, which the host then submits, and returns the
     /// frame's number, counted from 0 and never given twice. It never waits; any number of frames
     /// may be in flight. Several may be encoded before the first is submitted, with changes of

@@ -1,12 +1,13 @@
 //! Builds tables with a row for each method or pass and a column for each light or size. Nothing is
 //! averaged over lights.
 
-use crate::summary::Row;
+use crate::summary::{Row, Wrong};
 use crate::summary_table::{Summary, summaries};
 use crate::table::{or_dash, terminal};
 use crate::verdict::main_choice;
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
+use skiagraph_compare::records::regimes::Regime;
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::wording::{bytes, ms, percent, size};
@@ -34,10 +35,15 @@ pub fn by_summary<'a>(
 }
 
 /// Returns, for each viewport with several lights, its size in pixels and a table with a row for
-/// each method and a column for each light. Cells show the percentage of the pixels facing the
-/// light that are wrong outside the band (the pixels whose answer rounding decides), over all
-/// views; the milliseconds of a frame, the mean of the views' medians; and the memory, the most on
-/// a view.
+/// each method, a column for each light, and one for all lights at once. Cells show the percentage
+/// of the pixels facing the light that are wrong outside the band (the pixels whose answer rounding
+/// decides), over all views; the milliseconds of a frame, the mean of the views' medians; and the
+/// memory, the most on a view.
+///
+/// A frame of all lights draws the first light as its column says, and then of each other light the
+/// passes that run when it moves: a G-buffer is drawn once at most. Its memory is the most of a
+/// light, as the lights are drawn one after another in the same. A method that computes several
+/// lights at once has the frame of its first column.
 pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     let summaries = summaries(results);
     let mut tables = Vec::new();
@@ -51,15 +57,49 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
         if lights.len() < 2 {
             continue;
         }
-        let cell = |summary: &Summary, row: &Row| {
+        let of_row = |summary: &Summary, row: &Row| {
             let wrong = row.wrong();
-            let share = percent(wrong.outside_band, wrong.facing_light);
-            let time = or_dash(row.frame_ms(main_choice(&summary.rows)), ms);
-            format!("{share}, {time} ms, {}", bytes(row.bytes()))
+            let time = row.frame_ms(main_choice(&summary.rows));
+            text([wrong.outside_band, wrong.facing_light], time, row.bytes())
         };
-        tables.push((viewport, by_summary(&lights, cell)));
+        let mut table = by_summary(&lights, of_row);
+        table.heads.push(format!("all {} at once", lights.len()));
+        for cells in &mut table.rows {
+            let rows = lights.iter().map(|(_, summary)| {
+                let mut rows = summary.rows.iter().filter(|row| row.views() > 0);
+                Some((*summary, rows.find(|row| row.label == cells[0])?))
+            });
+            let rows: Option<Vec<_>> = rows.collect();
+            cells.push(or_dash(rows.and_then(|rows| at_once(&rows)), |text| text));
+        }
+        tables.push((viewport, table));
     }
     tables
+}
+
+/// The cell of the wrong pixels among all that face the light, milliseconds of a frame and memory.
+fn text([wrong, facing]: [u64; 2], time: Option<f64>, memory: u64) -> String {
+    let (share, time) = (percent(wrong, facing), or_dash(time, ms));
+    format!("{share}, {time} ms, {}", bytes(memory))
+}
+
+/// The cell of all lights, from a method's rows under each.
+fn at_once(rows: &[(&Summary, &Row)]) -> Option<String> {
+    let (first, others) = rows.split_first()?;
+    let has_all = first
+        .1
+        .runs()
+        .any(|(_, measured)| measured.lights.is_some());
+    let others = others.iter().filter(|_| !has_all);
+    let others = others.map(|(_, row)| row.frame_ms(Some(Regime::Light)));
+    let first = first.1.frame_ms(main_choice(&first.0.rows));
+    let time = [first].into_iter().chain(others).sum();
+    let rows = rows.iter().map(|(_, row)| row);
+    let wrong = rows.clone().map(|row| row.wrong());
+    let count =
+        |sum: [u64; 2], wrong: Wrong| [sum[0] + wrong.outside_band, sum[1] + wrong.facing_light];
+    let memory = rows.map(|row| row.bytes()).max().unwrap_or_default();
+    Some(text(wrong.fold([0; 2], count), time, memory))
 }
 
 /// Returns the GPU time of each pass as text: a table for each method, with a row for each pass and

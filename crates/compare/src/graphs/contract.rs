@@ -83,14 +83,18 @@ fn lights_read(plan: &Plan) -> Vec<usize> {
     numbers.sorted().collect()
 }
 
+/// Returns the number of layers of a plan's `visibility`: of lights that a frame computes at once.
+pub fn layers(plan: &Plan) -> u32 {
+    let outputs = plan.outputs();
+    let layers = outputs.iter().find(|output| output.name == VISIBILITY);
+    layers.map_or(1, |output| output.layers)
+}
+
 /// Returns the layer of a plan's `visibility` that holds the answer for the light with the index
 /// `light` among the scene's lights: its only layer, or the one that stands in the place of the
 /// light among those that the plan reads. `None` if the plan has an answer for other lights alone.
 pub fn layer_of(plan: &Plan, light: usize) -> Option<usize> {
-    let outputs = plan.outputs();
-    let layers = outputs.iter().find(|output| output.name == VISIBILITY);
-    let layers = layers.map_or(1, |output| output.layers as usize);
-    let read = lights_read(plan);
+    let (layers, read) = (layers(plan) as usize, lights_read(plan));
     match layers {
         1 => Some(0),
         _ if read.len() == layers => read.iter().position(|read| *read == light),

@@ -13,7 +13,7 @@
 
 use crate::error::CompareError;
 use crate::graphs::argument::Assignment;
-use crate::graphs::contract::{FLOATS, INTEGERS};
+use crate::graphs::contract::{FLOATS, INTEGERS, layers};
 use crate::graphs::faults::{GraphFaults, is_mistake, reasons};
 use crate::graphs::light_kinds;
 use crate::graphs::method::{self, Method};
@@ -164,10 +164,7 @@ impl PlanCheck {
 /// several layers, one for each light. False if the method cannot be planned on `device`.
 pub fn is_layered(method: &Method, device: &Capabilities, provider: &SceneProvider) -> bool {
     let plan = method.plan(method.viewport, device.clone(), provider);
-    plan.is_ok_and(|plan| {
-        let mut outputs = plan.outputs().into_iter();
-        outputs.any(|output| output.name == VISIBILITY && output.layers > 1)
-    })
+    plan.is_ok_and(|plan| layers(&plan) > 1)
 }
 
 /// Returns the mistake of a graph without the output `visibility`.

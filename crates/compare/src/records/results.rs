@@ -502,6 +502,10 @@ pub struct Measured {
     /// Number of pixels that face the light by the [reference](crate#terms) but not by the method's
     /// output `status`, or the other way round.
     pub facing_mismatch: u64,
+    /// Number of lights whose shadows a frame computes at once, all of them in its times; absent if
+    /// it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lights: Option<u32>,
     /// Kind of the answers: 0 and 1, or [shares of light](crate#terms). Of shares, `certain`,
     /// `split` and `wrong` count one half or more as lit.
     pub answer: Answer,
@@ -826,6 +830,7 @@ pub(crate) mod tests {
                 none: 396,
             }),
             facing_mismatch: 3,
+            lights: None,
             answer: Answer::Hard,
             graded: Graded {
                 rmse: 0.071,

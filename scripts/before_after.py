@@ -26,7 +26,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 RENAMED = ROOT / "scripts" / "renamed.txt"
-SMALL = "--size 64x48 --frames 2 --warmup 1 --cached-frames 1"
+SMALL = "--size 64x48 --frames 2 --warmup 1 --regime-frames 1"
 # The commands of the first part measure by themselves.
 MEASURING = f"""
 presets --format markdown

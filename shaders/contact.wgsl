@@ -55,11 +55,11 @@ fn leave_unless_stopped(pixel: vec2<u32>) {
         let seen = dot(relative_to_eye(textureLoad(position, at, 0).xyz), camera.forward);
         var hit = Hit(ray.t_max, id, 0.0, 0.0);
         let is_known = id != UNKNOWN_PRIMITIVE;
-        if id == NO_PRIMITIVE || is_known && id == own {
+        if id == NO_PRIMITIVE || (is_known && id == own) {
             continue;
         }
-        if clip.w - seen > rise && clip.w - seen < params.thickness * distance
-            || params.thickness == 0.0 && is_known && intersect(sheared(ray), id, begin, &hit) {
+        if (clip.w - seen > rise && clip.w - seen < params.thickness * distance)
+            || (params.thickness == 0.0 && is_known && intersect(sheared(ray), id, begin, &hit)) {
             return;
         }
     }

@@ -64,7 +64,7 @@ fn main(
         let word = word_of(tile, lane);
         let low = atomicLoad(&with_ray[2u * tile]);
         let own = atomicLoad(&with_ray[word]) & ((1u << (lane % 32u)) - 1u);
-        if (mine >> tile & 1u) != 0u {
+        if ((mine >> tile) & 1u) != 0u {
             let in_tile = countOneBits(own) + select(0u, countOneBits(low), lane >= 32u);
             append(group_first + before + in_tile, pixel_of(group.xy, tile, local.xy));
         }

@@ -139,6 +139,6 @@ fn place(corner: u32, lane: u32, triangle: LightTriangle, tag: u32) -> u32 {
     let in_high = countOneBits(low) + countOneBits(high & (bit - 1u));
     let before = select(in_low, in_high, word == 1u);
     let slot = group_first + 3u * before + lane % 3u;
-    selected[slot] = CasterCorner(texels[lane], corner / 3u | tag);
+    selected[slot] = CasterCorner(texels[lane], (corner / 3u) | tag);
     return slot;
 }

@@ -174,7 +174,7 @@ fn lit_samples(asking: Asking, asked: Asked) -> u32 {
             walk.rounds += 3u;
         }
         ask_tracer(asking, asked.t_min, &walk);
-        if finds_no_other(&walk) && walk.found.x == NO_PRIMITIVE || walk.rounds >= MOST_ROUNDS {
+        if (finds_no_other(&walk) && walk.found.x == NO_PRIMITIVE) || walk.rounds >= MOST_ROUNDS {
             break;
         }
         walk.rounds += 5u;
@@ -248,38 +248,38 @@ fn samples_under(coarse: ptr<function, CoarseSamples>, primitive: u32) -> vec2<u
     }
     let box = coarse_box(unpacked_box(boxes[primitive]), (*coarse).receiver);
     var bits = vec2(0u);
-    if samples > 0u { bits.x |= bits_between((*coarse).words[0], box) >> 15u & 0x10001u; }
-    if samples > 1u { bits.x |= bits_between((*coarse).words[1], box) >> 14u & 0x20002u; }
-    if samples > 2u { bits.x |= bits_between((*coarse).words[2], box) >> 13u & 0x40004u; }
-    if samples > 3u { bits.x |= bits_between((*coarse).words[3], box) >> 12u & 0x80008u; }
-    if samples > 4u { bits.x |= bits_between((*coarse).words[4], box) >> 11u & 0x100010u; }
-    if samples > 5u { bits.x |= bits_between((*coarse).words[5], box) >> 10u & 0x200020u; }
-    if samples > 6u { bits.x |= bits_between((*coarse).words[6], box) >> 9u & 0x400040u; }
-    if samples > 7u { bits.x |= bits_between((*coarse).words[7], box) >> 8u & 0x800080u; }
-    if samples > 8u { bits.x |= bits_between((*coarse).words[8], box) >> 7u & 0x1000100u; }
-    if samples > 9u { bits.x |= bits_between((*coarse).words[9], box) >> 6u & 0x2000200u; }
-    if samples > 10u { bits.x |= bits_between((*coarse).words[10], box) >> 5u & 0x4000400u; }
-    if samples > 11u { bits.x |= bits_between((*coarse).words[11], box) >> 4u & 0x8000800u; }
-    if samples > 12u { bits.x |= bits_between((*coarse).words[12], box) >> 3u & 0x10001000u; }
-    if samples > 13u { bits.x |= bits_between((*coarse).words[13], box) >> 2u & 0x20002000u; }
-    if samples > 14u { bits.x |= bits_between((*coarse).words[14], box) >> 1u & 0x40004000u; }
-    if samples > 15u { bits.x |= bits_between((*coarse).words[15], box) >> 0u & 0x80008000u; }
-    if samples > 32u { bits.y |= bits_between((*coarse).words[16], box) >> 15u & 0x10001u; }
-    if samples > 33u { bits.y |= bits_between((*coarse).words[17], box) >> 14u & 0x20002u; }
-    if samples > 34u { bits.y |= bits_between((*coarse).words[18], box) >> 13u & 0x40004u; }
-    if samples > 35u { bits.y |= bits_between((*coarse).words[19], box) >> 12u & 0x80008u; }
-    if samples > 36u { bits.y |= bits_between((*coarse).words[20], box) >> 11u & 0x100010u; }
-    if samples > 37u { bits.y |= bits_between((*coarse).words[21], box) >> 10u & 0x200020u; }
-    if samples > 38u { bits.y |= bits_between((*coarse).words[22], box) >> 9u & 0x400040u; }
-    if samples > 39u { bits.y |= bits_between((*coarse).words[23], box) >> 8u & 0x800080u; }
-    if samples > 40u { bits.y |= bits_between((*coarse).words[24], box) >> 7u & 0x1000100u; }
-    if samples > 41u { bits.y |= bits_between((*coarse).words[25], box) >> 6u & 0x2000200u; }
-    if samples > 42u { bits.y |= bits_between((*coarse).words[26], box) >> 5u & 0x4000400u; }
-    if samples > 43u { bits.y |= bits_between((*coarse).words[27], box) >> 4u & 0x8000800u; }
-    if samples > 44u { bits.y |= bits_between((*coarse).words[28], box) >> 3u & 0x10001000u; }
-    if samples > 45u { bits.y |= bits_between((*coarse).words[29], box) >> 2u & 0x20002000u; }
-    if samples > 46u { bits.y |= bits_between((*coarse).words[30], box) >> 1u & 0x40004000u; }
-    if samples > 47u { bits.y |= bits_between((*coarse).words[31], box) >> 0u & 0x80008000u; }
+    if samples > 0u { bits.x |= (bits_between((*coarse).words[0], box) >> 15u) & 0x10001u; }
+    if samples > 1u { bits.x |= (bits_between((*coarse).words[1], box) >> 14u) & 0x20002u; }
+    if samples > 2u { bits.x |= (bits_between((*coarse).words[2], box) >> 13u) & 0x40004u; }
+    if samples > 3u { bits.x |= (bits_between((*coarse).words[3], box) >> 12u) & 0x80008u; }
+    if samples > 4u { bits.x |= (bits_between((*coarse).words[4], box) >> 11u) & 0x100010u; }
+    if samples > 5u { bits.x |= (bits_between((*coarse).words[5], box) >> 10u) & 0x200020u; }
+    if samples > 6u { bits.x |= (bits_between((*coarse).words[6], box) >> 9u) & 0x400040u; }
+    if samples > 7u { bits.x |= (bits_between((*coarse).words[7], box) >> 8u) & 0x800080u; }
+    if samples > 8u { bits.x |= (bits_between((*coarse).words[8], box) >> 7u) & 0x1000100u; }
+    if samples > 9u { bits.x |= (bits_between((*coarse).words[9], box) >> 6u) & 0x2000200u; }
+    if samples > 10u { bits.x |= (bits_between((*coarse).words[10], box) >> 5u) & 0x4000400u; }
+    if samples > 11u { bits.x |= (bits_between((*coarse).words[11], box) >> 4u) & 0x8000800u; }
+    if samples > 12u { bits.x |= (bits_between((*coarse).words[12], box) >> 3u) & 0x10001000u; }
+    if samples > 13u { bits.x |= (bits_between((*coarse).words[13], box) >> 2u) & 0x20002000u; }
+    if samples > 14u { bits.x |= (bits_between((*coarse).words[14], box) >> 1u) & 0x40004000u; }
+    if samples > 15u { bits.x |= (bits_between((*coarse).words[15], box) >> 0u) & 0x80008000u; }
+    if samples > 32u { bits.y |= (bits_between((*coarse).words[16], box) >> 15u) & 0x10001u; }
+    if samples > 33u { bits.y |= (bits_between((*coarse).words[17], box) >> 14u) & 0x20002u; }
+    if samples > 34u { bits.y |= (bits_between((*coarse).words[18], box) >> 13u) & 0x40004u; }
+    if samples > 35u { bits.y |= (bits_between((*coarse).words[19], box) >> 12u) & 0x80008u; }
+    if samples > 36u { bits.y |= (bits_between((*coarse).words[20], box) >> 11u) & 0x100010u; }
+    if samples > 37u { bits.y |= (bits_between((*coarse).words[21], box) >> 10u) & 0x200020u; }
+    if samples > 38u { bits.y |= (bits_between((*coarse).words[22], box) >> 9u) & 0x400040u; }
+    if samples > 39u { bits.y |= (bits_between((*coarse).words[23], box) >> 8u) & 0x800080u; }
+    if samples > 40u { bits.y |= (bits_between((*coarse).words[24], box) >> 7u) & 0x1000100u; }
+    if samples > 41u { bits.y |= (bits_between((*coarse).words[25], box) >> 6u) & 0x2000200u; }
+    if samples > 42u { bits.y |= (bits_between((*coarse).words[26], box) >> 5u) & 0x4000400u; }
+    if samples > 43u { bits.y |= (bits_between((*coarse).words[27], box) >> 4u) & 0x8000800u; }
+    if samples > 44u { bits.y |= (bits_between((*coarse).words[28], box) >> 3u) & 0x10001000u; }
+    if samples > 45u { bits.y |= (bits_between((*coarse).words[29], box) >> 2u) & 0x20002000u; }
+    if samples > 46u { bits.y |= (bits_between((*coarse).words[30], box) >> 1u) & 0x40004000u; }
+    if samples > 47u { bits.y |= (bits_between((*coarse).words[31], box) >> 0u) & 0x80008000u; }
     return select(bits, vec2(0u), box.is_behind);
 }
 

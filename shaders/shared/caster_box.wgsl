@@ -31,12 +31,13 @@ fn packed_box(box: Box) -> vec4<u32> {
     let largest = max(size.x, max(size.y, max(size.z, 1e-30)));
     let step = (bitcast<u32>(largest / 254.0) + 0x7fffffu) & 0x7f800000u;
     let steps = vec3<u32>(ceil(size / bitcast<f32>(step)));
-    return vec4(bitcast<vec3<u32>>(box.low), step << 1u | steps.x << 16u | steps.y << 8u | steps.z);
+    let word = (step << 1u) | (steps.x << 16u) | (steps.y << 8u) | steps.z;
+    return vec4(bitcast<vec3<u32>>(box.low), word);
 }
 
 fn unpacked_box(words: vec4<u32>) -> Box {
     let low = bitcast<vec3<f32>>(words.xyz);
-    let step = bitcast<f32>(words.w >> 1u & 0x7f800000u);
+    let step = bitcast<f32>((words.w >> 1u) & 0x7f800000u);
     let steps = vec3(words.w >> 16u, words.w >> 8u, words.w) & vec3(0xffu);
     return Box(low, low + vec3<f32>(vec3<i32>(steps)) * step);
 }
@@ -57,8 +58,8 @@ fn coarse(at: f32) -> u32 {
 }
 
 fn coarse_word(one: vec2<f32>, other: vec2<f32>) -> u32 {
-    let low = coarse(one.x) | coarse(one.y) << 8u;
-    return GUARDS | low | coarse(other.x) << 16u | coarse(other.y) << 24u;
+    let low = coarse(one.x) | (coarse(one.y) << 8u);
+    return GUARDS | low | (coarse(other.x) << 16u) | (coarse(other.y) << 24u);
 }
 
 // The box as samples see it from the receiver: words that hold the least and the most of their
@@ -77,8 +78,8 @@ fn coarse_box(box: Box, receiver: vec3<f32>) -> CoarseBox {
     let at_farthest = 1.0 / max(high.z * light_area.radius, 1e-30);
     let x = coarse_range(low.x, high.x, at_nearest, at_farthest);
     let y = coarse_range(low.y, high.y, at_nearest, at_farthest);
-    let least = (x.x | y.x << 8u) * 0x10001u;
-    let most = (x.y | y.y << 8u) * 0x10001u + 2u * GUARDS;
+    let least = (x.x | (y.x << 8u)) * 0x10001u;
+    let most = (x.y | (y.y << 8u)) * 0x10001u + 2u * GUARDS;
     return CoarseBox(least, most, high.z < 0.0);
 }
 
@@ -96,5 +97,5 @@ fn coarse_range(low: f32, high: f32, at_nearest: f32, at_farthest: f32) -> vec2<
 // borrowing from the next.
 fn bits_between(word: u32, box: CoarseBox) -> u32 {
     let within = (word - box.least) & (box.most - word);
-    return within & within << 8u;
+    return within & (within << 8u);
 }

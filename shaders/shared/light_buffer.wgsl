@@ -110,17 +110,17 @@ struct Edge {
 // A byte for either component, x above y, from -127 to 127 for -1 to 1.
 fn inward_bytes(inward: vec2<f32>) -> u32 {
     let bytes = vec2<u32>(vec2<i32>(round(inward * 127.0))) & vec2(0xffu);
-    return bytes.x << 8u | bytes.y;
+    return (bytes.x << 8u) | bytes.y;
 }
 
 // 16 bits for the least depth in the texel, and two edges of 24 bits: `inward`, and in the top byte
 // of a word the distance, in the same numbers.
 fn entry_key(depth: f32, one: Edge, other: Edge) -> vec2<u32> {
-    let low = (one.inward & 0xff00u) << 8u | coarse_depth(depth);
-    let high = (one.inward & 0xffu) << 16u | other.inward;
+    let low = ((one.inward & 0xff00u) << 8u) | coarse_depth(depth);
+    let high = ((one.inward & 0xffu) << 16u) | other.inward;
     return vec2(
-        distance_byte(one.distance, low) << 24u | low,
-        distance_byte(other.distance, high) << 24u | high,
+        (distance_byte(one.distance, low) << 24u) | low,
+        (distance_byte(other.distance, high) << 24u) | high,
     );
 }
 

@@ -6,5 +6,5 @@ const BLOCKS: u32 = 16u;
 
 // `lane`: number of the thread in its workgroup.
 fn pixel_of(group: vec2<u32>, lane: u32, block: u32) -> vec2<u32> {
-    return 32u * group + vec2(2u * block + (lane & 1u), lane / 8u * 4u + (lane / 2u & 3u));
+    return 32u * group + vec2(2u * block + (lane & 1u), lane / 8u * 4u + ((lane / 2u) & 3u));
 }

@@ -1,7 +1,8 @@
-// Light spaces of several points of one light, each where a binding may begin.
+// Light spaces of several points of one light, each where a binding may begin: every 256 bytes.
 
 #import "shared/light.wgsl"
 
 struct LightSlot {
-    @size(256) light: Light,
+    light: Light,
+    rest: array<vec4<f32>, 7>,
 }

@@ -20,8 +20,8 @@ struct MapFit {
     w: vec4<f32>,
 }
 
-// Maps in layers lie in one buffer, each where a device can bind it alone: every 256 bytes. (GLSL
-// does not know `@size`, and naga passes over it there.)
+// Maps in layers lie in one buffer, each where a device can bind it alone: every 256 bytes. (Where
+// naga writes GLSL or WGSL it passes over `@size`.)
 struct MapFitSlot {
     fit: MapFit,
     rest: array<vec4<f32>, 12>,

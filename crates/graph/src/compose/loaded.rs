@@ -21,13 +21,14 @@ use crate::{
     picture::Picture,
     shader::{
         expand::ShaderFiles,
+        mixed,
         store::{self, Shaders},
         unused,
     },
     source::{
         paths::{escapes, include_candidates},
         sources::Sources,
-        span::{Located, Span},
+        span::{Located, SourceFile, Span},
     },
 };
 use std::{
@@ -180,6 +181,27 @@ impl Loaded {
         for (unused, shader) in self.unused_in_shaders() {
             reports.warn(ShaderError::Unused(unused.what, unused.name, shader));
         }
+        for file in self.own_shader_files() {
+            for mixed::Mixed { first, second, at } in mixed::find(&file.text) {
+                let at = Span {
+                    file: file.clone(),
+                    range: at,
+                };
+                reports.warn(ShaderError::Mixed(first, second, at));
+            }
+        }
+    }
+
+    /// Returns the files of the shaders of the document's own passes, with those that they import.
+    fn own_shader_files(&self) -> impl Iterator<Item = &SourceFile> {
+        let shaders = self.document.passes().flat_map(|pass| &pass.shaders);
+        let variants = shaders.flat_map(|shader| self.shaders.variants(&self.document, shader));
+        let files = variants.flat_map(|variant| {
+            let imported = variant.source.imports.iter().map(|line| &line.file);
+            std::iter::once(&variant.source.file).chain(imported)
+        });
+        let files: BTreeMap<&str, &SourceFile> = files.map(|file| (&*file.name, file)).collect();
+        files.into_values()
     }
 
     /// Returns the unused items of the shaders of the document's own passes, whatever modules they

@@ -131,6 +131,11 @@ mistakes! {
         .at(at, "it is not clear which one this pass runs")
         .help(format!("name one of `{}`", entries.join("`, `")));
 
+    Mixed(first: String, second: String, at: Span) =>
+        Shader("`{second}` stands beside `{first}` without parentheses")
+        .at(at, "")
+        .help("WGSL asks for parentheses here: browsers refuse what naga takes");
+
     Unused(what: &'static str, name: Located<String>, shader: String) =>
         Unused("nothing in `{shader}` uses the {what} `{name}`")
         .at(name, "").help("remove it, or check the names that should be it");

@@ -10,6 +10,7 @@ pub(crate) mod footprint;
 mod guard;
 pub(crate) mod items;
 pub(crate) mod members;
+pub(crate) mod mixed;
 pub(crate) mod reflect;
 pub(crate) mod store;
 mod text;

@@ -324,8 +324,8 @@ pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     .collect()
 }
 
-/// Adds a mark to the series named `name`; a missing series is added at the end first.
-pub fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
+/// Adds a mark to the series of this name; a missing one is added at the end first.
+fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
     let is_of = |series: &Series| series.name == name;
     let series = find_or_push(series, is_of, || without_marks(name));
     series.marks.push(mark);
@@ -353,7 +353,7 @@ fn no_times(kept: &Kept) -> CompareError {
 
 /// Returns lines about the measurements: one for each adapter, then one with the numbers of timed
 /// frames of still views ([`Results::frames`]).
-pub fn conditions(kept: &[Kept]) -> Vec<String> {
+fn conditions(kept: &[Kept]) -> Vec<String> {
     let results = || kept.iter().map(|kept| &kept.results);
     let adapters = results().map(|results| results.adapter.to_string());
     let is_still = |run: &Run| {

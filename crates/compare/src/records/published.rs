@@ -40,9 +40,8 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
     let (mut rows, mut faults) = (Vec::new(), Vec::new());
     for PublishedFile { label, file } in files {
         let name = file.display().to_string();
-        let text = CSV_FILE
-            .read_text(file)
-            .map_err(|error| CompareError::Input(format!("{name}: {error}")))?;
+        let text = CSV_FILE.read_text(file);
+        let text = text.map_err(|error| CompareError::Input(format!("{name}: {error}")))?;
         let (read, mut mistakes) = parse(label, &SourceFile::new(name, text));
         rows.extend(read);
         faults.append(&mut mistakes);
@@ -83,8 +82,8 @@ fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
             continue;
         };
         match Row::read(label, &line, columns) {
-            Ok(row) => {
-                for row in row.of_each_preset() {
+            Ok(read) => {
+                for row in read {
                     let Some(other) = rows.iter().find(|other| other.key() == row.key()) else {
                         rows.push(row);
                         continue;

@@ -42,12 +42,10 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     let summaries = summaries(results);
     let mut tables = Vec::new();
     for viewport in unique(summaries.iter().map(|summary| summary.viewport)) {
-        let summaries = summaries
-            .iter()
-            .filter(|summary| summary.viewport == viewport);
-        let lights: Vec<(&str, &Summary)> = summaries
-            .filter_map(|summary| Some((summary.light?, summary)))
-            .collect();
+        let is_of = |summary: &&Summary| summary.viewport == viewport;
+        let lights = summaries.iter().filter(is_of);
+        let lights = lights.filter_map(|summary| Some((summary.light?, summary)));
+        let lights: Vec<(&str, &Summary)> = lights.collect();
         if lights.len() < 2 {
             continue;
         }
@@ -75,11 +73,9 @@ pub fn passes(results: &Results) -> String {
     tables.join("\n")
 }
 
-fn matrix(method: &str, runs: &[&Run]) -> String {
-    let measured = || {
-        runs.iter()
-            .filter_map(|run| Some((*run, run.measured.as_ref()?)))
-    };
+fn matrix<'a>(method: &str, runs: &[&'a Run]) -> String {
+    let with_figures = |run: &&'a Run| Some((*run, run.measured.as_ref()?));
+    let measured = || runs.iter().filter_map(with_figures);
     let column = |run: &Run| (run.viewport, run.map_size);
     let columns = unique(measured().map(|(run, _)| column(run)));
     let passes = measured().flat_map(|(_, measured)| &measured.passes);

@@ -67,10 +67,8 @@ impl Column {
 fn of_table(table: Table, runs: &[&Run]) -> impl Iterator<Item = Column> {
     let figures = FIGURES.iter().filter(|figure| figure.is_of(runs));
     let columns = figures.flat_map(move |figure| {
-        let heads = figure
-            .heads
-            .iter()
-            .filter(move |(shown, ..)| *shown == table);
+        let heads = figure.heads.iter();
+        let heads = heads.filter(move |(shown, ..)| *shown == table);
         heads.map(move |(_, place, head)| Column {
             head,
             figure,

@@ -1,9 +1,7 @@
 //! Arguments of each command.
 
-use crate::args::{
-    shared::{MethodArgs, SceneArgs},
-    values::{self, LightArgument, frames, texels},
-};
+use crate::args::shared::{MethodArgs, SceneArgs};
+use crate::args::values::{self, LightArgument, frames, texels};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgAction, Args, ValueEnum};
 use skiagraph_compare::foreign::factor::Reading;

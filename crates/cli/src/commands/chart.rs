@@ -6,6 +6,7 @@ use crate::terminal::console::{note, print};
 use skiagraph_compare::files::write::{check_writable, write_whole};
 use skiagraph_compare::records::{figures, read_back, sources::Kept};
 use skiagraph_compare::size::Size;
+use skiagraph_compare::wording::or_nothing;
 use skiagraph_report::{charts, raster};
 
 /// Reads results, draws a chart of them, and prints what could not be drawn.
@@ -35,11 +36,9 @@ pub fn chart(args: &ChartArgs) -> Result<(), CliError> {
         note(&line);
     }
     if figure.panels.is_empty() {
-        let size_text = args
-            .size
-            .map_or(String::new(), |size| format!(" of {size}"));
+        let size = or_nothing(args.size, |size| format!(" of {size}"));
         return Err(CliError::Input(format!(
-            "there is nothing to draw: no run{size_text} has measurements"
+            "there is nothing to draw: no run{size} has measurements"
         )));
     }
     let svg = charts::svg(&figure)?;

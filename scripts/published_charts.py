@@ -25,7 +25,7 @@ from pathlib import Path
 try:
     from matplotlib import pyplot
 except ImportError:
-    sys.exit("there is no matplotlib: apt-get install python3-matplotlib, which /usr/bin/python3 finds")
+    sys.exit("no matplotlib: apt-get install python3-matplotlib, and run this by /usr/bin/python3")
 
 SUM = "ms.steps"
 # Okabe and Ito's palette; hatches tell bars apart without colours, too.

@@ -74,7 +74,6 @@ chart hard --out front.svg
 chart hard lamps
 chart lamps --out front.png
 chart hard --kind growth --out growth.svg
-chart published --beside D:published.csv --out charts
 """
 PUBLISHED = """scene,preset,view,viewport,map_size,quantity,value,source,note
 park,nsm,bench_side,64x48,64,wrong_percent,4.5,table 1,

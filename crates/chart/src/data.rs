@@ -1,7 +1,7 @@
 //! Input of a chart: panels, series and marks.
 
 /// A chart with one pair of axes, part of a [`Figure`](crate::Figure). The axes are logarithmic, or
-/// linear in [`Kind::Bars`] and [`Kind::Frames`].
+/// linear in [`Kind::Frames`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// Heading above the axes.
@@ -18,7 +18,7 @@ pub struct Panel {
 }
 
 /// Kinds of panels.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Two costs, of which less is better: the Pareto front is drawn. The vertical value may be 0;
     /// such marks stand in a strip below the logarithmic axis.
@@ -26,9 +26,6 @@ pub enum Kind {
     /// Growth of a value: the marks of a series are joined, and a dashed line shows growth in
     /// proportion (slope 1 on the logarithmic axes).
     Growth,
-    /// A bar for each mark, upwards from 0 on a linear axis. The list holds the names of the groups
-    /// of bars from left to right; [`Mark::x`] is an index into it.
-    Bars(Vec<String>),
     /// A value for each frame of a camera path, on linear axes from 0. The marks of a series are
     /// joined.
     Frames,
@@ -47,8 +44,8 @@ pub struct Series {
 /// A measurement, drawn as one mark.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
-    /// Horizontal value in the unit of [`Panel::x`]: finite and above 0. In [`Kind::Bars`] it is
-    /// the index of the mark's group, in [`Kind::Frames`] the index of the frame, both from 0.
+    /// Horizontal value in the unit of [`Panel::x`]: finite and above 0. In [`Kind::Frames`] it is
+    /// the index of the frame, from 0.
     pub x: f64,
     /// Vertical value in the unit of [`Panel::y`]: finite and above 0. It may be 0 in all kinds but
     /// [`Kind::Growth`].
@@ -57,7 +54,7 @@ pub struct Mark {
     /// is no bar. Only [`Kind::Front`] draws it.
     pub spread: Option<[f64; 2]>,
     /// Size of the mark: an index into [`Figure::sizes`](crate::Figure::sizes); 0 if that list is
-    /// empty. [`Kind::Bars`] draws all marks in one size.
+    /// empty.
     pub size: usize,
     /// Lines of text that a web page shows for the mark
     /// ([`Figure::to_page_svg`](crate::Figure::to_page_svg)); the first line is the mark's name.

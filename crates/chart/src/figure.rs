@@ -1,7 +1,6 @@
 //! Lays out a figure: title, notes and legend, then the panels in rows.
 
 use crate::{
-    bars,
     canvas::{Canvas, WIDTH, words},
     data::{Kind, Mark, Panel},
     error::Error,
@@ -41,9 +40,6 @@ pub struct Figure {
     pub panels: Vec<Panel>,
     /// Number of panels side by side in a row; 0 counts as 1.
     pub columns: usize,
-    /// True if both axes of all panels of a row cover the same ranges, so that heights can be
-    /// compared; false if each panel has ranges of its own.
-    pub shared_axes: bool,
 }
 
 impl Figure {
@@ -81,9 +77,9 @@ impl Figure {
     /// Colours are variables of the page's style: `--s0` to `--s7` of series, `--ink` of text,
     /// `--quiet` of axes and guides, `--front` of the Pareto front, `--line` and `--faint` of grid
     /// lines at and between labels, `--strip` of the strip for values of 0, `--card` of the
-    /// background. Except in [`Kind::Bars`], elements of a series carry the series' name in
-    /// `data-series`. A mark is a `g` of class `mark`; `aria-label` holds the text [`Mark::about`],
-    /// `data-name` the text's first line.
+    /// background. Elements of a series carry the series' name in `data-series`. A mark is a `g` of
+    /// class `mark`; `aria-label` holds the text [`Mark::about`], `data-name` the text's first
+    /// line.
     ///
     /// # Errors
     /// Those of [`Figure::to_svg`].
@@ -116,7 +112,7 @@ impl Figure {
     /// The panels' rows.
     fn rows(&self) -> impl Iterator<Item = (&[Panel], i32)> {
         self.panels.chunks(self.columns.max(1)).map(|row| {
-            let heights = (0..row.len()).map(|column| panel::height(self.fitted(row, column)));
+            let heights = row.iter().map(panel::height);
             (row, heights.max().unwrap_or(0))
         })
     }
@@ -132,14 +128,10 @@ impl Figure {
         let wide = width / self.columns.max(1) as i32;
         for (row, tall) in self.rows() {
             for (column, panel) in row.iter().enumerate() {
-                let fitted = self.fitted(row, column);
                 let place = ((column as i32 * wide, top), (wide, tall));
-                match &panel.kind {
-                    Kind::Bars(groups) => {
-                        canvas.draw(|root| bars::draw(panel, groups, fitted, root, place, look))?;
-                    }
-                    Kind::Frames => frames::draw(panel, fitted, canvas, place, look)?,
-                    _ => panel::draw(panel, fitted, &self.ticks, canvas, place, look)?,
+                match panel.kind {
+                    Kind::Frames => frames::draw(panel, canvas, place, look)?,
+                    _ => panel::draw(panel, &self.ticks, canvas, place, look)?,
                 }
             }
             top += tall;
@@ -154,15 +146,6 @@ impl Figure {
         let mut ordered = self.looks.iter().map(String::as_str).chain(unlisted);
         let place = ordered.position(|series| series == name);
         place.map_or(Look::neutral(), Look::new)
-    }
-
-    /// The panels of a row that the axes of one of them are fitted to.
-    fn fitted<'a>(&self, row: &'a [Panel], column: usize) -> &'a [Panel] {
-        if self.shared_axes {
-            row
-        } else {
-            &row[column..=column]
-        }
     }
 
     /// Returns the names of all series, in the order in which they first appear.
@@ -189,10 +172,10 @@ impl Figure {
         for (size, name) in self.sizes.iter().enumerate() {
             entries.push(entry(Sign::Size(size), name, size == 0));
         }
-        let has = |kind: &Kind| self.panels.iter().any(|panel| panel.kind == *kind);
+        let has = |kind: Kind| self.panels.iter().any(|panel| panel.kind == kind);
         let marks = self.panels.iter().flat_map(|panel| &panel.series);
         let mut marks = marks.flat_map(|series| &series.marks);
-        if has(&Kind::Front) {
+        if has(Kind::Front) {
             let front = "Pareto front; what is on it is filled";
             entries.push(entry(Sign::Front, front, true));
             entries.push(entry(Sign::None, "grey strip: exactly 0", false));
@@ -200,7 +183,7 @@ impl Figure {
                 entries.push(entry(Sign::None, "bars: quartiles", false));
             }
         }
-        if has(&Kind::Growth) {
+        if has(Kind::Growth) {
             entries.push(entry(Sign::Guide, "twice as much for twice as many", true));
         }
         entries
@@ -215,7 +198,7 @@ fn check(panel: &Panel, sizes: usize) -> Result<(), Error> {
     }
     for series in &panel.series {
         let mut marks = series.marks.iter();
-        if let Some(why) = marks.find_map(|mark| fault(mark, &panel.kind, sizes)) {
+        if let Some(why) = marks.find_map(|mark| fault(mark, panel.kind, sizes)) {
             return Err(Error::Mark {
                 panel: panel.title.clone(),
                 series: series.name.clone(),
@@ -227,7 +210,7 @@ fn check(panel: &Panel, sizes: usize) -> Result<(), Error> {
 }
 
 /// Why a mark cannot be drawn in a panel of this kind.
-fn fault(mark: &Mark, kind: &Kind, sizes: usize) -> Option<String> {
+fn fault(mark: &Mark, kind: Kind, sizes: usize) -> Option<String> {
     let &Mark { x, y, size, .. } = mark;
     let is_in = |value: f64| value.is_finite() && value > 0.0;
     let is_zero_or_in = y == 0.0 || is_in(y);
@@ -240,16 +223,6 @@ fn fault(mark: &Mark, kind: &Kind, sizes: usize) -> Option<String> {
         ));
     }
     match kind {
-        Kind::Bars(groups) => {
-            let groups = groups.len();
-            let is_group = x.fract() == 0.0 && (0.0..groups as f64).contains(&x);
-            if !(is_group && is_zero_or_in) {
-                return Some(format!(
-                    "({x}, {y}) is no bar; expected the index of one of {groups} groups, and a \
-                     finite height of at least 0"
-                ));
-            }
-        }
         Kind::Front if is_in(x) && is_zero_or_in => {}
         Kind::Growth if is_in(x) && is_in(y) => {}
         Kind::Frames if (x == 0.0 || is_in(x)) && is_zero_or_in => {}

@@ -2,13 +2,12 @@
 //! the kind of measurement.
 //!
 //! A [`Figure`] is one picture of one or several [`Panel`]s that share a legend. Both axes of a
-//! panel are logarithmic, except in [`Kind::Bars`] and [`Kind::Frames`].
+//! panel are logarithmic, except in [`Kind::Frames`].
 //!
 //! - [`Kind::Front`] shows two costs, draws the Pareto front and fills the marks on it. Values of 0
 //!   stand in a strip below the axis, with a lane for each series, so that exact methods can be
 //!   seen.
 //! - [`Kind::Growth`] joins the marks of a series and draws a line of linear growth.
-//! - [`Kind::Bars`] shows groups of bars on a linear axis.
 //! - [`Kind::Frames`] shows how a value changes along a path.
 //!
 //! [`Figure::to_svg`] is for files. [`Figure::to_page_svg`] is for a web page that has its own
@@ -40,7 +39,6 @@
 //! # Ok::<(), skiagraph_chart::Error>(())
 //! ```
 
-mod bars;
 mod canvas;
 mod colours;
 mod data;

@@ -17,7 +17,7 @@ use std::{cmp::Reverse, ops::Range};
 
 /// Height of the axes without strip, and of linear ones, pixels.
 const AXES: i32 = 300;
-const BARS: i32 = 240;
+const LINEAR: i32 = 240;
 /// Above the axes: the title. Right of them: half a label.
 pub(crate) const ABOVE: i32 = 30;
 const RIGHT: i32 = 22;
@@ -36,26 +36,24 @@ fn lanes(panel: &Panel) -> Vec<usize> {
         .collect()
 }
 
-/// Axes with room for all these panels.
-fn scales(fitted: &[Panel]) -> (Scale, Scale) {
-    let series = || fitted.iter().flat_map(|panel| &panel.series);
-    let marks = || series().flat_map(|series| &series.marks);
-    let lanes = fitted.iter().map(|panel| lanes(panel).len()).max();
+/// Axes with room for all marks of the panel.
+fn scales(panel: &Panel) -> (Scale, Scale) {
+    let marks = || panel.series.iter().flat_map(|series| &series.marks);
     let across = |mark: &Mark| {
         [mark.x]
             .into_iter()
             .chain(mark.spread.into_iter().flatten())
     };
     let x = Scale::around(marks().flat_map(across), 0);
-    let y = Scale::around(marks().map(|mark| mark.y), lanes.unwrap_or(0));
+    let y = Scale::around(marks().map(|mark| mark.y), lanes(panel).len());
     (x, y)
 }
 
-/// Returns the height in pixels of a panel whose axes are fitted to these panels.
-pub(crate) fn height(fitted: &[Panel]) -> i32 {
-    match fitted.first().map(|panel| &panel.kind) {
-        Some(Kind::Bars(_) | Kind::Frames) => ABOVE + BARS + LABELS.1,
-        _ => ABOVE + AXES + scales(fitted).1.strip().ceil() as i32 + LABELS.1,
+/// Returns the height of a panel in pixels.
+pub(crate) fn height(panel: &Panel) -> i32 {
+    match panel.kind {
+        Kind::Frames => ABOVE + LINEAR + LABELS.1,
+        _ => ABOVE + AXES + scales(panel).1.strip().ceil() as i32 + LABELS.1,
     }
 }
 
@@ -89,17 +87,15 @@ type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
 
 /// Draws a logarithmic panel into a rectangle of the canvas, given by its top left corner and size
 /// in pixels. `ticks` are labels of the horizontal axis, as
-/// [`Figure::ticks`](crate::Figure::ticks); `look` gives colour and shape of a series by name. The
-/// axes are fitted to all panels in `fitted`.
+/// [`Figure::ticks`](crate::Figure::ticks); `look` gives colour and shape of a series by name.
 pub(crate) fn draw(
     panel: &Panel,
-    fitted: &[Panel],
     ticks: &[(f64, String)],
     canvas: &mut Canvas,
     (corner, size): ((i32, i32), (i32, i32)),
     look: impl Fn(&str) -> Look,
 ) -> Result<(), Error> {
-    let (mut x, y) = scales(fitted);
+    let (mut x, y) = scales(panel);
     x.named = ticks.to_vec();
     let (places, bars, frame) = canvas.draw(|root| {
         let axes = axes(panel, root, &root.clone().shrink(corner, size), (&x, &y))?;

@@ -3,6 +3,7 @@
 use crate::args::shared::SceneArgs;
 use crate::error::CliError;
 use crate::terminal::{Terminal, console::note, progress};
+use itertools::Itertools;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::scene::write_scene;
 use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
@@ -58,11 +59,9 @@ impl SceneSelection {
         let library = SceneLibrary::from_environment();
         let mut notes = Notes::default();
         if let Some(file) = library.stand_in(args.scene()) {
-            notes.print(format!(
-                "{} stands in for the built-in scene `{}`, which differs",
-                file.display(),
-                args.scene()
-            ));
+            let (file, scene) = (file.display(), args.scene());
+            let text = format!("{file} stands in for the built-in scene `{scene}`, which differs");
+            notes.print(text);
         }
         let (options, explain) = (args.mesh_scene(), |error| explain(error, args, &library));
         let own = if is_mesh {
@@ -83,9 +82,8 @@ impl SceneSelection {
         let views = own.views(args.view.as_deref(), &options.camera, options.sun)?;
         let mut further = Vec::new();
         if own.chosen.view && args.view.is_none() {
-            further = own
-                .views(Some("all"), &options.camera, options.sun)?
-                .split_off(1);
+            further = own.views(Some("all"), &options.camera, options.sun)?;
+            further.remove(0);
         }
         let standing = views.first();
         let (paths, failed) = standing.map_or_else(Default::default, |view| own.paths(view));
@@ -93,8 +91,7 @@ impl SceneSelection {
             notes.print_on(args, format!("{text}: left out"));
         }
         if !paths.is_empty() {
-            let names = paths.iter().map(|path| path.view.name.as_str());
-            let names = names.collect::<Vec<_>>().join(", ");
+            let names = paths.iter().map(|path| &path.view.name).join(", ");
             notes.print_on(args, format!("its animations, for --path: {names}"));
         }
         if let Some(path) = &args.write_scene {

@@ -51,6 +51,11 @@ pub fn share(count: u64, whole: u64) -> String {
     }
 }
 
+/// Returns a value as the text that `text` makes of it; nothing for `None`.
+pub fn or_nothing<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
+    value.map(text).unwrap_or_default()
+}
+
 /// Returns a number with commas between thousands: `1,234,567`.
 pub fn thousands(number: u64) -> String {
     let digits = number.to_string();

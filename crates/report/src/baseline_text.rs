@@ -19,13 +19,10 @@ const FEW: usize = 16;
 pub fn text(changes: &Changes) -> String {
     let count = |verdict| changes.with(verdict).len();
     let cells = &changes.cells;
+    let [worse, better, same] = [Change::Worse, Change::Better, Change::Same].map(count);
+    let (baseline, began) = (&changes.baseline, &changes.began);
     let mut lines = vec![format!(
-        "Against {} of {}: {} worse, {} better, {} the same",
-        changes.baseline,
-        changes.began,
-        count(Change::Worse),
-        count(Change::Better),
-        count(Change::Same)
+        "Against {baseline} of {began}: {worse} worse, {better} better, {same} the same"
     )];
     let is_shown = |cell: &&CellChange| cells.len() <= FEW || cell.verdict() != Change::Same;
     let shown: Vec<&CellChange> = cells.iter().filter(is_shown).collect();

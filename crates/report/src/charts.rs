@@ -9,7 +9,7 @@ use skiagraph_compare::error::CompareError;
 use skiagraph_compare::lists::{entry, find_or_push, place};
 use skiagraph_compare::records::figure::{self, Case, Clocks};
 use skiagraph_compare::records::figures;
-use skiagraph_compare::records::results::{Results, Run};
+use skiagraph_compare::records::results::Run;
 use skiagraph_compare::records::sources::Kept;
 use skiagraph_compare::wording::{frames, size};
 use std::collections::BTreeSet;
@@ -34,39 +34,47 @@ pub fn front(
     let Some(error) = error.or_else(|| figures::named("wrong_of_all")) else {
         return Ok(Figure::default());
     };
-    let results = || kept.iter().map(|kept| &kept.results);
     let maps = maps(kept, viewport);
     let mut panels = Vec::new();
     for kept in kept {
-        let clocks = Clocks::new(&kept.results);
-        let runs = kept.results.runs.iter();
-        let runs = runs.filter(|run| is_drawn(run, viewport));
         let mut places: Vec<(_, Vec<Case>)> = Vec::new();
-        for case in runs.map(|run| clocks.case(run)) {
-            if error.value(&case).is_some() {
-                entry(&mut places, (case.run.viewport, &case.run.light)).push(case);
-            }
+        for case in cases(kept, viewport).filter(|case| error.value(case).is_some()) {
+            entry(&mut places, (case.run.viewport, &case.run.light)).push(case);
         }
         for (_, cases) in places {
             panels.push(front_panel(kept, &cases, error, &maps)?);
         }
     }
-    let scenes = results().map(|results| results.scene.to_string());
-    let mut notes = conditions(kept);
-    notes.push(scenes.sorted().dedup().join("; "));
-    notes.push(
+    let scenes = kept.iter().map(|kept| kept.results.scene.to_string());
+    let mut figure = figure("Time against error", kept, panels);
+    figure.sizes = named(&maps);
+    figure.notes.push(scenes.sorted().dedup().join("; "));
+    figure.notes.push(
         "Left is faster, down is more right; where there are several views, the means of all."
             .into(),
     );
-    Ok(Figure {
-        title: "Time against error".into(),
-        notes,
-        looks: looks_of(kept),
-        sizes: named(&maps),
+    Ok(figure)
+}
+
+/// The runs of a folder that are drawn.
+fn cases(kept: &Kept, viewport: Option<[u32; 2]>) -> impl Iterator<Item = Case<'_>> {
+    let clocks = Clocks::new(&kept.results);
+    let runs = kept.results.runs.iter();
+    let runs = runs.filter(move |run| is_drawn(run, viewport));
+    runs.map(move |run| clocks.case(run))
+}
+
+/// A figure of these panels. Methods look the same in all of the same results.
+fn figure(title: &str, kept: &[Kept], panels: Vec<Panel>) -> Figure {
+    let runs = kept.iter().flat_map(|kept| &kept.results.runs);
+    Figure {
+        title: title.into(),
+        notes: conditions(kept),
+        looks: looks(runs.map(|run| run.preset.clone())),
         columns: panels.len().clamp(1, 2),
         panels,
         ..Figure::default()
-    })
+    }
 }
 
 /// Edges of the maps that are drawn, in texels, the smallest first.
@@ -82,15 +90,19 @@ fn named(maps: &[u32]) -> Vec<String> {
     maps.iter().map(|map| format!("map {map}²")).collect()
 }
 
+/// Names of the sizes of marks, where there are several.
+fn several(maps: &[u32]) -> Vec<String> {
+    if maps.len() > 1 {
+        named(maps)
+    } else {
+        Vec::new()
+    }
+}
+
 /// Size of the marks of a run: the place of its map among these.
 fn mark_size(map: Option<u32>, maps: &[u32]) -> usize {
     let place = map.and_then(|map| maps.iter().position(|size| *size == map));
     place.unwrap_or(0)
-}
-
-fn looks_of(kept: &[Kept]) -> Vec<String> {
-    let runs = kept.iter().flat_map(|kept| &kept.results.runs);
-    looks(runs.map(|run| run.preset.clone()))
 }
 
 /// The panel of the runs of one viewport and light.
@@ -113,7 +125,9 @@ fn front_panel(
             spread: spread.filter(|[low, high]| *low > 0.0 && low < high),
             ..Mark::new(ms, y)
         };
-        push(&mut series, &row.method, mark);
+        let is_of = |series: &Series| series.name == row.method;
+        let line = find_or_push(&mut series, is_of, || without_marks(&row.method));
+        line.marks.push(mark);
     }
     let views: BTreeSet<&str> = cases.iter().map(|case| case.run.view.as_str()).collect();
     let views = match views.first() {
@@ -151,10 +165,9 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
     let maps = maps(kept, viewport);
     let mut cells = Vec::new();
     let mut panels: Vec<[Panel; 2]> = Vec::new();
-    let runs = kept
-        .iter()
-        .flat_map(|kept| kept.results.runs.iter().map(move |run| (kept, run)));
-    for (kept, run) in runs.filter(|(_, run)| is_drawn(run, viewport)) {
+    let each = kept.iter();
+    let runs = each.flat_map(|kept| cases(kept, viewport).map(move |case| (kept, case.run)));
+    for (kept, run) in runs {
         let Some(measured) = &run.measured else {
             continue;
         };
@@ -192,26 +205,15 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
             series.marks.push(mark);
         }
     }
-    for series in panels
-        .iter_mut()
-        .flatten()
-        .flat_map(|panel| &mut panel.series)
-    {
+    let mut panels: Vec<Panel> = panels.into_iter().flatten().collect();
+    for series in panels.iter_mut().flat_map(|panel| &mut panel.series) {
         series.marks.sort_by(|a, b| a.x.total_cmp(&b.x));
     }
-    let mut notes = conditions(kept);
-    notes.push("Memory is the graph's own and the scene's buffers that it reads.".into());
-    Ok(Figure {
-        title: "Growth with the number of triangles".into(),
-        notes,
-        looks: looks_of(kept),
-        sizes: Some(named(&maps))
-            .filter(|maps| maps.len() > 1)
-            .unwrap_or_default(),
-        panels: panels.into_iter().flatten().collect(),
-        columns: 2,
-        ..Figure::default()
-    })
+    let mut figure = figure("Growth with the number of triangles", kept, panels);
+    figure.sizes = several(&maps);
+    let note = "Memory is the graph's own and the scene's buffers that it reads.";
+    figure.notes.push(note.into());
+    Ok(figure)
 }
 
 /// Builds the chart of errors over the frames of camera paths: a panel for each folder, path, light
@@ -226,38 +228,25 @@ pub fn frames_of_paths(
     error: Option<&figure::Figure>,
 ) -> Result<Figure, CompareError> {
     let maps = maps(kept, viewport);
-    let mut panels = Vec::new();
-    for kept in kept {
-        let clocks = Clocks::new(&kept.results);
-        let runs = kept.results.runs.iter();
-        let runs = runs.filter(|run| is_drawn(run, viewport));
-        let cases = runs.map(|run| clocks.case(run));
-        panels.extend(path_panels(cases, &maps, error));
-    }
+    let of_folder = |kept| path_panels(cases(kept, viewport), &maps, error);
+    let panels: Vec<Panel> = kept.iter().flat_map(of_folder).collect();
     if panels.is_empty() {
         return Err(CompareError::Input(match error {
-            Some(error) if kept.iter().any(|kept| has_path(&kept.results)) => {
+            Some(error) if kept.iter().any(has_path) => {
                 format!("there is nothing to draw: frames have no {}", error.name)
             }
             _ => "there are no frames to draw: no run is of a camera path (compare --path)".into(),
         }));
     }
     Ok(Figure {
-        title: "Errors along camera paths".into(),
-        notes: conditions(kept),
-        looks: looks_of(kept),
-        sizes: Some(named(&maps))
-            .filter(|maps| maps.len() > 1)
-            .unwrap_or_default(),
-        columns: panels.len().clamp(1, 2),
-        panels,
-        ..Figure::default()
+        sizes: several(&maps),
+        ..figure("Errors along camera paths", kept, panels)
     })
 }
 
 /// True if a run is of a camera path.
-fn has_path(results: &Results) -> bool {
-    figures::are_paths(&results.runs.iter().collect::<Vec<_>>())
+fn has_path(kept: &Kept) -> bool {
+    figures::are_paths(&kept.results.runs.iter().collect::<Vec<_>>())
 }
 
 /// Returns a panel for each camera path, light and viewport among `cases`, with a series for each
@@ -317,18 +306,11 @@ pub fn svg(figure: &Figure) -> Result<String, CompareError> {
 /// equal lines once.
 pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
     let runs = kept.iter().flat_map(|kept| &kept.results.runs);
-    runs.filter_map(|run| {
+    let reasons = runs.filter_map(|run| {
         let reason = run.unavailable.as_ref()?;
         Some(format!("not drawn: {}: {reason}", run.method_label()))
-    })
-    .collect()
-}
-
-/// Adds a mark to the series named `name`; a missing series is added at the end first.
-pub fn push(series: &mut Vec<Series>, name: &str, mark: Mark) {
-    let is_of = |series: &Series| series.name == name;
-    let series = find_or_push(series, is_of, || without_marks(name));
-    series.marks.push(mark);
+    });
+    reasons.collect()
 }
 
 fn without_marks(name: &str) -> Series {
@@ -344,23 +326,17 @@ fn is_drawn(run: &Run, viewport: Option<[u32; 2]>) -> bool {
 
 fn no_times(kept: &Kept) -> CompareError {
     let why = kept.results.adapter.gpu_unavailable.as_deref();
-    CompareError::Input(format!(
-        "{}: there are no GPU times to draw: {}",
-        kept.folder.display(),
-        why.unwrap_or("the adapter gave none for a pass")
-    ))
+    let why = why.unwrap_or("the adapter gave none for a pass");
+    let folder = kept.folder.display();
+    CompareError::Input(format!("{folder}: there are no GPU times to draw: {why}"))
 }
 
 /// Returns lines about the measurements: one for each adapter, then one with the numbers of timed
 /// frames of still views ([`Results::frames`]).
-pub fn conditions(kept: &[Kept]) -> Vec<String> {
+fn conditions(kept: &[Kept]) -> Vec<String> {
     let results = || kept.iter().map(|kept| &kept.results);
     let adapters = results().map(|results| results.adapter.to_string());
-    let is_still = |run: &Run| {
-        run.measured
-            .as_ref()
-            .is_some_and(|measured| measured.sequence.is_none())
-    };
+    let is_still = |run: &Run| run.measured.iter().any(|it| it.sequence.is_none());
     let still = results().filter(|results| results.runs.iter().any(is_still));
     let medians = still.map(|results| results.frames).sorted().dedup();
     let medians = medians.map(frames).join(" or ");

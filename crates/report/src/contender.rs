@@ -11,7 +11,7 @@ use skiagraph_compare::wording::{ms, percent};
 
 /// Share of the pixels facing the light in the band (the pixels whose answer rounding decides)
 /// beyond which a verdict holds for the other pixels only.
-pub const MAX_BAND: f64 = 0.01;
+const MAX_BAND: f64 = 0.01;
 
 /// Share of the reference's shadow that is missing, or of its light that is dark, from which on a
 /// verdict says so first.
@@ -33,9 +33,7 @@ pub struct Condition {
 
 impl Condition {
     pub fn new(wrong: Wrong) -> Option<Self> {
-        let Wrong {
-            band, facing_light, ..
-        } = wrong;
+        let (band, facing_light) = (wrong.band, wrong.facing_light);
         let share = band as f64 / facing_light.max(1) as f64;
         (share > MAX_BAND).then_some(Self { band, facing_light })
     }
@@ -117,19 +115,14 @@ impl<'a> Contender<'a> {
 
     /// How wrong it is, in words that stand behind `and`, or alone.
     pub fn error(&self) -> String {
-        let Wrong {
-            outside_band,
-            band,
-            facing_light,
-            ..
-        } = self.wrong;
+        let (outside_band, facing_light) = (self.wrong.outside_band, self.wrong.facing_light);
         match self.condition {
             _ if self.is_soft => format!("RMSE {:.4}", self.rmse),
             _ if self.is_exact => self.right().into(),
             _ if outside_band == 0 => format!("off in its shades by RMSE {:.4}", self.rmse),
             // Where much lies in the band, the others are judged.
             Some(_) => {
-                let judged = facing_light.saturating_sub(band);
+                let judged = facing_light.saturating_sub(self.wrong.band);
                 format!("wrong on {} of these", percent(outside_band, judged))
             }
             None => {
@@ -152,15 +145,10 @@ impl<'a> Contender<'a> {
         }
     }
 
-    /// True if it is a setting that was searched for, other than the defaults.
-    pub fn is_tuned(&self) -> bool {
-        self.row.tuned().is_some_and(|tuned| !tuned.set.is_empty())
-    }
-
     /// True if one of the two is what the other one was tuned to.
     pub fn is_other_setting_of(&self, other: &Self) -> bool {
         let is_of = |tuned: &Self, base: &Self| {
-            tuned.is_tuned() && !base.is_tuned() && tuning::is_default_of(base.row, tuned.row)
+            tuned.row.is_tuned() && tuning::is_default_of(base.row, tuned.row)
         };
         is_of(self, other) || is_of(other, self)
     }
@@ -175,16 +163,12 @@ impl<'a> Contender<'a> {
     }
 
     pub fn is_within(&self, budgets: &Budgets) -> bool {
-        let is_quick = budgets
-            .frame_ms
-            .is_none_or(|most| self.slowest.value <= most);
-        let is_right = budgets
-            .wrong_percent
-            .is_none_or(|most| self.most_wrong.value < most);
-        let is_small = budgets
-            .memory_bytes
-            .is_none_or(|most| self.row.bytes() <= most);
-        is_quick && is_right && is_small
+        let (slowest, most_wrong) = (self.slowest.value, self.most_wrong.value);
+        budgets.frame_ms.is_none_or(|most| slowest <= most)
+            && budgets.wrong_percent.is_none_or(|most| most_wrong < most)
+            && budgets
+                .memory_bytes
+                .is_none_or(|most| self.row.bytes() <= most)
     }
 
     /// The view or frame that breaks a budget which the method keeps to over all views.

@@ -35,11 +35,8 @@ pub fn sentence(rows: &[Row], verdict: &Verdict) -> Option<String> {
     let errors = errors.join(", ");
     let condition = when.map_or("on the path", Regime::condition);
     (!errors.is_empty()).then(|| {
-        let time = ms(cost);
-        format!(
-            "At the cost of `{}` ({time} ms {condition}): {errors}.",
-            exact.label
-        )
+        let (label, time) = (&exact.label, ms(cost));
+        format!("At the cost of `{label}` ({time} ms {condition}): {errors}.")
     })
 }
 
@@ -55,19 +52,13 @@ fn at_cost(mut curve: Vec<Point>, cost: f64) -> Option<String> {
     };
     let [edge, time, error] = curve[below];
     let Some([next_edge, next_time, next_error]) = curve.get(below + 1) else {
-        let time = ms(time);
-        return Some(format!(
-            "{} with the largest map ({edge}², {time} ms)",
-            percent(error)
-        ));
+        let (error, time) = (percent(error), ms(time));
+        return Some(format!("{error} with the largest map ({edge}², {time} ms)"));
     };
     let part = (cost / time).ln() / (next_time / time).ln();
     let between = edge * (next_edge / edge).powf(part);
-    let error = error + (next_error - error) * part;
-    Some(format!(
-        "about {} with a map of {between:.0}²",
-        percent(error)
-    ))
+    let error = percent(error + (next_error - error) * part);
+    Some(format!("about {error} with a map of {between:.0}²"))
 }
 
 #[cfg(test)]

@@ -62,13 +62,11 @@ impl FromStr for Gate {
             let words = figures(false).map(|(name, _)| name).join(", ");
             format!("unknown figure `{word}`; expected one of {words}")
         })?;
+        let most = figure.unit.parse(value);
         Ok(Self {
             method: method.into(),
             figure,
-            most: figure
-                .unit
-                .parse(value)
-                .map_err(|why| format!("{word}: {why}"))?,
+            most: most.map_err(|why| format!("{word}: {why}"))?,
         })
     }
 }
@@ -93,29 +91,21 @@ impl Gate {
     /// viewport and under one light, over all views. A row that could not run fails as well. The
     /// list is empty if all rows pass, or if the results have no row of the method.
     pub fn failures(&self, results: &Results) -> Vec<String> {
+        let (word, limit) = (self.word(), |value| self.figure.unit.limit(value));
         let mut lines = Vec::new();
         for summary in summaries(results) {
-            let viewport = size(summary.viewport);
             for row in summary.rows.iter().filter(|row| row.method == self.method) {
-                let (label, word) = (&row.label, self.word());
-                let text = |value| self.figure.unit.limit(value);
-                match row.worst(self.figure) {
-                    None => {
-                        let why = if row.views() == 0 {
-                            "it could not run"
-                        } else {
-                            "it was not timed so"
-                        };
-                        lines.push(format!("`{label}` at {viewport} has no {word}: {why}"));
+                let place = format!("`{}` at {}", row.label, size(summary.viewport));
+                lines.extend(match row.worst(self.figure) {
+                    None if row.views() == 0 => {
+                        Some(format!("{place} has no {word}: it could not run"))
                     }
-                    Some(worst) if worst.value > self.most => lines.push(format!(
-                        "`{label}` at {viewport}: {word} {}{} is more than {}",
-                        text(worst.value),
-                        worst.on(),
-                        text(self.most)
-                    )),
-                    Some(_) => {}
-                }
+                    None => Some(format!("{place} has no {word}: it was not timed so")),
+                    Some(worst) => (worst.value > self.most).then(|| {
+                        let (value, most) = (limit(worst.value), limit(self.most));
+                        format!("{place}: {word} {value}{} is more than {most}", worst.on())
+                    }),
+                });
             }
         }
         lines
@@ -138,11 +128,10 @@ impl Gate {
         if files.iter().any(|file| self.is_of(file)) {
             return Ok(());
         }
-        let stems = files
-            .iter()
-            .filter_map(|file| Path::new(file).file_stem()?.to_str());
+        let stem = |file| Path::new(file).file_stem()?.to_str();
+        let stems: Vec<&str> = files.iter().filter_map(stem).collect();
         let what = format!("--fail-if: `{name}` is not judged");
-        Err(unknown(&what, name, "pictures", &stems.collect::<Vec<_>>()))
+        Err(unknown(&what, name, "pictures", &stems))
     }
 
     /// Returns a line of text for each judged picture that is beyond this limit, or without an
@@ -153,11 +142,10 @@ impl Gate {
     pub fn picture_failures(&self, judged: &JudgedPictures) -> Vec<String> {
         let apart = judged.band + judged.unattributable;
         let wanted = judged.pixels.facing_light.saturating_sub(apart);
-        let pictures = judged
-            .pictures
-            .iter()
-            .filter(|picture| self.is_of(&picture.file));
         let line = |picture: &JudgedPicture| {
+            if !self.is_of(&picture.file) {
+                return None;
+            }
             let (word, text) = (self.word(), |value| self.figure.unit.limit(value));
             if picture.without_answer as f64 > MOST_WITHOUT_ANSWER * wanted as f64 {
                 let share = percent(picture.without_answer, wanted);
@@ -167,13 +155,11 @@ impl Gate {
                 ));
             }
             let value = self.figure.picture?(picture, &judged.pixels);
-            let (value, most) = (value > self.most).then(|| (text(value), text(self.most)))?;
-            Some(format!(
-                "`{}`: {word} {value} is more than {most}",
-                picture.file
-            ))
+            let (file, most) = (&picture.file, text(self.most));
+            let line = || format!("`{file}`: {word} {} is more than {most}", text(value));
+            (value > self.most).then(line)
         };
-        pictures.filter_map(line).collect()
+        judged.pictures.iter().filter_map(line).collect()
     }
 
     fn word(&self) -> &str {

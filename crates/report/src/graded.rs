@@ -9,15 +9,12 @@ use skiagraph_reference::{Graded, Invalid};
 /// extent](skiagraph_compare#terms): its samples per pixel, its standard error, and the number of
 /// pixels in penumbra. `band` is the number of pixels in the band, whose answer rounding decides.
 pub fn area_reference(area: &AreaReference, band: u64) -> String {
+    let (rms, worst) = (area.standard_error_rms, area.standard_error_worst);
+    let [samples, penumbra, band] = [area.samples.into(), area.penumbra, band].map(thousands);
     format!(
-        "the light has an extent: reference of {} samples per pixel, standard error {:.5} (root \
-         mean square over PFL; the worst {:.5}); lit is what sees half of it or more, in penumbra \
-         {}, in the band {}",
-        thousands(area.samples.into()),
-        area.standard_error_rms,
-        area.standard_error_worst,
-        thousands(area.penumbra),
-        thousands(band)
+        "the light has an extent: reference of {samples} samples per pixel, standard error \
+         {rms:.5} (root mean square over PFL; the worst {worst:.5}); lit is what sees half of it \
+         or more, in penumbra {penumbra}, in the band {band}"
     )
 }
 
@@ -78,9 +75,8 @@ fn ranks(runs: &[Run]) -> Option<String> {
     ranks.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     let in_doubt = ranks.iter().filter(|(rmse, _)| *rmse < 10.0 * reference);
     let in_doubt = in_doubt.map(|(_, label)| label).join(", ");
-    let mut listed = ranks
-        .iter()
-        .map(|(rmse, label)| format!("{label} {rmse:.5}"));
+    let listed = ranks.iter();
+    let mut listed = listed.map(|(rmse, label)| format!("{label} {rmse:.5}"));
     let mut text = format!("by RMSE: {}", listed.join(", "));
     if !in_doubt.is_empty() {
         text += "; the reference's own error is more than a tenth of that of ";

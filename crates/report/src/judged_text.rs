@@ -1,7 +1,7 @@
 //! Judged pictures of other renderers as a table and sentences for a terminal.
 
 use crate::graded::{counted, invalid_counts};
-use crate::notes::{pixels, wrong_surface};
+use crate::notes::{pixels, surface_warning};
 use crate::table::{TERMINAL, or_dash, terminal, wrapped};
 use itertools::Itertools;
 use skiagraph_compare::lists::entry;
@@ -10,19 +10,14 @@ use skiagraph_compare::records::judged_pictures::{
 };
 use skiagraph_compare::records::results::Answer;
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{percent, size, thousands};
+use skiagraph_compare::wording::{or_nothing, percent, size, thousands};
 use skiagraph_reference::Graded;
 
 /// Returns heading, table, verdict and notes of judged pictures as text. `is_broken` breaks
 /// sentences into lines of 80 characters, as a terminal needs; otherwise each is a line.
 pub fn text(judged: &JudgedPictures, is_broken: bool) -> String {
-    let broken = |line: String| {
-        if is_broken {
-            wrapped(&line, TERMINAL)
-        } else {
-            line
-        }
-    };
+    let room = if is_broken { TERMINAL } else { usize::MAX };
+    let broken = |line: String| wrapped(&line, room);
     let mut lines: Vec<String> = heading(judged).into_iter().map(broken).collect();
     let names = short_names(&judged.pictures);
     lines.push(format!("\n{}\n", terminal(&table(judged, &names))));
@@ -38,18 +33,12 @@ const NAME: usize = 28;
 /// Returns the parts of the pictures' paths that tell them apart: without the folders that all
 /// have, and where that is too long for a table without what all end with, and with a gap.
 fn short_names(pictures: &[JudgedPicture]) -> Vec<String> {
-    let paths = pictures
-        .iter()
-        .map(|picture| picture.file.split(['/', '\\']));
-    let paths: Vec<Vec<&str>> = paths.map(Iterator::collect).collect();
+    let files = pictures.iter().map(|picture| &*picture.file);
+    let paths = files.map(|file| file.split(['/', '\\']).collect_vec());
+    let paths = paths.collect_vec();
     let shortest = paths.iter().map(Vec::len).min().unwrap_or_default();
     let has_front = |at: &usize| paths.iter().map(|path| path[*at]).all_equal();
-    let has_back = |at: &usize| {
-        paths
-            .iter()
-            .map(|path| path[path.len() - 1 - at])
-            .all_equal()
-    };
+    let has_back = |at: &usize| paths.iter().map(|it| it.iter().rev().nth(*at)).all_equal();
     let front = (0..shortest).take_while(has_front).count();
     let front = front.min(shortest.saturating_sub(1));
     let back = (0..shortest - front).take_while(has_back).count();
@@ -84,30 +73,17 @@ fn heading(judged: &JudgedPictures) -> Vec<String> {
         "depth" => "by the depths given",
         _ => "as rasterised here, or any other within 1/16 of a pixel",
     };
-    let under = judged.light.as_ref().map(|light| format!(" under {light}"));
+    let under = or_nothing(judged.light.as_ref(), |light| format!(" under {light}"));
+    let (scene, view, size) = (&judged.scene, &judged.view, size(judged.viewport));
+    let count = judged.unattributable;
+    let share = percent(count, judged.pixels.facing_light);
+    let count = thousands(count);
     let mut lines = vec![
-        format!(
-            "{} · view {}{} · {}",
-            judged.scene,
-            judged.view,
-            under.unwrap_or_default(),
-            size(judged.viewport)
-        ),
+        format!("{scene} · view {view}{under} · {size}"),
         pixels(&judged.pixels, judged.area.as_ref(), judged.band),
-        format!(
-            "unattributable: {} ({} of PFL) · surfaces: {surfaces}",
-            thousands(judged.unattributable),
-            percent(judged.unattributable, judged.pixels.facing_light)
-        ),
+        format!("unattributable: {count} ({share} of PFL) · surfaces: {surfaces}"),
     ];
-    if judged.wrong_surface > 0 {
-        let total =
-            judged.pixels.background + judged.pixels.facing_away + judged.pixels.facing_light;
-        lines.push(format!(
-            "warning: {}",
-            wrong_surface(judged.wrong_surface, total)
-        ));
-    }
+    lines.extend(surface_warning(judged.wrong_surface, &judged.pixels));
     lines
 }
 
@@ -164,22 +140,18 @@ fn table(judged: &JudgedPictures, names: &[String]) -> Table {
 
 fn verdict(judged: &JudgedPictures, name: &str, picture: &JudgedPicture) -> String {
     let (wrong, facing) = (picture.wrong_attributable(), judged.pixels.facing_light);
+    let (format, share) = (&picture.format, percent(wrong, facing));
+    let [wrong, facing] = [wrong, facing].map(thousands);
     let mut text = format!(
-        "{name} ({}): {} of the {} pixels that face the light are wrong ({})",
-        picture.format,
-        thousands(wrong),
-        thousands(facing),
-        percent(wrong, facing)
+        "{name} ({format}): {wrong} of the {facing} pixels that face the light are wrong ({share})"
     );
     if picture.without_answer > 0 {
         let unanswered = thousands(picture.without_answer);
         text += &format!(", and {unanswered} have no finite number and are not judged");
     }
     if judged.area.is_some() {
-        text += &format!(
-            ", cut at one half; RMSE {:.5}",
-            picture.graded.rmse_outside_band
-        );
+        let rmse = picture.graded.rmse_outside_band;
+        text += &format!(", cut at one half; RMSE {rmse:.5}");
     }
     if let Some(blockers) = picture.wrong_blockers {
         let counts = [
@@ -208,20 +180,19 @@ fn notes(judged: &JudgedPictures, names: &[String]) -> Vec<String> {
     }
     let warning = |(text, names): (String, Vec<&str>)| match &names[..] {
         [name] => format!("warning: {name}: {text}"),
-        names => format!(
-            "warning: in {} pictures ({}): {text}",
-            names.len(),
-            names.join(", ")
-        ),
+        names => {
+            let (count, names) = (names.len(), names.join(", "));
+            format!("warning: in {count} pictures ({names}): {text}")
+        }
     };
     let mut notes: Vec<String> = warnings.into_iter().map(warning).collect();
     if !judged.is_attributable() {
+        let share = percent(judged.unattributable, judged.pixels.facing_light);
+        let most = MOST_UNATTRIBUTABLE * 100.0;
         notes.push(format!(
-            "no rank: {} of the pixels are unattributable, more than {:.0} %: the truth differs \
-             between surfaces that they may show. Give the surfaces with --ids or --depth, or \
-             render in more pixels",
-            percent(judged.unattributable, judged.pixels.facing_light),
-            MOST_UNATTRIBUTABLE * 100.0
+            "no rank: {share} of the pixels are unattributable, more than {most:.0} %: the truth \
+             differs between surfaces that they may show. Give the surfaces with --ids or \
+             --depth, or render in more pixels"
         ));
     }
     notes.push(

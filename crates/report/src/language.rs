@@ -3,7 +3,8 @@
 
 use crate::table;
 use itertools::Itertools;
-use serde_json::{Map, Value};
+use serde_json::Value;
+use skiagraph_compare::wording::or_nothing;
 use std::collections::BTreeSet;
 
 /// Text before the first heading of the page.
@@ -79,24 +80,20 @@ impl<'s> Page<'s> {
     /// The fields of a struct but those that it has in common with others, those first that must be
     /// given.
     fn table(&mut self, definition: &Value, common: &BTreeSet<&String>) {
-        let fields = definition["properties"].as_object();
         let must = |name: &str| {
             let required = definition["required"].as_array();
             required.is_some_and(|required| required.iter().any(|field| field == name))
         };
         let own = |(name, _): &(&String, &Value)| !common.contains(name);
-        let mut fields: Vec<_> = fields.into_iter().flatten().filter(own).collect();
+        let mut fields: Vec<_> = fields(definition).filter(own).collect();
         if fields.is_empty() {
             return;
         }
         fields.sort_by_key(|(name, _)| !must(name));
         self.text += "\n| field | value | |\n|---|---|---|\n";
         for (name, schema) in fields {
-            let name = if must(name) {
-                format!("**`{name}`**")
-            } else {
-                format!("`{name}`")
-            };
+            let bold = if must(name) { "**" } else { "" };
+            let name = format!("{bold}`{name}`{bold}");
             let value = self.value(schema);
             let what = schema["description"].as_str().unwrap_or_default();
             let row = [name, value, what.to_owned()].map(|cell| cell.replace('|', "\\|"));
@@ -108,29 +105,22 @@ impl<'s> Page<'s> {
     fn tags(&mut self, list: &Value) {
         let defs = self.defs;
         let mut groups: Vec<(Vec<&str>, &str)> = Vec::new();
-        for (tag, fields) in list["items"]["properties"]
-            .as_object()
-            .into_iter()
-            .flatten()
-        {
-            let name = named(fields).unwrap_or_default();
+        for (tag, body) in fields(&list["items"]) {
+            let name = named(body).unwrap_or_default();
             match groups.last_mut().filter(|(_, last)| *last == name) {
                 Some((tags, _)) => tags.push(tag),
                 None => groups.push((vec![tag], name)),
             }
         }
-        let common = ["EveryEntry", "EveryPass"].map(|name| &defs[name]["properties"]);
+        let common = ["EveryEntry", "EveryPass"].map(|name| &defs[name]);
         for (tags, name) in groups {
             let definition = &defs[name];
             let tags = tags.iter().map(|tag| format!("`{tag}`")).join(", ");
             self.heading(&format!("### {tags}"));
             self.description(definition);
-            let has = |common: &&Value| {
-                let mut names = common.as_object().into_iter().flat_map(Map::keys);
-                names.all(|name| definition["properties"].get(name).is_some())
-            };
-            let names = common.iter().copied().filter(has);
-            let names = names.filter_map(Value::as_object).flat_map(Map::keys);
+            let has = |(name, _): (&String, _)| definition["properties"].get(name).is_some();
+            let common = common.into_iter().filter(|common| fields(common).all(has));
+            let names = common.flat_map(fields).map(|(name, _)| name);
             self.table(definition, &names.collect());
             self.told.insert(name.to_owned());
         }
@@ -164,22 +154,17 @@ impl<'s> Page<'s> {
             self.text += "\nOr with fields, `(name: …)`:\n";
             return self.table(one, &BTreeSet::new());
         }
-        let what = one["description"].as_str();
-        let what = what.map_or_else(String::new, |what| format!(": {what}"));
-        if let Some((tag, fields)) =
-            variant(one).filter(|(_, fields)| fields["properties"].is_object())
-        {
+        let what = or_nothing(one["description"].as_str(), |what| format!(": {what}"));
+        let has_fields = |(_, body): &(&str, &Value)| body["properties"].is_object();
+        if let Some((tag, body)) = variant(one).filter(has_fields) {
             self.prose(&format!("`{tag}`{what}"));
-            return self.table(fields, &BTreeSet::new());
+            return self.table(body, &BTreeSet::new());
         }
         let value = self.value(one);
         // A list begins after an empty line.
         let is_in_list = |last: &str| last.starts_with("- ") || last.starts_with("  ");
-        let gap = if self.text.lines().last().is_some_and(is_in_list) {
-            ""
-        } else {
-            "\n"
-        };
+        let is_first = !self.text.lines().last().is_some_and(is_in_list);
+        let gap = if is_first { "\n" } else { "" };
         self.text += &format!("{gap}- {}\n", wrapped(&format!("{value}{what}"), "  "));
     }
 
@@ -217,11 +202,7 @@ impl<'s> Page<'s> {
                 format!("({})", self.values_of(parts))
             }
             Some("array") if schema["items"]["properties"].is_object() => {
-                let tags = schema["items"]["properties"]
-                    .as_object()
-                    .into_iter()
-                    .flatten();
-                let mut tags = tags.map(|(tag, _)| format!("`{tag}`"));
+                let mut tags = fields(&schema["items"]).map(|(tag, _)| format!("`{tag}`"));
                 format!("list of {}", tags.join(", "))
             }
             Some("array") => format!("list of {}", self.value(&schema["items"])),
@@ -236,6 +217,11 @@ impl<'s> Page<'s> {
             _ => "text".to_owned(),
         }
     }
+}
+
+/// The fields of a struct with their schemas.
+fn fields(schema: &Value) -> impl Iterator<Item = (&String, &Value)> {
+    schema["properties"].as_object().into_iter().flatten()
 }
 
 /// The name of the definition that a schema refers to.

@@ -9,7 +9,7 @@ use skiagraph_compare::records::figure::Clocks;
 use skiagraph_compare::records::published_row::PublishedFile;
 use skiagraph_compare::records::results::{Measured, Results, Run, step};
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{command_line, frames, ms, share, thousands};
+use skiagraph_compare::wording::{command_line, frames, ms, or_nothing, share, thousands};
 use std::{collections::BTreeSet, env};
 
 /// Returns the document's header: a heading, the command line of this process, and the conditions
@@ -29,20 +29,16 @@ pub fn header(
         (Some(first), _) => (*first).to_owned(),
         _ => "unknown".to_owned(),
     };
-    let heads: Vec<String> = STEPS
-        .iter()
-        .map(|(step, head)| format!("*{head}* is the step `{step}`"))
-        .collect();
-    let mut lines =
-        vec![
+    let heads = STEPS.map(|(step, head)| format!("*{head}* is the step `{step}`"));
+    let frames = (!are_paths).then(|| frames(results.frames));
+    let frames = frames.unwrap_or("a path's frames".into());
+    let (warmup, heads) = (results.warmup, heads.join(", "));
+    let mut lines = vec![
         format!("adapter: {}", results.adapter),
         format!("date: {date} (UTC)"),
         format!(
-            "times: on the GPU, medians of {} after {} to warm up; {}; *frame* is from the first \
-             pass's begin to the last one's end",
-            if are_paths { "a path's frames".to_owned() } else { frames(results.frames) },
-            results.warmup,
-            heads.join(", ")
+            "times: on the GPU, medians of {frames} after {warmup} to warm up; {heads}; *frame* is \
+             from the first pass's begin to the last one's end"
         ),
         format!("oracle: {}", results.oracle),
         "shares are of the pixels that face the light (PFL), in-band pixels included; *wrong* is \
@@ -64,12 +60,8 @@ pub fn header(
         lines.push(format!("no GPU times: {reason}"));
     }
     lines.extend(scene_notes(results));
-    format!(
-        "## {}\n\n    {}\n\n{}",
-        results.scene,
-        command_line(env::args_os()),
-        list(&lines)
-    )
+    let (scene, command, lines) = (&results.scene, command_line(env::args_os()), list(&lines));
+    format!("## {scene}\n\n    {command}\n\n{lines}")
 }
 
 /// Returns the heading of the view named `name` in Markdown.
@@ -88,7 +80,7 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
     let mut text = format!("\n{}\n", pixels(first, &mut footnotes));
     text += &table(results, runs, &mut footnotes);
     let mut notes: Vec<String> = band_warning(first).into_iter().collect();
-    notes.extend(surface_warning(first));
+    notes.extend(surface_warning(first.wrong_surface, &first.pixels));
     notes.extend(of_runs(results, runs));
     notes.extend(unavailable(runs));
     notes.extend(footnotes.notes());
@@ -100,10 +92,8 @@ pub fn viewport(results: &Results, runs: &[Run]) -> String {
 
 /// The table of those runs that measured something.
 fn table<'a>(results: &Results, runs: &'a [Run], footnotes: &mut Footnotes<'a>) -> String {
-    let measured = runs.iter();
-    let measured: Vec<(&Run, &Measured)> = measured
-        .filter_map(|run| Some((run, run.measured.as_ref()?)))
-        .collect();
+    let measured = |run: &'a Run| Some((run, run.measured.as_ref()?));
+    let measured: Vec<(&Run, &Measured)> = runs.iter().filter_map(measured).collect();
     if measured.is_empty() {
         return String::new();
     }
@@ -126,9 +116,8 @@ fn table<'a>(results: &Results, runs: &'a [Run], footnotes: &mut Footnotes<'a>) 
             (ours, format!("ms.{step}"))
         };
         let cells = of_table(&columns, &steps, figure, time).into_iter();
-        cells
-            .map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity))
-            .collect()
+        let cells = cells.map(|(ours, quantity)| footnotes.with_published(ours, run, &quantity));
+        cells.collect()
     };
     let rows: Vec<Vec<String>> = measured.iter().map(row).collect();
     format!("\n{}", Table::new(heads, 1, rows).markdown())
@@ -143,11 +132,10 @@ fn pixels<'a>(run: &'a Run, footnotes: &mut Footnotes<'a>) -> String {
     let facing_away = count(counts.facing_away, "facing_away");
     let doubt = match &run.area {
         Some(area) => area_reference(area, run.band),
-        None => format!(
-            "in the band {} ({} % of PFL)",
-            thousands(run.band),
-            share(run.band, counts.facing_light)
-        ),
+        None => {
+            let (band, part) = (thousands(run.band), share(run.band, counts.facing_light));
+            format!("in the band {band} ({part} % of PFL)")
+        }
     };
     format!(
         "**{width}×{height}**: PFL {facing_light} = lit {lit} + shadow {shadow}; PnFL \
@@ -188,7 +176,7 @@ impl<'a> Footnotes<'a> {
         let figures = run.published.iter();
         for figure in figures.filter(|figure| figure.quantity == quantity) {
             let value = published(figure.value, quantity);
-            let mark = figure.note.as_deref().map_or_else(String::new, |note| {
+            let mark = or_nothing(figure.note.as_deref(), |note| {
                 let note = (figure.by.as_str(), figure.source.as_str(), note);
                 superscript(place(&mut self.0, note) + 1)
             });
@@ -211,7 +199,8 @@ fn published(value: f64, quantity: &str) -> String {
     let text = value.to_string();
     let decimals = text
         .split_once('.')
-        .map_or(0, |(_, decimals)| decimals.len());
+        .map_or("", |(_, decimals)| decimals)
+        .len();
     match quantity {
         _ if quantity.starts_with("ms.") => text,
         _ if quantity.ends_with("_percent") || quantity == "fps" => {
@@ -225,9 +214,8 @@ fn published(value: f64, quantity: &str) -> String {
 fn superscript(number: usize) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let digits = number.to_string().into_bytes().into_iter();
-    digits
-        .map(|digit| DIGITS[usize::from(digit - b'0')])
-        .collect()
+    let digits = digits.map(|digit| DIGITS[usize::from(digit - b'0')]);
+    digits.collect()
 }
 
 /// Which methods could not run, each reason once.
@@ -240,10 +228,9 @@ fn unavailable(runs: &[Run]) -> Vec<String> {
         }
     }
     let text = |((preset, reason), maps): ((&str, &str), Vec<String>)| {
-        let maps = if maps.is_empty() {
-            String::new()
-        } else {
-            format!(", map {},", maps.join(", "))
+        let maps = match &maps[..] {
+            [] => String::new(),
+            maps => format!(", map {},", maps.join(", ")),
         };
         format!("{preset}{maps} is unavailable: {reason}")
     };

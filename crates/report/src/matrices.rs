@@ -48,12 +48,10 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     let summaries = summaries(results);
     let mut tables = Vec::new();
     for viewport in unique(summaries.iter().map(|summary| summary.viewport)) {
-        let summaries = summaries
-            .iter()
-            .filter(|summary| summary.viewport == viewport);
-        let lights: Vec<(&str, &Summary)> = summaries
-            .filter_map(|summary| Some((summary.light?, summary)))
-            .collect();
+        let is_of = |summary: &&Summary| summary.viewport == viewport;
+        let lights = summaries.iter().filter(is_of);
+        let lights = lights.filter_map(|summary| Some((summary.light?, summary)));
+        let lights: Vec<(&str, &Summary)> = lights.collect();
         if lights.len() < 2 {
             continue;
         }
@@ -85,15 +83,15 @@ fn text([wrong, facing]: [u64; 2], time: Option<f64>, memory: u64) -> String {
 
 /// The cell of all lights, from a method's rows under each.
 fn at_once(rows: &[(&Summary, &Row)]) -> Option<String> {
-    let (first, others) = rows.split_first()?;
+    let (first, rest) = rows.split_first()?;
     let has_all = first
         .1
         .runs()
         .any(|(_, measured)| measured.lights.is_some());
-    let others = others.iter().filter(|_| !has_all);
-    let others = others.map(|(_, row)| row.frame_ms(Some(Regime::Light)));
+    let rest = rest.iter().filter(|_| !has_all);
+    let rest = rest.map(|(_, row)| row.frame_ms(Some(Regime::Light)));
     let first = first.1.frame_ms(main_choice(&first.0.rows));
-    let time = [first].into_iter().chain(others).sum();
+    let time = [first].into_iter().chain(rest).sum();
     let rows = rows.iter().map(|(_, row)| row);
     let wrong = rows.clone().map(|row| row.wrong());
     let count =
@@ -115,11 +113,9 @@ pub fn passes(results: &Results) -> String {
     tables.join("\n")
 }
 
-fn matrix(method: &str, runs: &[&Run]) -> String {
-    let measured = || {
-        runs.iter()
-            .filter_map(|run| Some((*run, run.measured.as_ref()?)))
-    };
+fn matrix<'a>(method: &str, runs: &[&'a Run]) -> String {
+    let with_figures = |run: &&'a Run| Some((*run, run.measured.as_ref()?));
+    let measured = || runs.iter().filter_map(with_figures);
     let column = |run: &Run| (run.viewport, run.map_size);
     let columns = unique(measured().map(|(run, _)| column(run)));
     let passes = measured().flat_map(|(_, measured)| &measured.passes);

@@ -39,13 +39,13 @@ pub fn scene_notes(results: &Results) -> impl Iterator<Item = String> {
     })
 }
 
-/// Returns a warning if the GPU rasterised pixels of a run's view with a surface that another one
-/// hides; `None` if there are no such pixels. Methods are judged on the rasterised surface.
-pub fn surface_warning(run: &Run) -> Option<String> {
-    let background = run.pixels.background + run.pixels.facing_away;
-    let total = background + run.pixels.facing_light;
-    let text = || format!("warning: {}", wrong_surface(run.wrong_surface, total));
-    (run.wrong_surface > 0).then(text)
+/// Returns a warning if the GPU rasterised `wrong_surface` of these pixels with a surface that
+/// another one hides; `None` if there are no such pixels. Methods are judged on the rasterised
+/// surface.
+pub fn surface_warning(wrong_surface_count: u64, pixels: &PixelCounts) -> Option<String> {
+    let total = pixels.background + pixels.facing_away + pixels.facing_light;
+    let text = || format!("warning: {}", wrong_surface(wrong_surface_count, total));
+    (wrong_surface_count > 0).then(text)
 }
 
 /// Returns two lines: the counts of pixels by the [reference](skiagraph_compare#terms), and the
@@ -54,30 +54,27 @@ pub fn surface_warning(run: &Run) -> Option<String> {
 pub fn pixels(counts: &PixelCounts, area: Option<&AreaReference>, band: u64) -> String {
     let doubt = match area {
         Some(area) => area_reference(area, band),
-        None => format!(
-            "in the band, where the answer hangs on rounding: {} ({} of PFL)",
-            thousands(band),
-            percent(band, counts.facing_light)
-        ),
+        None => {
+            let (band, share) = (thousands(band), percent(band, counts.facing_light));
+            format!("in the band, where the answer hangs on rounding: {band} ({share} of PFL)")
+        }
     };
+    let facing = thousands(counts.facing_light);
+    let [lit, shadow] = [counts.lit, counts.shadow].map(thousands);
+    let [away, background] = [counts.facing_away, counts.background].map(thousands);
     format!(
-        "facing the light (PFL) {} = lit {} + shadow {} · facing away {} · background {}\n{doubt}",
-        thousands(counts.facing_light),
-        thousands(counts.lit),
-        thousands(counts.shadow),
-        thousands(counts.facing_away),
-        thousands(counts.background)
+        "facing the light (PFL) {facing} = lit {lit} + shadow {shadow} · facing away {away} · \
+         background {background}\n{doubt}"
     )
 }
 
 /// Returns the sentence that the GPU rasterised `count` of `total` pixels with a surface that
 /// another one hides.
 pub fn wrong_surface(count: u64, total: u64) -> String {
+    let [count, total] = [count, total].map(thousands);
     format!(
-        "{} of {} pixels show a surface that another one hides, or none where there is one; every \
-         method is judged on the surface that is shown",
-        thousands(count),
-        thousands(total)
+        "{count} of {total} pixels show a surface that another one hides, or none where there is \
+         one; every method is judged on the surface that is shown"
     )
 }
 
@@ -86,26 +83,24 @@ pub fn wrong_surface(count: u64, total: u64) -> String {
 pub fn map_figures(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
     let texels = measured.texels.as_ref()?;
-    let range =
-        |quantiles: &Quantiles| format!("{} to {}", digits(quantiles.p5), digits(quantiles.p95));
+    let range = |it: &Quantiles| format!("{} to {}", digits(it.p5), digits(it.p95));
+    let [whole, perspective, projection] =
+        [&texels.texels, &texels.perspective, &texels.projection].map(range);
+    let median = digits(texels.texels.median);
+    let under_one = percent(texels.under_one, texels.pixels);
     let mut text = format!(
-        "texels per pixel: median {}, nine tenths of the pixels {}; by distance and map {}, by \
-         angles × {}; under one in {}",
-        digits(texels.texels.median),
-        range(&texels.texels),
-        range(&texels.perspective),
-        range(&texels.projection),
-        percent(texels.under_one, texels.pixels),
+        "texels per pixel: median {median}, nine tenths of the pixels {whole}; by distance and \
+         map {perspective}, by angles × {projection}; under one in {under_one}"
     );
     if texels.outside_map > 0 {
         text += &format!("; outside the map {}", thousands(texels.outside_map));
     }
     if let Some(jump) = &measured.layer_jump {
+        let (across, elsewhere) = (jump.across, jump.elsewhere);
+        let pairs = plural(jump.pairs as usize, "pair");
         text += &format!(
-            ". Neighbours differ in error by {:.4} across layers ({}), by {:.4} elsewhere",
-            jump.across,
-            plural(jump.pairs as usize, "pair"),
-            jump.elsewhere,
+            ". Neighbours differ in error by {across:.4} across layers ({pairs}), by \
+             {elsewhere:.4} elsewhere"
         );
     }
     Some(text)
@@ -122,40 +117,33 @@ fn digits(number: f64) -> String {
 /// caster shades. Runs of a method in the same setting must be consecutive; all its map sizes share
 /// one line.
 pub fn certain_wrong(runs: &[Run]) -> Vec<String> {
-    let wrong = |run: &Run| {
-        let certain = run
-            .measured
-            .as_ref()
-            .map_or(0, |measured| measured.wrong.certain);
-        run.is_hard() && certain > 0
-    };
-    runs.chunk_by(|one, other| one.preset == other.preset)
-        .map(|runs| runs.iter().filter(|run| wrong(run)).collect::<Vec<_>>())
-        .filter_map(|runs| {
-            let measured = runs.iter().filter_map(|run| run.measured.as_ref());
-            let counts = measured.map(|measured| {
-                let blockers = measured.certain_wrong_blockers.unwrap_or_default();
-                (measured.wrong.certain, blockers)
-            });
-            let counts: Vec<_> = counts.collect();
-            Some(format!("{}: {}", maps(&runs)?, blocked_by(&counts)))
-        })
-        .collect()
+    let wrong = |run| Some((run, certain_wrong_of(run)?));
+    let methods = runs.chunk_by(|one, other| one.preset == other.preset);
+    let lines = methods.filter_map(|runs| {
+        let (runs, counts): (Vec<&Run>, Vec<_>) = runs.iter().filter_map(wrong).unzip();
+        Some(format!("{}: {}", maps(&runs)?, blocked_by(&counts)))
+    });
+    lines.collect()
+}
+
+/// Returns the number of pixels that a method called certain and got wrong outside of the band, and
+/// what blocks their light; `None` if there are none, or if shares of light are compared.
+pub fn certain_wrong_of(run: &Run) -> Option<(u64, BlockerCounts)> {
+    let measured = run.measured.as_ref().filter(|_| run.is_hard())?;
+    let blockers = measured.certain_wrong_blockers.unwrap_or_default();
+    let certain = measured.wrong.certain;
+    (certain > 0).then_some((certain, blockers))
 }
 
 /// Names a setting of params that makes most of a run's wrong pixels right; `None` if none was
 /// found.
 pub fn hint(run: &Run) -> Option<String> {
     let hint = run.measured.as_ref()?.hint.as_ref()?;
+    let (label, words, set) = (run.method_label(), hint.cause.words(), &hint.set);
+    let [part, wrong, then] = [hint.explained, hint.wrong, hint.wrong_then].map(thousands);
     Some(format!(
-        "{}: {} of {} wrong pixels {}: try {}, with which {} are wrong here (--tune searches \
-         further)",
-        run.method_label(),
-        thousands(hint.explained),
-        thousands(hint.wrong),
-        hint.cause.words(),
-        hint.set,
-        thousands(hint.wrong_then)
+        "{label}: {part} of {wrong} wrong pixels {words}: try {set}, with which {then} are wrong \
+         here (--tune searches further)"
     ))
 }
 
@@ -183,16 +171,12 @@ const KINDS: [Kind; 3] = [
 pub fn blocked_by(counts: &[(u64, BlockerCounts)]) -> String {
     let phrase = |name: &str, count: &dyn Fn(&(u64, BlockerCounts)) -> u64| {
         let counts: Vec<u64> = counts.iter().map(count).collect();
-        let text: Vec<String> = counts.iter().copied().map(thousands).collect();
         let any = counts.iter().any(|&count| count > 0);
-        any.then(|| format!("{name} {}", text.join(" / ")))
+        any.then(|| format!("{name} {}", counts.into_iter().map(thousands).join(" / ")))
     };
     let certain = phrase("certain wrong outside the band", &|(wrong, _)| *wrong);
-    let kinds = KINDS
-        .iter()
-        .map(|(name, pick)| phrase(name, &|(_, by)| pick(by)));
-    let parts: Vec<String> = [certain].into_iter().chain(kinds).flatten().collect();
-    parts.join(", ")
+    let kinds = KINDS.map(|(name, pick)| phrase(name, &|(_, by)| pick(by)));
+    [certain].into_iter().chain(kinds).flatten().join(", ")
 }
 
 /// Returns the notes on runs of `results`, a line each: certain but wrong pixels, [shares of
@@ -222,11 +206,9 @@ pub fn remembering(run: &Run) -> Option<String> {
         None => format!("its picture does not repeat within {after}"),
     };
     let early = |picture: &EarlyPicture| {
+        let (rmse, flip, frames) = (picture.rmse, picture.flip, picture.frames);
         let wrong = thousands(picture.wrong_outside_band);
-        format!(
-            "{wrong} (RMSE {:.4}, FLIP {:.4}) after {}",
-            picture.rmse, picture.flip, picture.frames
-        )
+        format!("{wrong} (RMSE {rmse:.4}, FLIP {flip:.4}) after {frames}")
     };
     let early = steady.begin.iter().map(early).format(", ");
     let line = match steady.judged {
@@ -235,14 +217,12 @@ pub fn remembering(run: &Run) -> Option<String> {
             format!("{name} remembers: {state}, and is judged then")
         }
         Some(cycle) => {
+            let (count, wrong, rmse) = (cycle.pictures, cycle.wrong_mean, cycle.rmse_mean);
+            let (worst, worst_rmse) = (thousands(measured.wrong.total), measured.graded.rmse);
             format!(
-                "{name} remembers: {state}; it is ranked by the mean of {} pictures then, {:.1} \
-                 wrong pixels and RMSE {:.5}; the worst has {} and {:.5}",
-                cycle.pictures,
-                cycle.wrong_mean,
-                cycle.rmse_mean,
-                thousands(measured.wrong.total),
-                measured.graded.rmse
+                "{name} remembers: {state}; it is ranked by the mean of {count} pictures then, \
+                 {wrong:.1} wrong pixels and RMSE {rmse:.5}; the worst has {worst} and \
+                 {worst_rmse:.5}"
             )
         }
     };
@@ -256,17 +236,12 @@ pub fn remembering(run: &Run) -> Option<String> {
 /// Describes the slowest frame of a camera path, and the CPU times of building scene resources
 /// again. Each entry is a line. The list is empty for a still view.
 pub fn path_costs(run: &Run) -> Vec<String> {
-    let sequence = run
-        .measured
-        .as_ref()
-        .and_then(|measured| measured.sequence.as_ref());
+    let measured = run.measured.as_ref();
+    let sequence = measured.and_then(|measured| measured.sequence.as_ref());
     let slowest = sequence.and_then(Sequence::slowest).map(|(index, cost)| {
         let clock = cost.gpu_ms.map_or("wall", |_| "GPU and CPU");
-        format!(
-            "{}: slowest frame {index}, {} ms ({clock})",
-            run.method_label(),
-            ms(cost.ms())
-        )
+        let (label, time) = (run.method_label(), ms(cost.ms()));
+        format!("{label}: slowest frame {index}, {time} ms ({clock})")
     });
     let remade = sequence.and_then(|sequence| remade(run, sequence));
     slowest.into_iter().chain(remade).collect()
@@ -318,10 +293,10 @@ mod tests {
     #[test]
     fn surfaces_that_are_not_seen_are_said() {
         let mut run = sample().runs.remove(0);
-        assert_eq!(surface_warning(&run), None);
+        assert_eq!(surface_warning(run.wrong_surface, &run.pixels), None);
         run.wrong_surface = 1_234;
         assert_eq!(
-            surface_warning(&run).unwrap(),
+            surface_warning(run.wrong_surface, &run.pixels).unwrap(),
             "warning: 1,234 of 131,072 pixels show a surface that another one hides, or none where \
              there is one; every method is judged on the surface that is shown"
         );

@@ -53,9 +53,8 @@ pub fn scene_names<'a>(scenes: &[(&'a Path, &'a Results)]) -> Vec<String> {
     let scene = |results: &'a Results| results.scene.name.as_str();
     let last = |folder: &'a Path| folder.file_name().map(|name| name.to_string_lossy());
     let name = |(folder, results): &(&'a Path, &'a Results)| {
-        let alike = scenes
-            .iter()
-            .filter(|(_, other)| scene(other) == scene(results));
+        let is_alike = |(_, other): &&(_, &'a Results)| scene(other) == scene(results);
+        let alike = scenes.iter().filter(is_alike);
         let folders: Vec<&Path> = alike.map(|(folder, _)| *folder).collect();
         match last(folder) {
             _ if folders.len() == 1 => scene(results).to_owned(),
@@ -134,11 +133,8 @@ impl<'a> Overview<'a> {
     pub fn text(&self) -> String {
         let matrices = self.matrices().into_iter();
         let tables = matrices.map(|matrix| {
-            let viewport = size(matrix.viewport);
-            format!(
-                "Overview, {viewport}: {LEGEND}\n{}\n",
-                terminal(&matrix.table)
-            )
+            let (viewport, table) = (size(matrix.viewport), terminal(&matrix.table));
+            format!("Overview, {viewport}: {LEGEND}\n{table}\n")
         });
         tables.collect::<String>() + &self.sentences().join("\n") + "\n"
     }
@@ -181,42 +177,36 @@ impl<'a> Overview<'a> {
         let exact = labels.into_iter().filter(is_exact);
         let exact = exact.map(|label| format!("`{label}`")).join(", ");
         let mut rows = self.columns.iter().flat_map(|column| &column.summary.rows);
-        let right = if rows.any(|row| is_conditioned(row.wrong())) {
-            "right wherever that can be judged"
-        } else {
-            "exact"
+        let is_part = rows.any(|row| is_conditioned(row.wrong()));
+        let right = is_part.then_some("right wherever that can be judged");
+        let right = right.unwrap_or("exact");
+        let scenes = match self.scenes {
+            2 => "both scenes".to_owned(),
+            count => format!("all {count} scenes"),
         };
-        match (self.scenes, exact.as_str()) {
-            (2, "") => format!("No method is {right} on both scenes."),
-            (count, "") => format!("No method is {right} on all {count} scenes."),
-            (2, exact) => format!("On both scenes {right}: {exact}."),
-            (count, exact) => format!("On all {count} scenes {right}: {exact}."),
+        match exact.as_str() {
+            "" => format!("No method is {right} on {scenes}."),
+            exact => format!("On {scenes} {right}: {exact}."),
         }
     }
 
     /// Which methods the verdicts name first; `None` if none names any.
     fn taken(&self) -> Option<String> {
-        let named = |is_taken: bool| {
+        let clause = |(is_taken, what): (bool, &str)| {
             let columns = self.columns.iter();
-            let columns = columns.filter(move |column| column.verdict.is_taken == is_taken);
-            let first = columns.filter(|column| !column.verdict.first.is_empty());
-            let named = first.map(|column| {
+            let columns = columns.filter(|column| column.verdict.is_taken == is_taken);
+            let mut named = columns.filter_map(|column| {
                 let rows = column.verdict.first.iter();
-                let rows = rows.map(|row| format!("`{}`", column.summary.rows[*row].label));
-                let names = rows.collect::<Vec<_>>().join(" or ");
-                format!("{names} on {}", self.name(column))
+                let mut rows = rows.map(|row| format!("`{}`", column.summary.rows[*row].label));
+                let names = Some(rows.join(" or ")).filter(|names| !names.is_empty())?;
+                Some(format!("{names} on {}", self.name(column)))
             });
-            named.collect::<Vec<_>>().join(", ")
+            let named = Some(named.join(", ")).filter(|named| !named.is_empty())?;
+            Some(format!("{what}: {named}"))
         };
         let parts = [(true, "taken"), (false, "the least wrong")];
-        let parts = parts.map(|(is_taken, what)| (what, named(is_taken)));
-        let clauses = parts.iter().filter(|(_, named)| !named.is_empty());
-        let clauses: Vec<String> = clauses
-            .map(|(what, named)| format!("{what}: {named}"))
-            .collect();
-        let mut text = clauses.join("; ");
-        let first = text.get_mut(..1)?;
-        first.make_ascii_uppercase();
+        let mut text = parts.into_iter().filter_map(clause).join("; ");
+        text.get_mut(..1)?.make_ascii_uppercase();
         Some(text + ".")
     }
 }
@@ -242,11 +232,9 @@ pub const LEGEND: &str = "wrong pixels outside the band (* none) or RMSE, and a 
 
 fn cell(summary: &Summary, row: &Row) -> String {
     let wrong = row.wrong();
-    let error = if summary.is_soft() {
-        or_dash(row.rmse(), |rmse| format!("RMSE {rmse:.4}"))
-    } else {
-        percent(wrong.outside_band, wrong.facing_light)
-    };
+    let rmse = || or_dash(row.rmse(), |rmse| format!("RMSE {rmse:.4}"));
+    let share = || percent(wrong.outside_band, wrong.facing_light);
+    let error = if summary.is_soft() { rmse() } else { share() };
     let star = if is_exact(summary, row) { " *" } else { "" };
     let time = or_dash(row.frame_ms(main_choice(&summary.rows)), ms);
     format!("{error}{star}\n{time} ms")

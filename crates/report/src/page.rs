@@ -140,11 +140,8 @@ fn told(source: &Source) -> String {
     let folders = plural(source.folders.len(), "folder");
     let mut text = format!("{}: {runs} of {folders}", results.scene.name);
     text += &format!(" · {} · {}", results.adapter, results.machine);
-    if source.replaced > 0 {
-        text += &format!(
-            "; of {} that were there twice the newer count",
-            source.replaced
-        );
+    if let count @ 1.. = source.replaced {
+        text += &format!("; of {count} that were there twice the newer count");
     }
     text
 }
@@ -177,11 +174,8 @@ fn read(places: &[PathBuf], own: &[Kept]) -> Result<Read, CompareError> {
     let mut matrices = Vec::new();
     let places = read_back::with_scenes(&places);
     for place in places.iter().unique_by(|place| of_place(place)) {
-        let matrix = if place.is_dir() {
-            read_back::stress(place)?
-        } else {
-            None
-        };
+        let matrix = place.is_dir().then(|| read_back::stress(place));
+        let matrix = matrix.transpose()?.flatten();
         // A folder may be of `stress` or of cells alone.
         let has_others = matrix.is_some() || cell_files::is_folder(place);
         if !is_own(place) && (!has_others || place.join("results.json").exists()) {
@@ -200,11 +194,8 @@ fn read(places: &[PathBuf], own: &[Kept]) -> Result<Read, CompareError> {
 /// The file of the results of a folder, or the file itself, by the one name that all its names lead
 /// to.
 fn of_place(place: &Path) -> PathBuf {
-    let file = if place.is_dir() {
-        place.join("results.json")
-    } else {
-        place.to_path_buf()
-    };
+    let own = place.is_dir().then(|| place.join("results.json"));
+    let file = own.unwrap_or_else(|| place.to_path_buf());
     let canonical = fs::canonicalize(&file).or_else(|_| fs::canonicalize(place));
     canonical.unwrap_or(file)
 }

@@ -62,10 +62,8 @@ pub fn to_csv(profiles: &[Profile]) -> Result<String, ::csv::Error> {
     let lines = profiles.iter();
     let lines = lines.flat_map(|profile| profile.lines().map(move |line| (profile, line)));
     let rows = lines.map(|(profile, line)| {
-        COLUMNS
-            .iter()
-            .map(|(_, cell)| cell(profile, line))
-            .collect()
+        let cells = COLUMNS.iter().map(|(_, cell)| cell(profile, line));
+        cells.collect()
     });
     Table::new(COLUMNS.map(|(name, _)| name), 0, rows).csv()
 }

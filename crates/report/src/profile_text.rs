@@ -8,7 +8,7 @@ use skiagraph_compare::records::baseline::{Comparison, Difference, MIN_FRAMES, R
 use skiagraph_compare::records::profile::{Conditions, Line, Material, PassProfile, Profile};
 use skiagraph_compare::records::statistics::Series;
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{bytes, frames, ms, size};
+use skiagraph_compare::wording::{bytes, frames, ms, or_nothing, size};
 
 /// Returns a profile as text for a terminal, with the comparison with an older profile if it has
 /// one.
@@ -16,21 +16,15 @@ pub fn report(profile: &Profile) -> String {
     let mut text = conditions(profile);
     text += &format!("\nTimes, ms\n{}\n", times(profile));
     let wall = &profile.frame.wall_ms;
+    let [min, median, p95, max] = [wall.min, wall.median, wall.p95, wall.max].map(ms);
     text += &format!(
-        "Wall time from the start of encoding until the GPU was done: least {}, median {}, \
-         p95 {}, greatest {}\n",
-        ms(wall.min),
-        ms(wall.median),
-        ms(wall.p95),
-        ms(wall.max)
+        "Wall time from the start of encoding until the GPU was done: least {min}, median \
+         {median}, p95 {p95}, greatest {max}\n"
     );
     text.extend(notes(profile).map(|note| format!("{note}\n")));
     text += &format!("\nMemory\n{}\n", memory(&profile.memory.materials));
-    text += &format!(
-        "Materials take {}; sharing saves {}\n",
-        bytes(profile.memory.bytes),
-        bytes(profile.memory.saved_bytes)
-    );
+    let [size, saved] = [profile.memory.bytes, profile.memory.saved_bytes].map(bytes);
+    text += &format!("Materials take {size}; sharing saves {saved}\n");
     if let Some(baseline) = &profile.baseline {
         text.push_str(&comparison(baseline, profile));
     }
@@ -48,21 +42,15 @@ fn name_of(pass: Option<&PassProfile>) -> &str {
 /// for each view, viewport and map size. Cells are median GPU times in milliseconds.
 pub fn matrices(profiles: &[Profile]) -> String {
     let mut text = String::new();
-    if let Some(first) = profiles.first() {
-        text += &format!(
-            "{}\n{}\nGPU ms, medians of {} after {} to warm up\n",
-            first.conditions.scene,
-            first.conditions.adapter,
-            frames(first.conditions.frames),
-            first.conditions.warmup
-        );
+    if let Some(Profile { conditions, .. }) = profiles.first() {
+        let (scene, adapter, warmup) = (&conditions.scene, &conditions.adapter, conditions.warmup);
+        let frames = frames(conditions.frames);
+        text += &format!("{scene}\n{adapter}\n");
+        text += &format!("GPU ms, medians of {frames} after {warmup} to warm up\n");
     }
-    let methods = profiles
-        .iter()
-        .map(|profile| profile.conditions.preset.as_str());
-    for method in unique(methods) {
+    for method in unique(profiles.iter().map(|profile| &profile.conditions.preset)) {
         let columns = profiles.iter();
-        let columns = columns.filter(|profile| profile.conditions.preset == method);
+        let columns = columns.filter(|profile| profile.conditions.preset == *method);
         text += &format!("\n{}\n", matrix(method, &columns.collect::<Vec<_>>()));
     }
     text
@@ -72,7 +60,7 @@ fn matrix(method: &str, profiles: &[&Profile]) -> String {
     let head = |profile: &&Profile| {
         let Conditions { view, viewport, .. } = &profile.conditions;
         let map = profile.conditions.params.get(MAP_SIZE);
-        let map = map.map_or(String::new(), |map| format!("\nmap {map}"));
+        let map = or_nothing(map, |map| format!("\nmap {map}"));
         format!("{view}\n{}{map}", size(*viewport))
     };
     let heads = [method.to_owned()].into_iter();
@@ -140,11 +128,8 @@ fn conditions(profile: &Profile) -> String {
     let params = params.reduce(|list, param| format!("{list}, {param}"));
     let params = params.unwrap_or("none".into());
     let timed = profile.timed() as u32;
-    let stopped = if timed < *asked {
-        format!(", stopped before the {asked} asked for")
-    } else {
-        String::new()
-    };
+    let stopped = (timed < *asked).then(|| format!(", stopped before the {asked} asked for"));
+    let stopped = stopped.unwrap_or_default();
     let trust = match &adapter.gpu_unavailable {
         None => "trusted: they agree with wall time".to_owned(),
         Some(reason) => format!("not used: {reason}"),
@@ -186,10 +171,8 @@ fn memory(materials: &[Material]) -> String {
 fn comparison(baseline: &Comparison, new: &Profile) -> String {
     let mut text = format!("\nAgainst {}, {}\n", baseline.file, baseline.date);
     if !baseline.differences.is_empty() {
-        text.push_str(
-            "WARNING: measured under other conditions, so the ratios do not compare \
-            like with like\n",
-        );
+        text += "WARNING: measured under other conditions, so the ratios do not compare like with \
+                 like\n";
         for Difference { what, old, new } in &baseline.differences {
             text += &format!("  {what}: then {old}, now {new}\n");
         }
@@ -197,25 +180,20 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
     let (passes, frame) = (&baseline.passes, &baseline.frame);
     let passes = passes.iter().map(|pass| (&*pass.name, pass.gpu, pass.cpu));
     let lines = passes.chain([(WHOLE, frame.gpu, frame.cpu)]);
-    let gpu = lines
-        .clone()
-        .map(|(name, gpu, _)| ratio_row("GPU", name, gpu));
+    let gpu_lines = lines.clone();
+    let gpu = gpu_lines.map(|(name, gpu, _)| ratio_row("GPU", name, gpu));
     let cpu = lines.map(|(name, _, cpu)| ratio_row("CPU", name, Some(cpu)));
     let wall = ratio_row("wall", WHOLE, Some(frame.wall));
     let rows = gpu.chain(cpu).chain([wall]);
     let heads = "pass|clock|then|now|now / then|its spread|".split('|');
     text += &format!("{}\n", terminal(&Table::new(heads, 2, rows)));
     if baseline.frame.gpu.is_none() {
-        let side = match new.frame.gpu_ms {
-            Some(_) => "the older profile has none",
-            None => "the new profile has none",
-        };
-        text += &format!("No ratio of GPU times of whole frames: {side}\n");
+        let side = new.frame.gpu_ms.as_ref().map_or("new", |_| "older");
+        text += &format!("No ratio of GPU times of whole frames: the {side} profile has none\n");
     }
-    for (side, names) in [("then", &baseline.only_old), ("now", &baseline.only_new)] {
-        if !names.is_empty() {
-            text += &format!("Only {side}: {}\n", names.join(", "));
-        }
+    let only = [("then", &baseline.only_old), ("now", &baseline.only_new)];
+    for (side, names) in only.into_iter().filter(|(_, names)| !names.is_empty()) {
+        text += &format!("Only {side}: {}\n", names.join(", "));
     }
     text += &format!(
         "Medians, ms; the spread goes from Q1(now) / Q3(then) to Q3(now) / Q1(then). Faster or \
@@ -226,26 +204,25 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
 }
 
 fn ratio_row(clock: &str, name: &str, ratio: Option<Ratio>) -> Vec<String> {
-    let mut row = vec![name.to_owned(), clock.to_owned()];
-    row.extend(ratio.map_or(
-        ["–", "–", "–", "–", ""].map(str::to_owned),
-        |ratio| {
-            let verdict = match ratio.verdict {
-                Verdict::Faster => "faster",
-                Verdict::Slower => "slower",
-                Verdict::Same => "same",
-                Verdict::TooFewFrames => "too few frames",
-            };
-            [
-                ms(ratio.old_ms),
-                ms(ratio.new_ms),
-                format!("{:.3}", ratio.ratio),
-                format!("{:.3} … {:.3}", ratio.low, ratio.high),
-                verdict.to_owned(),
-            ]
-        },
-    ));
-    row
+    let Some(ratio) = ratio else {
+        let cells = [name, clock, "–", "–", "–", "–", ""];
+        return cells.map(str::to_owned).into();
+    };
+    let verdict = match ratio.verdict {
+        Verdict::Faster => "faster",
+        Verdict::Slower => "slower",
+        Verdict::Same => "same",
+        Verdict::TooFewFrames => "too few frames",
+    };
+    vec![
+        name.to_owned(),
+        clock.to_owned(),
+        ms(ratio.old_ms),
+        ms(ratio.new_ms),
+        format!("{:.3}", ratio.ratio),
+        format!("{:.3} … {:.3}", ratio.low, ratio.high),
+        verdict.to_owned(),
+    ]
 }
 
 #[cfg(test)]

@@ -16,17 +16,13 @@ pub fn png(svg: &str) -> Result<Vec<u8>, CompareError> {
     let mut options = usvg::Options::default();
     let fonts = options.fontdb_mut();
     fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-    let family = fonts
-        .faces()
-        .find_map(|face| Some(face.families.first()?.0.clone()));
+    let families = fonts.faces().flat_map(|face| face.families.clone());
+    let family = families.map(|(family, _)| family).next();
     let family = family.ok_or_else(|| failed(&"its font has no name"))?;
     fonts.set_sans_serif_family(family);
     let tree = usvg::Tree::from_str(svg, &options).map_err(|error| failed(&error))?;
-    let size = tree
-        .size()
-        .to_int_size()
-        .scale_by(SCALE)
-        .ok_or_else(|| failed(&"it has no size"))?;
+    let size = tree.size().to_int_size().scale_by(SCALE);
+    let size = size.ok_or_else(|| failed(&"it has no size"))?;
     let pixmap = tiny_skia::Pixmap::new(size.width(), size.height());
     let mut pixmap = pixmap.ok_or_else(|| failed(&"it is too large"))?;
     pixmap.fill(tiny_skia::Color::WHITE);

@@ -9,7 +9,7 @@ use skiagraph_compare::records::figures::are_paths;
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::statistics::Spread;
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{frames, ms, percent, size};
+use skiagraph_compare::wording::{frames, ms, or_nothing, percent, size};
 use std::collections::BTreeSet;
 
 /// Returns the heading, a table of times and errors, a table of the times of passes, and notes for
@@ -19,45 +19,34 @@ pub fn group(results: &Results, runs: &[Run]) -> String {
     let Some(first) = runs.first() else {
         return String::new();
     };
-    let mut text = heading(results, first, runs);
-    text += &comparison(results, runs);
-    text.push('\n');
+    let mut text = heading(results, first, runs) + &comparison(results, runs) + "\n";
     if runs.iter().any(|run| run.measured.is_some()) {
-        text += &format!(
-            "\nEach pass, ms: least, median and 95th percentile of {}\n",
-            timed_frames(results, runs)
-        );
-        text.push_str(&passes(runs));
-        text.push('\n');
+        let (frames, passes) = (timed_frames(results, runs), passes(runs));
+        let what = "Each pass, ms: least, median and 95th percentile of";
+        text += &format!("\n{what} {frames}\n{passes}\n");
     }
-    for (index, note) in footnotes(results, runs).iter().enumerate() {
-        text.push_str(if index == 0 { "\n" } else { "" });
-        text.push_str(note);
-        text.push('\n');
+    let notes = footnotes(results, runs);
+    if !notes.is_empty() {
+        text += &format!("\n{}\n", notes.join("\n"));
     }
     text
 }
 
 fn heading(results: &Results, run: &Run, runs: &[Run]) -> String {
     let view = &run.view;
-    let what = if are_paths(&runs.iter().collect::<Vec<_>>()) {
-        format!("path {view}, counts of all its frames together")
-    } else {
-        format!("view {view}")
-    };
+    let is_path = are_paths(&runs.iter().collect::<Vec<_>>());
+    let path = is_path.then(|| format!("path {view}, counts of all its frames together"));
+    let what = path.unwrap_or_else(|| format!("view {view}"));
     let title = format!("{} · {what} · {}", results.scene, size(run.viewport));
+    let frames = timed_frames(results, runs);
+    let (warmup, oracle) = (results.warmup, &results.oracle);
     let mut lines = vec![
         results.adapter.to_string(),
-        format!(
-            "medians of {} after {} to warm up · oracle {}",
-            timed_frames(results, runs),
-            results.warmup,
-            results.oracle
-        ),
+        format!("medians of {frames} after {warmup} to warm up · oracle {oracle}"),
         pixels(&run.pixels, run.area.as_ref(), run.band),
     ];
     lines.extend(band_warning(run));
-    lines.extend(surface_warning(run));
+    lines.extend(surface_warning(run.wrong_surface, &run.pixels));
     format!("{title}\n{}\n", lines.join("\n"))
 }
 
@@ -112,16 +101,15 @@ fn passes(runs: &[Run]) -> String {
         let passes = passes.map(|pass| (pass.name.as_str(), pass.gpu_ms, Some(pass.cpu_ms)));
         for (index, (name, gpu, cpu)) in passes.chain([whole]).chain(regimes).enumerate() {
             let gpu = |pick: fn(Spread) -> f64| gpu.map_or("–".into(), |spread| ms(pick(spread)));
+            // The eye finds groups by their first line.
+            let label = or_nothing((index == 0).then_some(run), Run::method_label);
             rows.push(vec![
-                // The eye finds groups by their first line.
-                Some(run.method_label())
-                    .filter(|_| index == 0)
-                    .unwrap_or_default(),
+                label,
                 name.into(),
                 gpu(|spread| spread.min),
                 gpu(|spread| spread.median),
                 gpu(|spread| spread.p95),
-                cpu.map_or(String::new(), |spread| ms(spread.median)),
+                or_nothing(cpu, |spread| ms(spread.median)),
             ]);
         }
     }
@@ -137,20 +125,13 @@ fn footnotes(results: &Results, runs: &[Run]) -> Vec<String> {
         let regimes = run.measured.iter().flat_map(|measured| &measured.regimes);
         let skipping = regimes.filter(|times| !times.skipped.is_empty());
         skipping.map(|times| {
-            format!(
-                "{} skips {}: {}",
-                run.method_label(),
-                times.regime.condition(),
-                times.skipped.join(", ")
-            )
+            let (condition, skipped) = (times.regime.condition(), times.skipped.join(", "));
+            format!("{} skips {condition}: {skipped}", run.method_label())
         })
     }));
     notes.extend(runs.iter().filter_map(|run| {
-        Some(format!(
-            "{} is unavailable: {}",
-            run.preset,
-            run.unavailable.as_ref()?
-        ))
+        let why = run.unavailable.as_ref()?;
+        Some(format!("{} is unavailable: {why}", run.preset))
     }));
     notes
 }

@@ -9,7 +9,7 @@ use skiagraph_compare::records::stress::{
     Case, Casters, Cell, Column, Guarantee, OutsideBand, Report, Verdict,
 };
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{percent, size, thousands};
+use skiagraph_compare::wording::{or_nothing, percent, size, thousands};
 
 /// Function that returns the command line that draws a method's pictures of a case. Its arguments
 /// are the method's column, the case's name, and [`Cell::set`], the additional assignment of a
@@ -45,12 +45,11 @@ pub fn catalogue() -> String {
 
 /// Returns lines with the adapter, the viewport and the meaning of the cells.
 pub fn heading(report: &Report) -> String {
+    let (adapter, viewport) = (&report.adapter, size(report.viewport));
+    let maps = or_nothing(one_map(report), |size| format!(", maps of {size}x{size}"));
     format!(
-        "{}\n{}{} · pixels outside the band: wrongly lit + wrongly in shadow · ✗ \
-         fails · * all left to rays · PFL: pixels that face the light",
-        report.adapter,
-        size(report.viewport),
-        one_map(report).map_or(String::new(), |size| format!(", maps of {size}x{size}")),
+        "{adapter}\n{viewport}{maps} · pixels outside the band: wrongly lit + wrongly in shadow · \
+         ✗ fails · * all left to rays · PFL: pixels that face the light"
     )
 }
 
@@ -64,14 +63,9 @@ pub fn remarks(report: &Report) -> String {
         }
     }
     for case in report.cases.iter().filter(|case| case.wrong_surface > 0) {
-        text += &format!(
-            "{}: warning: {}\n",
-            case.name,
-            wrong_surface(
-                case.wrong_surface,
-                report.viewport.map(u64::from).iter().product()
-            )
-        );
+        let pixels = report.viewport.map(u64::from).iter().product();
+        let what = wrong_surface(case.wrong_surface, pixels);
+        text += &format!("{}: warning: {what}\n", case.name);
     }
     text + &summary(report)
 }
@@ -100,10 +94,8 @@ pub type MatrixRow<'a> = (&'a Case, Vec<Option<&'a Cell>>);
 /// light and whose answer rounding decides. The others belong to the methods in the order of the
 /// rows' entries. A case has a second row if methods also ran it with `cull=none`.
 pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
-    let can_run = report.methods.iter();
-    let columns: Vec<&Column> = can_run
-        .filter(|column| column.unavailable.is_none())
-        .collect();
+    let can_run = |column: &&Column| column.unavailable.is_none();
+    let columns: Vec<&Column> = report.methods.iter().filter(can_run).collect();
     let head = |column: &&Column| {
         let guarantee = column.guarantee.map_or("", Guarantee::word);
         format!("{}\n{guarantee}", named(report, column))
@@ -119,9 +111,8 @@ pub fn matrix(report: &Report) -> (Table, Vec<MatrixRow<'_>>) {
             };
             let entries: Vec<Option<&Cell>> = columns.iter().map(find).collect();
             let cells = entries.iter().map(|entry| cell(case, *entry, set));
-            table
-                .rows
-                .push(heads_of(case, set).into_iter().chain(cells).collect());
+            let cells = heads_of(case, set).into_iter().chain(cells);
+            table.rows.push(cells.collect());
             rows.push((case, entries));
         }
     }
@@ -182,25 +173,21 @@ fn cell(case: &Case, cell: Option<&Cell>, set: Option<&str>) -> String {
 fn summary(report: &Report) -> String {
     let [passed, failed, open] =
         [Verdict::Pass, Verdict::Fail, Verdict::Open].map(|verdict| report.count(verdict));
+    let traced = report.left_to_rays();
     let mut text = match passed + failed {
         0 => "no cell is judged: these methods guarantee nothing (--exact NAME judges one all the \
             same)"
             .into(),
         judged => format!(
-            "{passed} of {judged} judged cells are as guaranteed, {} of them by rays alone",
-            report.left_to_rays()
+            "{passed} of {judged} judged cells are as guaranteed, {traced} of them by rays alone"
         ),
     };
-    text += &format!(
-        "; {} of {} bands are within their caps",
-        report.cases.len() - report.failed_cases(),
-        report.cases.len()
-    );
+    let count = report.cases.len();
+    let within = count - report.failed_cases();
+    text += &format!("; {within} of {count} bands are within their caps");
     if open > 0 {
-        text.push_str(
-            "\nopen: casters that are not closed are wrong by culling; such methods are judged on \
-             them with cull=none",
-        );
+        text += "\nopen: casters that are not closed are wrong by culling; such methods are judged \
+                 on them with cull=none";
     }
     text
 }
@@ -214,12 +201,11 @@ pub fn failures(report: &Report, command_for: CommandFor) -> String {
             text += &format!("  {}: no reference: {reason}\n", case.name);
         }
         if case.exceeds_cap() {
+            let share = percent(case.band, case.pixels.facing_light);
+            let (band, most) = (thousands(case.band), (case.band_cap * 100.0) as f32);
             text += &format!(
-                "  {}: {} pixels in the band, {} of PFL; at most {} % may be\n",
-                case.name,
-                thousands(case.band),
-                percent(case.band, case.pixels.facing_light),
-                (case.band_cap * 100.0) as f32
+                "  {}: {band} pixels in the band, {share} of PFL; at most {most} % may be\n",
+                case.name
             );
         }
         let pairs = report.methods.iter().flat_map(|column| {
@@ -228,26 +214,20 @@ pub fn failures(report: &Report, command_for: CommandFor) -> String {
         });
         for (column, cell) in pairs.filter(|(_, cell)| cell.verdict == Verdict::Fail) {
             let set = cell.set.as_deref();
-            let with = set.map_or(String::new(), |set| format!(" with {set}"));
+            let with = or_nothing(set, |set| format!(" with {set}"));
             let what = match (&cell.counts, &cell.failed) {
                 (Some(counts), _) => {
                     let outside = &counts.outside_band;
-                    format!(
-                        "{} wrongly lit, {} wrongly in shadow; {} of them called certain",
-                        thousands(outside.lit),
-                        thousands(outside.shadow),
-                        thousands(outside.certain)
-                    )
+                    let counts = [outside.lit, outside.shadow, outside.certain];
+                    let [lit, shadow, certain] = counts.map(thousands);
+                    let wrong = format!("{lit} wrongly lit, {shadow} wrongly in shadow");
+                    format!("{wrong}; {certain} of them called certain")
                 }
                 (None, Some(reason)) => reason.clone(),
                 (None, None) => "did not run".into(),
             };
-            text += &format!(
-                "  {}{with} on {}: {what}\n    {}\n",
-                named(report, column),
-                case.name,
-                command_for(column, &case.name, set)
-            );
+            let (method, command) = (named(report, column), command_for(column, &case.name, set));
+            text += &format!("  {method}{with} on {}: {what}\n    {command}\n", case.name);
         }
     }
     text

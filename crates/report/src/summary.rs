@@ -56,21 +56,17 @@ impl Wrong {
 
 impl<'a> Row<'a> {
     fn new(label: String, attempts: &[Case<'a>]) -> Option<Self> {
-        let Case {
-            results,
-            run,
-            by_wall,
-        } = *attempts.first()?;
+        let first = attempts.first()?;
         let measured = |case: &Case<'a>| Some((case.run, case.run.measured.as_ref()?));
         let runs: Vec<_> = attempts.iter().filter_map(measured).collect();
         let mut reasons = attempts.iter().map(|case| case.run.unavailable.as_deref());
         Some(Self {
-            method: run.preset.clone(),
+            method: first.run.preset.clone(),
             label,
             unavailable: reasons.find_map(|why| why).filter(|_| runs.is_empty()),
             runs,
-            results,
-            by_wall,
+            results: first.results,
+            by_wall: first.by_wall,
         })
     }
 
@@ -119,6 +115,11 @@ impl<'a> Row<'a> {
     /// tuned, or could not run.
     pub fn tuned(&self) -> Option<&'a Tuned> {
         self.runs.first().and_then(|(run, _)| run.tuned.as_ref())
+    }
+
+    /// True if the row's params were searched for, and are others than the defaults.
+    pub fn is_tuned(&self) -> bool {
+        self.tuned().is_some_and(|tuned| !tuned.set.is_empty())
     }
 
     /// Returns the number of views on which the method was measured; 0 if it could not run.
@@ -219,18 +220,13 @@ impl<'a> Row<'a> {
 
     /// True if a run is of a camera path.
     pub fn is_path(&self) -> bool {
-        self.runs
-            .iter()
-            .any(|(_, measured)| measured.sequence.is_some())
+        self.runs().any(|(_, measured)| measured.sequence.is_some())
     }
 
     /// Returns the number of timed frames of the view that has the fewest; 0 without runs.
     pub fn frames(&self, when: When) -> usize {
-        let frames = self.runs.iter().map(|(_, measured)| {
-            measured
-                .times(when)
-                .map_or(0, |times| times.wall_frames.len())
-        });
+        let times = self.runs.iter().map(|(_, measured)| measured.times(when));
+        let frames = times.map(|times| times.map_or(0, |times| times.wall_frames.len()));
         frames.min().unwrap_or_default()
     }
 
@@ -256,10 +252,9 @@ impl<'a> Row<'a> {
                     [turns, other_turns].map(|turns| anchor(turns, when)?.costs(self.by_wall));
                 let [anchor, other_anchor] = anchors;
                 let scales = anchor?.into_iter().zip(other_anchor?);
-                let scaled = other_ms.iter().zip(scales);
-                other_ms = scaled
-                    .map(|(ms, (anchor, other))| ms * anchor / other.max(1e-6))
-                    .collect();
+                for (ms, (anchor, other)) in other_ms.iter_mut().zip(scales) {
+                    *ms *= anchor / other.max(1e-6);
+                }
             }
             for (sum, frames) in sums.iter_mut().zip([ms, other_ms]) {
                 sum.resize(sum.len().max(frames.len()), 0.0);
@@ -306,20 +301,16 @@ fn anchor(turns: &Turns, when: When) -> Option<&FrameTimes> {
 /// stands behind the one that it is a setting of.
 pub fn rows<'a>(cases: impl IntoIterator<Item = Case<'a>>, viewport: [u32; 2]) -> Vec<Row<'a>> {
     let mut cells: Vec<(String, Vec<Case>)> = Vec::new();
-    for case in cases
-        .into_iter()
-        .filter(|case| case.run.viewport == viewport)
-    {
+    let is_there = |case: &Case| case.run.viewport == viewport;
+    for case in cases.into_iter().filter(is_there) {
         entry(&mut cells, case.run.method_label()).push(case);
     }
-    let rows = cells
-        .into_iter()
-        .filter_map(|(label, cases)| Row::new(label, &cases));
+    let cells = cells.into_iter();
+    let rows = cells.filter_map(|(label, cases)| Row::new(label, &cases));
     let mut rows: Vec<Row> = rows.collect();
     let time = |row: &Row| row.frame_ms(None).unwrap_or(f64::INFINITY);
     rows.sort_by(|one, other| time(one).total_cmp(&time(other)));
-    let is_changed = |row: &Row| row.tuned().is_some_and(|tuned| !tuned.set.is_empty());
-    let (tuned, mut rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(is_changed);
+    let (tuned, mut rows): (Vec<Row>, Vec<Row>) = rows.into_iter().partition(Row::is_tuned);
     for row in tuned {
         let base = row.tuned().map(|tuned| &tuned.of);
         let before = rows.iter().rposition(|other| Some(&other.method) == base);

@@ -2,16 +2,14 @@
 //! fastest first, and a verdict.
 
 use crate::notes::{
-    band_warning, blocked_by, hint, load_warning, path_costs, remembering, scene_notes,
-    surface_warning, times_missing,
+    band_warning, blocked_by, certain_wrong_of, hint, load_warning, path_costs, remembering,
+    scene_notes, surface_warning, times_missing,
 };
+use crate::results_table::timed_frames;
 use crate::summary::{Row, rows};
+use crate::table::{TERMINAL, terminal, wrapped};
 use crate::verdict::{Verdict, verdict};
-use crate::{
-    equal_cost, graded,
-    results_table::timed_frames,
-    table::{TERMINAL, terminal, wrapped},
-};
+use crate::{equal_cost, graded};
 use itertools::Itertools;
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::date::is_another_hour;
@@ -21,7 +19,7 @@ use skiagraph_compare::records::figures::are_paths;
 use skiagraph_compare::records::regimes::{Regime, time_name};
 use skiagraph_compare::records::results::{Results, Run};
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{percent, plural, size, thousands};
+use skiagraph_compare::wording::{or_nothing, percent, plural, size, thousands};
 use skiagraph_reference::BlockerCounts;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -65,14 +63,13 @@ impl<'a> Summary<'a> {
     fn new(results: &'a Results, mut runs: Vec<&'a Run>) -> Self {
         let clocks = Clocks::new(results);
         let newest = runs.iter().map(|run| run.session.as_str()).max();
-        let now = runs
+        let is_now = |run: &&&Run| Some(run.session.as_str()) == newest;
+        let tuned = runs
             .iter()
-            .filter(|run| Some(run.session.as_str()) == newest);
-        let tuned = now.filter_map(|run| run.tuned.as_ref());
-        let chosen_on: BTreeSet<&str> = tuned
-            .flat_map(|tuned| tuned.chosen_on.iter().map(String::as_str))
-            .collect();
-        runs.retain(|run| !chosen_on.contains(run.view.as_str()));
+            .filter(is_now)
+            .filter_map(|run| run.tuned.as_ref());
+        let chosen_on: BTreeSet<&String> = tuned.flat_map(|tuned| &tuned.chosen_on).collect();
+        runs.retain(|run| !chosen_on.contains(&run.view));
         let viewport = runs.first().map_or([0; 2], |run| run.viewport);
         Self {
             results,
@@ -127,10 +124,7 @@ impl<'a> Summary<'a> {
             (Some(view), 1) => format!("view {view}"),
             (_, count) => {
                 let views = plural(count, if paths { "path" } else { "view" });
-                let light = self
-                    .light
-                    .map_or(String::new(), |light| format!(" under {light}"));
-                views + &light
+                views + &or_nothing(self.light, |light| format!(" under {light}"))
             }
         }
     }
@@ -138,12 +132,8 @@ impl<'a> Summary<'a> {
     /// Returns the summary as text: conditions, table, verdict and notes. `is_broken` breaks
     /// sentences into lines of 80 characters, as a terminal needs; otherwise each is a line.
     pub fn text(&self, is_broken: bool) -> String {
-        let mut lines = vec![format!(
-            "{} · {} · {}",
-            self.results.scene,
-            self.what(),
-            size(self.viewport)
-        )];
+        let (scene, what, size) = (&self.results.scene, self.what(), size(self.viewport));
+        let mut lines = vec![format!("{scene} · {what} · {size}")];
         lines.extend(self.conditions());
         lines.extend(scene_notes(self.results));
         let mut sentences = self.verdict().sentences;
@@ -179,27 +169,23 @@ impl<'a> Summary<'a> {
             1 => "",
             _ => ", means of the views",
         };
-        let clock = if self.by_wall() {
-            "wall clock"
-        } else {
-            "GPU and upkeep of the CPU"
-        };
+        let wall = self.by_wall().then_some("wall clock");
+        let clock = wall.unwrap_or("GPU and upkeep of the CPU");
+        let frames = timed_frames(self.results, self.runs.iter().copied());
+        let medians = format!(
+            "medians of {frames} after {} to warm up",
+            self.results.warmup
+        );
+        let oracle = &self.results.oracle;
+        let (lit, shadow) = (sum(|run| run.pixels.lit), sum(|run| run.pixels.shadow));
+        let share = percent(band, facing);
+        let [facing, lit, shadow, band] = [facing, lit, shadow, band].map(thousands);
         let mut lines = vec![
             self.results.adapter.to_string(),
+            format!("times: {clock}, {medians}{mean} · oracle {oracle}"),
             format!(
-                "times: {clock}, medians of {} after {} to warm up{mean} · oracle {}",
-                timed_frames(self.results, self.runs.iter().copied()),
-                self.results.warmup,
-                self.results.oracle
-            ),
-            format!(
-                "facing the light {} = lit {} + shadow {} · in the band, where the answer hangs on \
-                 rounding, {} ({})",
-                thousands(facing),
-                thousands(sum(|run| run.pixels.lit)),
-                thousands(sum(|run| run.pixels.shadow)),
-                thousands(band),
-                percent(band, facing)
+                "facing the light {facing} = lit {lit} + shadow {shadow} · in the band, where the \
+                 answer hangs on rounding, {band} ({share})"
             ),
         ];
         let area = |run: &Run| Some(graded::area_reference(&run.area?, run.band));
@@ -231,7 +217,7 @@ impl<'a> Summary<'a> {
             if row.views() != views && row.views() > 0 {
                 label += &format!(" ({} of {})", row.views(), plural(views, "view"));
             }
-            if row.tuned().is_some_and(|tuned| !tuned.set.is_empty()) {
+            if row.is_tuned() {
                 label += " (tuned)";
             }
             if !row.is_whole() {
@@ -240,17 +226,15 @@ impl<'a> Summary<'a> {
             if self.is_old(row) {
                 label += &format!(" (of {})", row.session());
             }
-            let cells = columns
-                .iter()
-                .enumerate()
-                .map(|(place, Column { figure, .. })| {
-                    if row.views() == 0 {
-                        return if place == 0 { NOT_THERE } else { "–" }.into();
-                    }
-                    let is_fastest = fastest.contains(&(figure.name.clone(), index));
-                    let star = if is_fastest { " *" } else { "" };
-                    figure.cell(row.over(figure), percent, 4) + star
-                });
+            let cell = |(place, Column { figure, .. }): (usize, &Column)| {
+                if row.views() == 0 {
+                    return if place == 0 { NOT_THERE } else { "–" }.into();
+                }
+                let is_fastest = fastest.contains(&(figure.name.clone(), index));
+                let star = if is_fastest { " *" } else { "" };
+                figure.cell(row.over(figure), percent, 4) + star
+            };
+            let cells = columns.iter().enumerate().map(cell);
             [label].into_iter().chain(cells).collect()
         };
         let heads = columns.iter().map(|column| column.head);
@@ -334,31 +318,24 @@ impl<'a> Summary<'a> {
     /// That promises end at open parts, and whose.
     fn open_parts(&self) -> Option<String> {
         let parts = &self.results.scene.parts;
-        let closed_only = |run: &&&Run| {
-            run.promise
-                .as_ref()
-                .is_some_and(|promise| promise.closed_only)
-        };
+        let closed_only = |run: &&&Run| run.promise.iter().any(|promise| promise.closed_only);
         let methods = self.runs.iter().filter(closed_only);
         let methods = methods.map(|run| format!("`{}`", run.preset));
         let methods: Vec<String> = methods.sorted().dedup().collect();
         if parts.open == 0 || methods.is_empty() {
             return None;
         }
-        let share = format!(
-            "{} of the mesh's {} are open ({} of its triangles)",
-            thousands(parts.open),
-            match parts.all {
-                1 => "1 part".into(),
-                count => format!("{} parts", thousands(count)),
-            },
-            percent(parts.open_triangles, self.results.scene.triangles)
-        );
+        let whole = match parts.all {
+            1 => "1 part".into(),
+            count => format!("{} parts", thousands(count)),
+        };
+        let open = thousands(parts.open);
+        let share = percent(parts.open_triangles, self.results.scene.triangles);
         let s = if methods.len() == 1 { "s" } else { "" };
         let methods = methods.join(", ");
         Some(format!(
-            "{share}: what {methods} promise{s} ends at shadows of these where they are one-sided, \
-             unless --set cull=none"
+            "{open} of the mesh's {whole} are open ({share} of its triangles): what {methods} \
+             promise{s} ends at shadows of these where they are one-sided, unless --set cull=none"
         ))
     }
 
@@ -366,24 +343,23 @@ impl<'a> Summary<'a> {
     fn wrong_surfaces(&self) -> Vec<String> {
         let views = self.views();
         let each = self.of_each_view().into_iter();
-        let notes = each.filter_map(|run| Some((run, surface_warning(run)?)));
-        notes
-            .map(|(run, note)| match views.len() {
-                1 => note,
-                _ => format!("{}: {note}", run.view),
-            })
-            .collect()
+        let notes =
+            each.filter_map(|run| Some((run, surface_warning(run.wrong_surface, &run.pixels)?)));
+        let note = |(run, note): (&Run, _)| match views.len() {
+            1 => note,
+            _ => format!("{}: {note}", run.view),
+        };
+        notes.map(note).collect()
     }
 
     /// Says what blocks the pixels of which a method was certain and wrong, over all views.
     fn certain_wrong(&self) -> Vec<String> {
         let mut sums: BTreeMap<String, (u64, BlockerCounts)> = BTreeMap::new();
-        for run in self.runs.iter().filter(|run| run.is_hard()) {
-            let measured = run.measured.as_ref();
-            if let Some(measured) = measured.filter(|measured| measured.wrong.certain > 0) {
+        for run in &self.runs {
+            if let Some((certain, blockers)) = certain_wrong_of(run) {
                 let sum = sums.entry(run.method_label()).or_default();
-                sum.0 += measured.wrong.certain;
-                sum.1 += measured.certain_wrong_blockers.unwrap_or_default();
+                sum.0 += certain;
+                sum.1 += blockers;
             }
         }
         let line = |(label, sum): (String, _)| format!("{label}: {}", blocked_by(&[sum]));

@@ -4,6 +4,7 @@ use comfy_table::{Cell, CellAlignment, LineStyle, TableStyle};
 use itertools::Itertools;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::table::Table;
+use skiagraph_compare::wording::or_nothing;
 
 /// Width of the terminal, in characters, for which tables and texts are broken into lines.
 pub const TERMINAL: usize = 80;
@@ -77,9 +78,8 @@ fn block(table: &Table, columns: &[usize]) -> String {
     drawn.load_style(TableStyle::new().header_separator(rule));
     let widths = columns.iter().map(|column| width(table, *column));
     let heads = columns.iter().zip(widths);
-    let heads: Vec<String> = heads
-        .map(|(column, wide)| wrapped(table.heads[*column].trim_end(), wide))
-        .collect();
+    let heads = heads.map(|(column, wide)| wrapped(table.heads[*column].trim_end(), wide));
+    let heads: Vec<String> = heads.collect();
     let tall = |head: &String| head.lines().count();
     let tallest = heads.iter().map(tall).max().unwrap_or(0);
     // So that heads stand on the line.
@@ -154,11 +154,7 @@ pub fn html(
         body += &format!("<tr {}>", row(index));
         for (column, text) in cells.iter().map(|text| xml(text)).enumerate() {
             body += &if column < table.words {
-                let sign = if column == 0 {
-                    sign(index)
-                } else {
-                    String::new()
-                };
+                let sign = or_nothing((column == 0).then_some(index), &sign);
                 format!("<th scope=\"row\">{sign}{text}</th>")
             } else {
                 let (attributes, content) = (cell(index, column), content(column, text));

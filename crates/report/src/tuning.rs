@@ -2,7 +2,7 @@
 
 use crate::summary::Row;
 use itertools::Itertools;
-use skiagraph_compare::records::results::Promise;
+use skiagraph_compare::records::results::{Promise, Run};
 use skiagraph_compare::records::tuned::Tuned;
 use skiagraph_compare::wording::{percent, plural};
 
@@ -10,17 +10,14 @@ use skiagraph_compare::wording::{percent, plural};
 /// wrong each method is with its defaults and with the best setting on the views of the rows, and
 /// the arguments that name these settings. Empty if no method was tuned.
 pub fn sentences(rows: &[Row]) -> Vec<String> {
-    let tuned: Vec<(&Row, &Tuned)> = rows
-        .iter()
-        .filter_map(|row| Some((row, row.tuned()?)))
-        .collect();
+    let tuned = rows.iter().filter_map(|row| Some((row, row.tuned()?)));
+    let tuned: Vec<(&Row, &Tuned)> = tuned.collect();
     let Some((_, first)) = tuned.first() else {
         return Vec::new();
     };
     let mut sentences = vec![chosen_on(first)];
-    let (changed, kept): (Vec<_>, Vec<_>) = tuned
-        .into_iter()
-        .partition(|(_, tuned)| !tuned.set.is_empty());
+    let tuned = tuned.into_iter();
+    let (changed, kept): (Vec<_>, Vec<_>) = tuned.partition(|(row, _)| row.is_tuned());
     let brought = |(row, tuned): &(&Row, &Tuned)| {
         let before = rows.iter().find(|other| is_default_of(other, row))?;
         let (with, name, now, before) = (tuned.words(), &tuned.of, error(row), error(before));
@@ -30,54 +27,33 @@ pub fn sentences(rows: &[Row]) -> Vec<String> {
     };
     sentences.extend(changed.iter().filter_map(brought));
     if !changed.is_empty() {
-        let arguments = changed
-            .iter()
-            .map(|(_, tuned)| tuned.argument())
-            .unique()
-            .join(" ");
-        sentences.push(format!(
-            "To have the tuned methods again: skiagraph compare {arguments}."
-        ));
+        let arguments = changed.iter().map(|(_, tuned)| tuned.argument());
+        let command = format!("skiagraph compare {}", arguments.unique().join(" "));
+        sentences.push(format!("To have the tuned methods again: {command}."));
     }
-    if !kept.is_empty() {
-        let tried = |(row, tuned): &(&Row, &Tuned)| {
-            format!(
-                "`{}` (of {})",
-                row.method,
-                plural(tuned.tried as usize, "setting")
-            )
-        };
-        let names = and(kept.iter().map(tried).unique());
+    let tried = |(row, tuned): &(&Row, &Tuned)| {
+        let settings = plural(tuned.tried as usize, "setting");
+        format!("`{}` (of {settings})", row.method)
+    };
+    if let Some((names, _)) = list(kept.iter().map(tried)) {
         sentences.push(format!("The defaults stay the best of {names}."));
     }
-    let short = changed
-        .iter()
-        .chain(&kept)
-        .filter(|(_, tuned)| !tuned.is_whole);
-    let short = short
-        .map(|(_, tuned)| format!("`{}`", tuned.of))
-        .unique()
-        .collect_vec();
-    if !short.is_empty() {
+    let all_tuned = changed.iter().chain(&kept);
+    let short = all_tuned.filter(|(_, tuned)| !tuned.is_whole);
+    if let Some((names, _)) = list(short.map(|(_, tuned)| format!("`{}`", tuned.of))) {
         sentences.push(format!(
-            "The search for {} ended at the bound of its cost: more frames (--frames) allow a \
-             longer one.",
-            and(short.into_iter())
+            "The search for {names} ended at the bound of its cost: more frames (--frames) allow a \
+             longer one."
         ));
     }
     let without = rows.iter().filter(|row| is_exact_anyway(row));
-    let without = without
-        .map(|row| format!("`{}`", row.method))
-        .unique()
-        .collect_vec();
-    if !without.is_empty() {
-        let (have, their) = match without.len() {
+    if let Some((names, count)) = list(without.map(|row| format!("`{}`", row.method))) {
+        let (have, their) = match count {
             1 => ("has", "its"),
             _ => ("have", "their"),
         };
         sentences.push(format!(
-            "{} {have} nothing to tune, which is {their} point.",
-            and(without.into_iter())
+            "{names} {have} nothing to tune, which is {their} point."
         ));
     }
     sentences
@@ -89,18 +65,13 @@ pub fn is_default_of(other: &Row, row: &Row) -> bool {
         return false;
     };
     let is_same_map = tuned.set.contains_key("map_size") || other.map_size() == row.map_size();
-    other.method == tuned.of
-        && is_same_map
-        && other.tuned().is_none_or(|tuned| tuned.set.is_empty())
+    other.method == tuned.of && is_same_map && !other.is_tuned()
 }
 
 /// True if a method is exact whatever its params are.
 fn is_exact_anyway(row: &Row) -> bool {
-    row.tuned().is_none()
-        && row
-            .runs()
-            .all(|(run, _)| run.promise.as_ref().is_some_and(Promise::is_exact_for_all))
-        && row.views() > 0
+    let is_exact = |run: &Run| run.promise.iter().any(Promise::is_exact_for_all);
+    row.tuned().is_none() && row.views() > 0 && row.runs().all(|(run, _)| is_exact(run))
 }
 
 /// The views on which settings were chosen.
@@ -112,21 +83,23 @@ fn chosen_on(tuned: &Tuned) -> String {
 
 /// How wrong a row is.
 fn error(row: &Row) -> String {
+    let wrong = row.wrong();
     match (row.is_soft(), row.rmse()) {
         (true, Some(rmse)) => format!("off by RMSE {rmse:.4}"),
-        _ => {
-            let wrong = row.wrong();
-            let share = percent(wrong.outside_band, wrong.facing_light);
-            format!("wrong on {share}")
-        }
+        _ => format!(
+            "wrong on {}",
+            percent(wrong.outside_band, wrong.facing_light)
+        ),
     }
 }
 
-/// A list in words.
-fn and(items: impl Iterator<Item = String>) -> String {
-    let items: Vec<String> = items.collect();
-    match &items[..] {
-        [first @ .., last] if !first.is_empty() => format!("{} and {last}", first.join(", ")),
-        items => items.join(", "),
-    }
+/// A list of different items in words, and their number; `None` without items.
+fn list(items: impl Iterator<Item = String>) -> Option<(String, usize)> {
+    let items = items.unique().collect_vec();
+    let (last, first) = items.split_last()?;
+    let text = match first {
+        [] => last.clone(),
+        first => format!("{} and {last}", first.join(", ")),
+    };
+    Some((text, items.len()))
 }

@@ -8,7 +8,7 @@ use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
 use skiagraph_compare::records::regimes::{Regime, When};
 use skiagraph_compare::records::turns::LEAST_TURNS;
-use skiagraph_compare::wording::{bytes, ms, plural};
+use skiagraph_compare::wording::{bytes, ms, or_nothing, plural};
 use std::collections::BTreeMap;
 
 /// Verdict on the rows of a summary: the methods that it recommends, in figures and in words.
@@ -43,10 +43,8 @@ pub struct Verdict {
 /// any frame of a camera path, is not recommended. Of a method and its tuned setting only the one
 /// with less error is recommended.
 pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
-    let verdicts: Vec<Single> = choices(rows)
-        .into_iter()
-        .filter_map(|when| Single::new(rows, when, budgets))
-        .collect();
+    let verdict = |when| Single::new(rows, when, budgets);
+    let verdicts: Vec<Single> = choices(rows).into_iter().filter_map(verdict).collect();
     let Some(main) = verdicts.last() else {
         return Verdict::default();
     };
@@ -79,11 +77,9 @@ pub fn verdict(rows: &[Row], budgets: &Budgets) -> Verdict {
     let beyond = main.full.iter().filter_map(|method| method.beyond(budgets));
     sentences.extend(beyond);
     sentences.extend(tuning::sentences(rows));
-    let fastest_exact = verdicts.iter();
+    let fastest_exact = |single: &Single| Some((single.when, single.fastest_exact?));
     Verdict {
-        fastest_exact: fastest_exact
-            .filter_map(|single| Some((single.when, single.fastest_exact?)))
-            .collect(),
+        fastest_exact: verdicts.iter().filter_map(fastest_exact).collect(),
         first: main.first.clone(),
         is_taken: main.is_taken,
         runner_up: main.runner_up,
@@ -138,13 +134,13 @@ impl<'a> Single<'a> {
     fn new(rows: &'a [Row<'a>], when: When, budgets: &Budgets) -> Option<Self> {
         let most = rows.iter().map(Row::views).max().unwrap_or_default();
         let newest = rows.iter().map(Row::session).max().unwrap_or_default();
-        let full: Vec<Contender> = rows
-            .iter()
-            .enumerate()
-            .filter(|(_, row)| row.views() == most && most > 0 && row.is_whole())
-            .filter(|(_, row)| !is_another_hour(row.session(), newest))
-            .filter_map(|(index, row)| Contender::new(index, row, when))
-            .collect();
+        let takes_part = |(_, row): &(usize, &Row)| {
+            let is_of_all = row.views() == most && most > 0 && row.is_whole();
+            is_of_all && !is_another_hour(row.session(), newest)
+        };
+        let full = rows.iter().enumerate().filter(takes_part);
+        let full = full.filter_map(|(index, row)| Contender::new(index, row, when));
+        let full: Vec<Contender> = full.collect();
         let within = full.iter().filter(|method| method.is_within(budgets));
         let within = better_settings(within.cloned().collect());
         let full = better_settings(full);
@@ -256,12 +252,11 @@ fn lower(text: &str) -> String {
 /// and what it was tuned to, the one with the greater error is left out, and never recommended.
 fn better_settings(methods: Vec<Contender>) -> Vec<Contender> {
     let is_beaten = |method: &Contender| {
-        let settings = methods
-            .iter()
-            .filter(|other| method.is_other_setting_of(other));
-        let mut orders =
-            settings.map(|other| other.error_to_rank().total_cmp(&method.error_to_rank()));
-        orders.any(|order| order.is_lt() || (order.is_eq() && method.is_tuned()))
+        let is_setting = |other: &&Contender| method.is_other_setting_of(other);
+        let settings = methods.iter().filter(is_setting);
+        let error = method.error_to_rank();
+        let mut orders = settings.map(|other| other.error_to_rank().total_cmp(&error));
+        orders.any(|order| order.is_lt() || (order.is_eq() && method.row.is_tuned()))
     };
     let better = methods.iter().filter(|method| !is_beaten(method));
     better.cloned().collect()
@@ -275,69 +270,72 @@ fn least<'c, 'a>(
     methods.min_by(|one, other| figure(one).total_cmp(&figure(other)))
 }
 
+fn fastest<'c, 'a>(
+    methods: impl IntoIterator<Item = &'c Contender<'a>>,
+) -> Option<&'c Contender<'a>> {
+    least(methods, |method| method.frame)
+}
+
+/// The methods but this one.
+fn rivals<'c, 'a>(
+    methods: &'c [Contender<'a>],
+    best: &Contender,
+) -> impl Iterator<Item = &'c Contender<'a>> {
+    let best = best.index;
+    methods.iter().filter(move |method| method.index != best)
+}
+
 fn hard<'a>(methods: &[Contender]) -> Single<'a> {
-    let exact: Vec<Contender> = methods
-        .iter()
-        .filter(|method| method.is_exact)
-        .cloned()
-        .collect();
-    let Some(best) = least(&exact, |method| method.frame) else {
+    let exact = methods.iter().filter(|method| method.is_exact);
+    let exact: Vec<Contender> = exact.cloned().collect();
+    let Some(best) = fastest(&exact) else {
         return none_exact(methods);
     };
-    let faster = methods.iter().filter(|method| !method.is_exact);
-    let faster = least(faster, |method| method.frame)
+    let faster = fastest(methods.iter().filter(|method| !method.is_exact))
         .filter(|method| method.frame < best.frame || !method.is_told_apart(best));
-    let next = || {
-        let rivals = exact.iter().filter(|method| method.index != best.index);
-        least(rivals, |method| method.frame)
-    };
+    let next = || fastest(rivals(&exact, best));
+    let level = with_level(best, &exact, |_| true);
     Single {
         fastest_exact: (!best.is_resting()).then_some(best.index),
-        first: with_level(best, &exact, |_| true),
+        first: indices(&level),
         is_taken: true,
         runner_up: faster.or_else(next).map(|method| method.index),
-        sentences: vec![sentence(best, &exact, methods)],
+        sentences: vec![sentence(best, &level, &exact, methods)],
         ..Single::default()
     }
 }
 
 /// The best, and those of others that cannot be told apart from it in time.
-fn with_level(
-    best: &Contender,
-    methods: &[Contender],
+fn with_level<'c, 'a>(
+    best: &'c Contender<'a>,
+    methods: &'c [Contender<'a>],
     counts: impl Fn(&Contender) -> bool,
-) -> Vec<usize> {
-    let rivals = methods
-        .iter()
-        .filter(|method| method.index != best.index && counts(method));
-    let level = rivals.filter(|method| !method.is_told_apart(best));
-    let level = level.map(|method| method.index);
-    [best.index].into_iter().chain(level).collect()
+) -> Vec<&'c Contender<'a>> {
+    let level = rivals(methods, best).filter(|it| counts(it) && !it.is_told_apart(best));
+    [best].into_iter().chain(level).collect()
+}
+
+fn indices(methods: &[&Contender]) -> Vec<usize> {
+    methods.iter().map(|method| method.index).collect()
 }
 
 /// One method to take, with those that cannot be told apart from it, beside the next exact one and
 /// the fastest of all.
-fn sentence(best: &Contender, exact: &[Contender], methods: &[Contender]) -> String {
-    let rivals = || exact.iter().filter(|method| method.index != best.index);
-    let is_level = |method: &&Contender| !method.is_told_apart(best);
-    let level: Vec<String> = rivals().filter(is_level).map(Contender::name).collect();
-    let mut text = match &level[..] {
-        [] => format!("Take {} ({})", best.name(), best.per_frame()),
-        level => format!(
-            "Take {} or {}: their times cannot be told apart ({})",
-            best.name(),
-            level.join(" or "),
-            best.per_frame()
-        ),
+fn sentence(
+    best: &Contender,
+    level: &[&Contender],
+    exact: &[Contender],
+    methods: &[Contender],
+) -> String {
+    let names = level.iter().map(|method| method.name()).join(" or ");
+    let (apart, subject) = match level {
+        [_] => ("", "It is"),
+        _ => (": their times cannot be told apart", "They are"),
     };
+    let mut text = format!("Take {names}{apart} ({})", best.per_frame());
     let right = best.right();
-    let subject = if level.is_empty() {
-        "It is"
-    } else {
-        "They are"
-    };
-    let next = rivals().filter(|method| !is_level(method));
-    text += &match least(next, |method| method.frame) {
+    let next = rivals(exact, best).filter(|method| method.is_told_apart(best));
+    text += &match fastest(next) {
         Some(next) => {
             let times = best.times_as_fast(next);
             format!(
@@ -348,17 +346,13 @@ fn sentence(best: &Contender, exact: &[Contender], methods: &[Contender]) -> Str
         None if exact.len() == methods.len() && methods.len() > 1 => format!(". All are {right}"),
         None => format!(". {subject} {right}"),
     };
-    let quickest = methods.iter().filter(|method| !method.is_exact);
-    if let Some(quickest) = least(quickest, |method| method.frame) {
-        let name = quickest.name();
+    if let Some(quickest) = fastest(methods.iter().filter(|method| !method.is_exact)) {
+        let (name, error) = (quickest.name(), quickest.error());
         text += &if !quickest.is_told_apart(best) {
-            format!(
-                ". {name} is as fast, as far as can be told, and {}",
-                quickest.error()
-            )
+            format!(". {name} is as fast, as far as can be told, and {error}")
         } else if quickest.frame < best.frame {
             let times = quickest.times_as_fast(best);
-            format!(". {name} is {times} and {}", quickest.error())
+            format!(". {name} is {times} and {error}")
         } else {
             ". No other is faster".into()
         };
@@ -387,44 +381,31 @@ fn by_error<'a>(
     error: impl Fn(&Contender) -> f64,
     words: [&str; 2],
 ) -> Single<'a> {
-    let Some(least_error) = least(methods, &error).map(&error) else {
+    let least_error = methods.iter().map(&error).fold(f64::INFINITY, f64::min);
+    let is_least = |method: &Contender| error(method) == least_error;
+    let Some(best) = fastest(methods.iter().filter(|method| is_least(method))) else {
         return Single::default();
     };
-    let Some(best) = least(
-        methods.iter().filter(|method| error(method) == least_error),
-        |method| method.frame,
-    ) else {
-        return Single::default();
+    let level = with_level(best, methods, is_least);
+    let names = level.iter().map(|method| method.name()).join(" and ");
+    let are = match level[..] {
+        [_] => words[0].to_owned(),
+        _ => format!("{} and cannot be told apart in time", words[1]),
     };
-    let rivals = || methods.iter().filter(|method| method.index != best.index);
-    let is_level = |method: &&Contender| !method.is_told_apart(best);
-    let equals = rivals().filter(|method| error(method) == least_error && is_level(method));
-    let equals: Vec<String> = equals.map(Contender::name).collect();
-    let figures = format!("{}, {}", best.error(), best.per_frame());
-    let mut text = match &equals[..] {
-        [] => format!("{} {} ({figures})", best.name(), words[0]),
-        equals => format!(
-            "{} and {} {} and cannot be told apart in time ({figures})",
-            best.name(),
-            equals.join(" and "),
-            words[1]
-        ),
-    };
-    let rest = || rivals().filter(|method| error(method) > least_error);
-    let fastest = least(rest(), |method| method.frame);
-    let is_faster = |method: &&Contender| method.frame < best.frame || is_level(method);
+    let (figure, time) = (best.error(), best.per_frame());
+    let mut text = format!("{names} {are} ({figure}, {time})");
+    let fastest = fastest(rivals(methods, best).filter(|method| error(method) > least_error));
+    let is_faster = |method: &&Contender| method.frame < best.frame || !method.is_told_apart(best);
     text += &match fastest {
         Some(fastest) if is_faster(&fastest) => format!(". {}", faster(fastest, best)),
         Some(_) => ". No other is faster".into(),
         None => String::new(),
     };
-    let next = || least(rivals(), &error);
+    let next = || least(rivals(methods, best), &error);
+    let runner_up = fastest.filter(is_faster).or_else(next);
     Single {
-        first: with_level(best, methods, |method| error(method) == least_error),
-        runner_up: fastest
-            .filter(is_faster)
-            .or_else(next)
-            .map(|method| method.index),
+        first: indices(&level),
+        runner_up: runner_up.map(|method| method.index),
         sentences: vec![text],
         ..Single::default()
     }
@@ -433,6 +414,18 @@ fn by_error<'a>(
 /// The sentences on methods whose frames are too few to tell their times apart.
 fn without_times(methods: &[Contender], frames: usize) -> Vec<String> {
     let is_soft = methods.iter().any(|method| method.is_soft);
+    let are = |count| if count == 1 { "is" } else { "are" };
+    let by = |is_named: &dyn Fn(&&Contender) -> bool| {
+        let named = methods.iter().filter(is_named);
+        let named: Vec<String> = named.map(Contender::name).collect();
+        format!("{} {}", named.join(" and "), are(named.len()))
+    };
+    let few = format!(
+        "{} {} too few to tell times apart: give --frames {LEAST_TURNS} or more.",
+        plural(frames, "frame"),
+        are(frames)
+    );
+    let exact = methods.iter().find(|method| method.is_exact && !is_soft);
     let error = |method: &Contender| {
         if is_soft {
             method.rmse
@@ -440,40 +433,15 @@ fn without_times(methods: &[Contender], frames: usize) -> Vec<String> {
             method.wrong.share()
         }
     };
-    let by = |is_named: &dyn Fn(&Contender) -> bool| {
-        let named: Vec<String> = methods
-            .iter()
-            .filter(|method| is_named(method))
-            .map(Contender::name)
-            .collect();
-        let are = if named.len() == 1 { "is" } else { "are" };
-        format!("{} {are}", named.join(" and "))
-    };
-    let exact = methods.iter().find(|method| method.is_exact && !is_soft);
     let sentence = match (exact, least(methods, error)) {
-        (Some(exact), _) => Some(format!(
-            "{} {}",
-            by(&|method| method.is_exact),
-            exact.right()
-        )),
+        (Some(exact), _) => format!("{} {}.", by(&|method| method.is_exact), exact.right()),
         (None, Some(best)) => {
             let named = by(&|method| error(method) == error(best));
-            Some(format!("{named} the least wrong ({})", best.error()))
+            format!("{named} the least wrong ({}).", best.error())
         }
-        (None, None) => None,
+        (None, None) => return vec![few],
     };
-    let frames = plural(frames, "frame");
-    let are = if frames.starts_with("1 ") {
-        "is"
-    } else {
-        "are"
-    };
-    let few =
-        format!("{frames} {are} too few to tell times apart: give --frames {LEAST_TURNS} or more.");
-    [few]
-        .into_iter()
-        .chain(sentence.map(|sentence| sentence + "."))
-        .collect()
+    vec![few, sentence]
 }
 
 /// How much faster another method is, and its error.
@@ -491,99 +459,85 @@ fn faster(fastest: &Contender, than: &Contender) -> String {
 fn graded<'a>(methods: &[Contender], rows: &[Row]) -> Single<'a> {
     let words = ["has the least error", "have the least error"];
     let mut verdict = by_error(methods, |method| method.rmse, words);
-    let least_error =
-        least(methods, |method| method.rmse).map_or(f64::INFINITY, |method| method.rmse);
-    let own = rows
-        .iter()
-        .filter_map(Row::reference_error)
-        .reduce(f64::max);
+    let errors = methods.iter().map(|method| method.rmse);
+    let least_error = errors.fold(f64::INFINITY, f64::min);
+    let own = rows.iter().filter_map(Row::reference_error);
+    let own = own.reduce(f64::max).filter(|own| least_error < 10.0 * own);
+    let more = or_nothing(own, |own| {
+        format!(
+            ". The reference's own error is {own:.4}: more samples would tell more \
+             (--reference-samples)"
+        )
+    });
     for sentence in &mut verdict.sentences {
-        if let Some(own) = own.filter(|own| least_error < 10.0 * own) {
-            *sentence += &format!(
-                ". The reference's own error is {own:.4}: more samples would tell more \
-                 (--reference-samples)"
-            );
-        }
-        *sentence += ".";
+        *sentence += &format!("{more}.");
     }
     verdict
 }
 
 /// The fastest of methods that are all right enough, with those that cannot be told apart from it.
 fn right_enough<'a>(methods: &[Contender]) -> Single<'a> {
-    let Some(best) = least(methods, |method| method.frame) else {
+    let Some(best) = fastest(methods) else {
         return Single::default();
     };
-    let rivals = || methods.iter().filter(|method| method.index != best.index);
-    let level = rivals().filter(|method| !method.is_told_apart(best));
-    let figures = |method: &Contender| {
-        format!(
-            "{} ({}, {})",
-            method.name(),
-            method.error(),
-            method.per_frame()
-        )
+    let level = with_level(best, methods, |_| true);
+    let figures = |method: &&Contender| {
+        let (name, error, time) = (method.name(), method.error(), method.per_frame());
+        format!("{name} ({error}, {time})")
     };
-    let level: Vec<String> = level.map(figures).collect();
-    let level = match &level[..] {
-        [] => String::new(),
-        level => format!(". Not told apart from it in time: {}", level.join(", ")),
+    let names = level[1..].iter().map(figures).join(", ");
+    let also = match names.as_str() {
+        "" => String::new(),
+        names => format!(". Not told apart from it in time: {names}"),
     };
     Single {
         fastest_exact: best.is_exact.then_some(best.index),
-        first: with_level(best, methods, |_| true),
+        first: indices(&level),
         is_taken: true,
-        runner_up: least(rivals(), |method| method.frame).map(|method| method.index),
-        sentences: vec![format!("Take {}{level}.", figures(best))],
+        runner_up: fastest(rivals(methods, best)).map(|method| method.index),
+        sentences: vec![format!("Take {}{also}.", figures(&best))],
         ..Single::default()
     }
 }
 
 /// That no method keeps to the budgets, and which come closest to each.
 fn none_within<'a>(methods: &[Contender], budgets: &Budgets) -> Single<'a> {
-    let mut text = format!("No method keeps to {budgets}");
-    let mut add = |name: &str, figure: &dyn Fn(&Contender) -> f64, describe: Told| {
-        if let Some(method) = least(methods, figure) {
-            text += &format!("; {name} is {} ({})", method.name(), describe(method));
-        }
+    let fastest = || {
+        let method = least(methods, |method| method.slowest.value)?;
+        let (time, place) = (ms(method.slowest.value), method.slowest.on());
+        Some(format!(
+            "the fastest is {} ({time} ms a frame{place})",
+            method.name()
+        ))
     };
-    if budgets.frame_ms.is_some() {
-        add("the fastest", &|method| method.slowest.value, |method| {
-            format!(
-                "{} ms a frame{}",
-                ms(method.slowest.value),
-                method.slowest.on()
-            )
-        });
-    }
-    if budgets.wrong_percent.is_some() {
-        add(
-            "the least wrong",
-            &|method| method.most_wrong.value,
-            |method| {
-                let share = method.most_wrong.value;
-                match method.most_wrong.on() {
-                    place if place.is_empty() || method.is_exact => method.error(),
-                    place => format!("wrong on {share:.3} %{place}"),
-                }
-            },
-        );
-    }
-    if budgets.memory_bytes.is_some() {
-        add(
-            "the smallest",
-            &|method| method.row.bytes() as f64,
-            |method| bytes(method.row.bytes()),
-        );
-    }
+    let least_wrong = || {
+        let method = least(methods, |method| method.most_wrong.value)?;
+        let error = match method.most_wrong.on() {
+            place if place.is_empty() || method.is_exact => method.error(),
+            place => format!("wrong on {:.3} %{place}", method.most_wrong.value),
+        };
+        Some(format!("the least wrong is {} ({error})", method.name()))
+    };
+    let smallest = || {
+        let method = least(methods, |method| method.row.bytes() as f64)?;
+        let size = bytes(method.row.bytes());
+        Some(format!("the smallest is {} ({size})", method.name()))
+    };
+    let closest = [
+        budgets.frame_ms.and_then(|_| fastest()),
+        budgets.wrong_percent.and_then(|_| least_wrong()),
+        budgets.memory_bytes.and_then(|_| smallest()),
+    ];
+    let closest = closest
+        .into_iter()
+        .flatten()
+        .map(|text| format!("; {text}"));
+    let closest: String = closest.collect();
     Single {
-        sentences: vec![text + "."],
+        sentences: vec![format!("No method keeps to {budgets}{closest}.")],
         ..Single::default()
     }
 }
-
-/// A figure in words.
-type Told = fn(&Contender) -> String;
 
 #[cfg(test)]
 mod tests {

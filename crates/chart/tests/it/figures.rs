@@ -93,42 +93,6 @@ fn growth() -> Figure {
     }
 }
 
-/// Two panels in a row, of three series in four groups; one series has no bar in one of them, and
-/// one has a zero.
-fn bars() -> Figure {
-    let groups = ["512²", "1024²", "2048²", "4096²"].map(str::to_owned);
-    let panel = |title: &str, scale: f64| {
-        let bars = |name: &str, heights: &[f64]| {
-            let mark = |(group, &y): (usize, &f64)| Mark::new(group as f64, y * scale);
-            Series {
-                name: name.into(),
-                marks: heights.iter().enumerate().map(mark).collect(),
-            }
-        };
-        Panel {
-            title: title.into(),
-            kind: Kind::Bars(groups.to_vec()),
-            x: "map".into(),
-            y: "uncertain, % of PFL".into(),
-            series: vec![
-                bars("hybrid_pcf", &[55.3, 31.4, 12.3, 6.9]),
-                bars("crsm", &[82.5, 60.5, 36.9]),
-                bars("crsma", &[78.8, 57.9, 34.6, 0.0]),
-            ],
-        }
-    };
-    Figure {
-        title: "Uncertain pixels".into(),
-        panels: vec![
-            panel("D: sponza, main", 1.0),
-            panel("ours: sponza, main", 0.5),
-        ],
-        columns: 2,
-        shared_axes: true,
-        ..Figure::default()
-    }
-}
-
 #[test]
 fn marks_of_frames_stand_on_linear_axes_and_are_joined() {
     let marks = [0.0, 10.0, 5.0].into_iter().enumerate();
@@ -214,7 +178,7 @@ fn svg(figure: &Figure) -> String {
 
 #[test]
 fn no_text_covers_another_and_none_leaves_the_picture() {
-    for figure in [time_against_error(), growth(), bars()] {
+    for figure in [time_against_error(), growth()] {
         let svg = svg(&figure);
         let svg = Document::parse(&svg).unwrap();
         let height = number(svg.root_element(), "height");
@@ -374,84 +338,38 @@ fn small_marks_lie_on_large_ones() {
     assert!(of_maps.is_sorted_by(|a, b| a > b), "{of_maps:?}");
 }
 
-/// Left, top, right and bottom of each bar, in the order in which they are drawn.
-fn bar_boxes(svg: &Document) -> Vec<[f64; 4]> {
-    let rects = svg.descendants().filter(|node| node.has_tag_name("rect"));
-    rects
-        .filter(|node| node.attribute("opacity") == Some("0.45"))
-        .map(|node| {
-            let [x, y, width, height] =
-                ["x", "y", "width", "height"].map(|name| number(node, name));
-            [x, y, x + width, y + height]
-        })
-        .collect()
-}
-
-#[test]
-fn bars_stand_side_by_side_on_axes_that_a_row_shares() {
-    let height = |[_, top, _, bottom]: [f64; 4]| bottom - top;
-    let shared = svg(&bars());
-    let boxes = bar_boxes(&Document::parse(&shared).unwrap());
-    assert_eq!(boxes.len(), 2 * 11);
-    let (left, right) = boxes.split_at(11);
-    for (index, a) in left.iter().enumerate() {
-        let apart = |b: &[f64; 4]| a[2] <= b[0] || b[2] <= a[0];
-        assert!(left[..index].iter().all(apart), "{left:?}");
-        assert_eq!(a[3], left[0][3], "all stand on zero");
-    }
-    for (a, b) in left.iter().zip(right) {
-        assert!((height(*a) - 2.0 * height(*b)).abs() <= 2.0, "{a:?} {b:?}");
-    }
-    assert_eq!(height(left[10]), 0.0);
-    // Each group's name stands below its middle bar.
-    let parsed = Document::parse(&shared).unwrap();
-    let texts = texts(&parsed);
-    for (group, name) in ["512²", "1024²", "2048²"].iter().enumerate() {
-        let (_, place) = texts.iter().find(|(text, _)| text == name).unwrap();
-        let [from, _, to, _] = left[4 + group];
-        let off = (place[0] + place[2]) / 2.0 - (from + to) / 2.0;
-        assert!(off.abs() < 3.0, "{name}: {off}");
-    }
-    // `crsm` beside `hybrid_pcf` at the same map is higher by as much as it is more.
-    assert!((height(left[4]) / height(left[0]) - 82.5 / 55.3).abs() < 0.02);
-    let apart = svg(&Figure {
-        shared_axes: false,
-        ..bars()
-    });
-    let boxes = bar_boxes(&Document::parse(&apart).unwrap());
-    assert_eq!(
-        height(boxes[4]),
-        height(boxes[15]),
-        "each panel has its own axes"
-    );
-}
-
 #[test]
 fn a_series_looks_the_same_whatever_else_is_drawn() {
-    let looks = ["nsm", "hybrid_pcf", "crsm"].map(str::to_owned).to_vec();
-    // Colours of the series, one after the other, panel by panel.
+    let looks = || ["light_buffer", "rt", "nsm"].map(str::to_owned).to_vec();
+    // Colours of the lines, one after the other, panel by panel.
     let colours = |figure: &Figure| {
         let svg = svg(figure);
         let svg = Document::parse(&svg).unwrap();
-        let bars = svg
-            .descendants()
-            .filter(|node| node.attribute("opacity") == Some("0.45"));
-        let mut colours: Vec<String> = bars
-            .filter_map(|node| Some(node.attribute("fill")?.to_owned()))
-            .collect();
-        colours.dedup();
-        colours
+        // Marks are narrow, and axes have two points.
+        let is_line = |node: &Node| {
+            let points = node.attribute("points").unwrap_or_default();
+            let points = points.split_whitespace();
+            let across = points.map(|point| point.split_once(',').unwrap().0.parse().unwrap());
+            let across: Vec<f64> = across.collect();
+            node.has_tag_name("polyline") && across.len() == 4 && across[3] - across[0] > 100.0
+        };
+        let lines = svg.descendants().filter(is_line);
+        let colours = lines.filter_map(|node| Some(node.attribute("stroke")?.to_owned()));
+        colours.collect::<Vec<_>>()
     };
-    let listed = colours(&Figure { looks, ..bars() });
-    let unlisted = colours(&bars());
-    assert_eq!(listed.len(), 6, "three series in two panels");
+    let listed = colours(&Figure {
+        looks: looks(),
+        ..growth()
+    });
+    let unlisted = colours(&growth());
+    assert_eq!(listed.len(), 9, "three series in three panels");
     assert_eq!(
         unlisted[1..3],
         listed[..2],
-        "one place on, since nsm is not drawn"
+        "one place on, since light_buffer is not drawn"
     );
-    let mut fewer = bars();
-    fewer.looks = ["nsm", "hybrid_pcf", "crsm"].map(str::to_owned).to_vec();
+    let mut fewer = growth();
+    fewer.looks = looks();
     for panel in &mut fewer.panels {
         panel.series.remove(0);
     }
@@ -507,45 +425,6 @@ fn error_bars_reach_from_end_to_end_within_the_axes() {
         };
         let error = figure(mark, Kind::Front).to_svg().unwrap_err().to_string();
         assert!(error.contains("an error bar from"), "{error}");
-    }
-}
-
-#[test]
-fn logarithmic_axes_are_shared_too() {
-    let mut figure = growth();
-    let ticks = |figure: &Figure| {
-        let svg = svg(figure);
-        let svg = Document::parse(&svg).unwrap();
-        let texts = texts(&svg);
-        let left = texts.iter().filter(|(text, _)| *text == "1000");
-        left.map(|(_, place)| place[1]).collect::<Vec<_>>()
-    };
-    figure.panels.truncate(2);
-    for mark in &mut figure.panels[1].series[0].marks {
-        mark.y *= 100.0;
-    }
-    let apart = ticks(&figure);
-    figure.shared_axes = true;
-    let shared = ticks(&figure);
-    assert_eq!(shared.len(), 2);
-    assert_eq!(shared[0], shared[1]);
-    assert_ne!(apart, shared);
-}
-
-#[test]
-fn what_is_no_bar_is_refused_by_name() {
-    for (x, y) in [
-        (4.0, 1.0),
-        (-1.0, 1.0),
-        (0.5, 1.0),
-        (0.0, -1.0),
-        (1.0, f64::NAN),
-    ] {
-        let mut figure = bars();
-        figure.panels[1].series[2].marks.push(Mark::new(x, y));
-        let message = figure.to_svg().unwrap_err().to_string();
-        let named = message.contains("\"ours: sponza, main\"") && message.contains("\"crsma\"");
-        assert!(named && message.contains("4 groups"), "{message}");
     }
 }
 

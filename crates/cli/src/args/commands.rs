@@ -1,9 +1,7 @@
 //! Arguments of each command.
 
-use crate::args::{
-    shared::{MethodArgs, SceneArgs},
-    values::{self, LightArgument, frames, texels},
-};
+use crate::args::shared::{MethodArgs, SceneArgs};
+use crate::args::values::{self, LightArgument, frames, texels};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgAction, Args, ValueEnum};
 use skiagraph_compare::foreign::factor::Reading;
@@ -198,24 +196,14 @@ pub struct ChartArgs {
     pub kind: ChartKind,
     /// Error to draw. Without it: wrong pixels of all for `front`, for `frames` wrong pixels of
     /// those that face the light, or the RMSE under a light with an extent.
-    #[arg(long, value_name = "FIGURE", conflicts_with = "beside",
+    #[arg(long, value_name = "FIGURE",
           value_parser = PossibleValuesParser::new(drawn().map(|figure| &*figure.name)))]
     pub error: Option<String>,
     /// Draw only runs of this viewport size. Without it: all sizes, each in a panel of its own.
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Draw published figures (left) beside the measured ones (right) instead: a chart by map size
-    /// and one by viewport for each quantity that both have, times as shares of those of the method
-    /// that draws no shadow map. --out is a folder for them.
-    #[arg(
-        long,
-        value_name = "LABEL:FILE.csv",
-        conflicts_with = "kind",
-        requires = "out"
-    )]
-    pub beside: Option<PublishedFile>,
-    /// File to write, or with --beside the folder. Without it: standard output, as SVG.
-    #[arg(long, value_name = "FILE.svg|FILE.png|DIR")]
+    /// File to write. Without it: standard output, as SVG.
+    #[arg(long, value_name = "FILE.svg|FILE.png")]
     pub out: Option<PathBuf>,
 }
 

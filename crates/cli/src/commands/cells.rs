@@ -1,20 +1,15 @@
 //! `skiagraph compare --plan` and `--cells`: a comparison on many machines.
 
-use crate::args::{
-    cli::{Cli, Command},
-    commands::CompareArgs,
-    shared::GpuArgs,
-};
+use crate::args::cli::{Cli, Command};
+use crate::args::{commands::CompareArgs, shared::GpuArgs};
 use crate::commands::compare::{COMMIT, Loaded, check_all, write_graphs};
 use crate::error::CliError;
 use crate::terminal::{Terminal, console::note};
 use clap::Parser;
 use skiagraph_compare::files::write::write_whole;
 use skiagraph_compare::measuring::many_machines::{self, SceneCells, Share};
-use skiagraph_compare::records::{
-    cell_plan::{CellPlan, FILE},
-    shard::Shard,
-};
+use skiagraph_compare::records::cell_plan::{CellPlan, FILE};
+use skiagraph_compare::records::shard::Shard;
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::wording::plural;
 use std::{ffi::OsString, path::Path};
@@ -53,15 +48,11 @@ pub async fn measure(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> 
     let file = args.cells.as_deref().unwrap_or(Path::new(FILE));
     let plan = CellPlan::read(file)?;
     plan.check_version(COMMIT)?;
-    let words = ["skiagraph".to_owned()].into_iter();
-    let words = words
-        .chain(plan.head.arguments.iter().cloned())
-        .map(OsString::from);
+    let arguments = plan.head.arguments.iter().map(OsString::from);
+    let words = ["skiagraph".into()].into_iter().chain(arguments);
     let refused = |why: String| {
-        let file = file.display();
-        CliError::Input(format!(
-            "{file}: \"arguments\" are not those of a comparison: {why}"
-        ))
+        let what = "\"arguments\" are not those of a comparison";
+        CliError::Input(format!("{}: {what}: {why}", file.display()))
     };
     let planned = Cli::try_parse_from(words.clone()).map_err(|why| refused(why.to_string()))?;
     let Command::Compare(mut planned) = planned.command else {

@@ -66,25 +66,19 @@ pub fn check(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 fn check_once(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
     let registry = registry();
-    let paths: Vec<_> = args
-        .graphs
-        .iter()
-        .map(|name| preset::locate(name, &sources))
-        .collect();
-    let adapter = if gpu.adapter.is_some() || gpu.backend.is_some() {
-        Some(open(gpu, paths.iter().flatten(), &sources)?)
-    } else {
-        None
-    };
+    let names = args.graphs.iter();
+    let paths: Vec<_> = names.map(|name| preset::locate(name, &sources)).collect();
+    let is_named = gpu.adapter.is_some() || gpu.backend.is_some();
+    let adapter = is_named.then(|| open(gpu, paths.iter().flatten(), &sources));
+    let adapter = adapter.transpose()?;
     let trial = trial(args, adapter.as_ref())?;
-    let mut outcomes = Vec::new();
-    for (argument, path) in args.graphs.iter().zip(paths) {
-        let checked = match path {
-            Ok(path) => planning::check(&path, &registry, &sources, &trial).map_err(Fault::Graph),
-            Err(error) => Err(Fault::Missing(error.to_string())),
-        };
-        outcomes.push((argument.as_str(), checked));
-    }
+    let outcomes = args.graphs.iter().zip(paths).map(|(argument, path)| {
+        let path = path.map_err(|why| Fault::Missing(why.to_string()));
+        let check = |path: String| planning::check(&path, &registry, &sources, &trial);
+        let checked = path.and_then(|path| check(path).map_err(Fault::Graph));
+        (argument.as_str(), checked)
+    });
+    let outcomes: Vec<Found> = outcomes.collect();
     match args.format {
         CheckFormat::Text => text(&outcomes),
         CheckFormat::Json => json(&outcomes),
@@ -153,16 +147,14 @@ fn text(outcomes: &[Found]) -> Result<(), CliError> {
     let mut missing = Vec::new();
     for (argument, checked) in outcomes {
         match checked {
-            Ok(Checked {
-                graph,
-                plan,
-                planned_for,
-            }) => {
+            Ok(checked) => {
+                let (graph, plan) = (&checked.graph, &checked.plan);
                 warn(&Terminal, graph, plan.warnings());
                 let passes = plan.passes().len();
                 let noun = if passes == 1 { "pass" } else { "passes" };
                 let refused = refused_lights(graph, plan);
                 let idle = idle_params::under_other_lights(graph);
+                let planned_for = &checked.planned_for;
                 fine += &format!(
                     "{argument}: fine, {passes} {noun} for {planned_for}{refused}{idle}\n"
                 );
@@ -203,15 +195,13 @@ fn json(outcomes: &[Found]) -> Result<(), CliError> {
     };
     let report = CheckReport::new(outcomes.iter().map(file_report).collect());
     print(&to_text(&report))?;
-    let faulty = outcomes
-        .iter()
-        .filter(|(_, checked)| checked.is_err())
-        .count();
-    match faulty {
+    let outcomes = outcomes.iter();
+    let count = outcomes.len();
+    match outcomes.filter(|(_, checked)| checked.is_err()).count() {
         0 => Ok(()),
-        _ => Err(CliError::Input(format!(
+        faulty => Err(CliError::Input(format!(
             "{faulty} of {} cannot be used; the diagnostics are on standard output",
-            outcomes.len()
+            count
         ))),
     }
 }

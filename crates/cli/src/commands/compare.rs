@@ -4,24 +4,17 @@ use crate::args::commands::{CompareArgs, Format, Images};
 use crate::args::shared::{GpuArgs, SceneArgs};
 use crate::error::CliError;
 use crate::scene_selection::{SceneSelection, paths};
-use crate::terminal::{
-    Terminal,
-    console::{note, print},
-    interrupt,
-};
+use crate::terminal::console::{note, print};
+use crate::terminal::{Terminal, interrupt};
 use itertools::Itertools;
 use skiagraph_compare::comparison::{Comparison, Protocol};
 use skiagraph_compare::error::CompareError;
-use skiagraph_compare::files::{
-    json,
-    write::{check_folder, write_whole},
-};
-use skiagraph_compare::graphs::{
-    faults::GraphFaults,
-    method::{self, Method},
-    planning::Capabilities,
-    preset, shadow_method,
-};
+use skiagraph_compare::files::json;
+use skiagraph_compare::files::write::{check_folder, write_whole};
+use skiagraph_compare::graphs::faults::GraphFaults;
+use skiagraph_compare::graphs::method::{self, Method};
+use skiagraph_compare::graphs::planning::Capabilities;
+use skiagraph_compare::graphs::{preset, shadow_method};
 use skiagraph_compare::lists::unique;
 use skiagraph_compare::measuring::{
     date, device,
@@ -39,19 +32,15 @@ use skiagraph_compare::records::{
 };
 use skiagraph_compare::sink::{Session, Silent};
 use skiagraph_compare::size::Size;
-use skiagraph_compare::wording::{command_line, plural, size};
+use skiagraph_compare::wording::{command_line, or_nothing, plural, size};
 use skiagraph_draw::{from_plan, to_svg};
 use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
-use skiagraph_report::{
-    baseline_text,
-    gate::Gate,
-    markdown, matrices,
-    overview::Overview,
-    page, results_table,
-    summary_table::{self, Summary},
-    table::terminal,
-};
+use skiagraph_report::gate::Gate;
+use skiagraph_report::overview::Overview;
+use skiagraph_report::summary_table::{self, Summary};
+use skiagraph_report::table::terminal;
+use skiagraph_report::{baseline_text, markdown, matrices, page, results_table};
 use skiagraph_scene::{CameraPath, Scene};
 use std::{
     ffi::OsString,
@@ -72,41 +61,43 @@ pub const COMMIT: Option<&str> = option_env!("SKIAGRAPH_COMMIT");
 pub async fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let baseline = args.baseline.as_deref().map(Baseline::read).transpose()?;
     let loaded = Loaded::new(args, gpu, std::env::args_os())?;
-    let session = Session::new(&loaded.gpu, &Terminal);
     let (mut comparisons, targets) = (loaded.comparisons, loaded.targets);
-    let (gpu, silent) = (&loaded.gpu, Session::new(&loaded.gpu, &Silent));
+    let session = Session::new(&loaded.gpu, &Terminal);
+    let silent = Session::new(&loaded.gpu, &Silent);
+    let mut work = Work {
+        args,
+        baseline,
+        session,
+        results: Vec::new(),
+        mistakes: Vec::new(),
+        failures: Vec::new(),
+        worse: Vec::new(),
+        folders: Vec::new(),
+    };
     for (comparison, target) in comparisons.iter_mut().zip(&targets) {
         check_folder(&target.folder)?;
         if args.tune && comparison.refusals(silent)?.is_empty() {
             // Refused before the search, not behind it.
-            check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
+            work.check_earlier(comparison, target)?;
             tune(comparison, session).await.map_err(search_ended)?;
         }
     }
     check_all(&comparisons, session)?;
     for (comparison, target) in comparisons.iter().zip(&targets) {
-        check_earlier(args, comparison, baseline.as_ref(), target, gpu)?;
+        work.check_earlier(comparison, target)?;
     }
-    let mut measured = Measured::default();
     let outcome = async {
         for (comparison, target) in comparisons.into_iter().zip(&targets) {
-            let baseline = baseline.as_ref();
-            measure(args, &comparison, baseline, target, session, &mut measured).await?;
+            work.measure(&comparison, target).await?;
         }
         Ok(())
     }
     .await;
-    let shown = if targets.len() > 1 {
-        overview(args, &targets, &measured.results)
-    } else {
-        Ok(())
+    let shown = match targets[..] {
+        [_] => Ok(()),
+        _ => overview(args, &targets, &work.results),
     };
-    let Measured {
-        mistakes,
-        failures,
-        worse,
-        ..
-    } = measured;
+    let (mistakes, failures, worse) = (work.mistakes, work.failures, work.worse);
     let lines = [&mistakes, &failures, &worse].into_iter().flatten();
     if outcome.is_err() {
         lines.clone().for_each(|line| note(line));
@@ -119,6 +110,139 @@ pub async fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> 
         ([], ..) => CliError::Gate(text),
         _ => CliError::Judged(text),
     })
+}
+
+/// A comparison under way, with the results of the scenes so far.
+struct Work<'a> {
+    args: &'a CompareArgs,
+    baseline: Option<Baseline>,
+    session: Session<'a>,
+    /// Results of the scenes that have any, in the order of the scenes.
+    results: Vec<Results>,
+    /// Mistakes of methods, and scenes on which none can run.
+    mistakes: Vec<String>,
+    /// Conditions of `--fail-if` that do not hold.
+    failures: Vec<String>,
+    /// Methods that are worse than in `--baseline`.
+    worse: Vec<String>,
+    /// Folders of the scenes that are done.
+    folders: Vec<PathBuf>,
+}
+
+impl Work<'_> {
+    /// Checks that the earlier results of a scene can be continued, and that the baseline has some
+    /// of its cells, before the first scene is measured.
+    fn check_earlier(&self, comparison: &Comparison, target: &Target) -> Result<(), CliError> {
+        let silent = Session::new(self.session.gpu, &Silent);
+        let kept = Some((&*target.folder, kept(self.args)));
+        let series = Series::new(comparison, silent, kept)?;
+        if let Some(baseline) = &self.baseline {
+            baseline.check(&series.results, series.planned_runs())?;
+        }
+        Ok(())
+    }
+
+    /// Measures a scene, prints and saves its results.
+    async fn measure(&mut self, comparison: &Comparison, target: &Target) -> Result<(), CliError> {
+        let (args, folder) = (self.args, &target.folder);
+        let mut series = Series::new(comparison, self.session, Some((folder, kept(args))))?;
+        let file = folder.join("results.json");
+        let written = |file: &Path| file.metadata().and_then(|file| file.modified()).ok();
+        let (before, has_runs) = (written(&file), !series.results.runs.is_empty());
+        let some = format!("finished runs are kept in {}", file.display());
+        let [none, some] = [None, Some(some)].map(|runs| self.what_is_kept(target, runs));
+        let (page, finished) = (args.out.join(page::FILE), self.folders.clone());
+        interrupt::on_end_in_the_middle(move || {
+            show_scenes(&finished, &page)?;
+            let is_some = has_runs || written(&file) != before;
+            let kept = if is_some { some } else { none };
+            Err(CliError::Interrupted { kept })
+        });
+        // Behind the above, so that an end after it tells what is kept of this scene.
+        if let Some(name) = &target.name {
+            let (number, count) = (self.folders.len() + 1, args.scene.scenes.len());
+            note(&format!("{name}, scene {number} of {count}"));
+        }
+        write_graphs(comparison, folder, self.session)?;
+        let outcome = run(args, comparison, &mut series).await;
+        let results = self.finish(target, series, outcome)?;
+        self.judge(target, &results)?;
+        self.folders.push(folder.clone());
+        Ok(())
+    }
+
+    /// Says what is kept after an early end: finished scenes, and the `runs` of the one under way.
+    fn what_is_kept(&self, target: &Target, runs: Option<String>) -> String {
+        let (finished, total) = (self.folders.len(), self.args.scene.scenes.len());
+        let has_any = finished > 0 || runs.is_some();
+        let mut kept = runs.unwrap_or_else(|| NONE_FINISHED.into());
+        if has_any {
+            kept += &format!("; {RESUME}");
+        }
+        match &target.name {
+            Some(name) => format!("scenes finished: {finished} of {total}; {name}: {kept}"),
+            None => kept,
+        }
+    }
+
+    /// Says what came of a scene, and returns its results.
+    fn finish(
+        &mut self,
+        target: &Target,
+        mut series: Series,
+        outcome: Result<(), CliError>,
+    ) -> Result<Results, CliError> {
+        let (planned, folder) = (series.planned(), &target.folder);
+        if !series.results.runs.is_empty() {
+            let whole = series.whole();
+            print_summary(self.args, &whole)?;
+            series.save(&[])?;
+            page::write_beside(folder, &Terminal)?;
+            self.results.push(whole);
+        }
+        let (results, broken) = (series.results, series.broken);
+        let file = folder.join("results.json");
+        let (done, file) = (results.runs.len(), file.display());
+        let runs = (done > 0).then(|| format!("{done} of {planned} runs are kept in {file}"));
+        let kept = self.what_is_kept(target, runs);
+        match outcome {
+            Ok(()) => {}
+            Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),
+            Err(error) => {
+                note(&kept);
+                return Err(error);
+            }
+        }
+        self.mistakes.extend(broken);
+        if results.runs.iter().all(|run| run.measured.is_none()) {
+            let place = target.name.as_ref().unwrap_or(&results.adapter.name);
+            let text = format!("no method can run on {place}; the reasons stand above");
+            self.mistakes.push(text);
+        }
+        tell_files(self.args, target, &results);
+        Ok(results)
+    }
+
+    /// Holds the results of a scene against the gates, and shows what has changed since the
+    /// baseline.
+    fn judge(&mut self, target: &Target, results: &Results) -> Result<(), CliError> {
+        let scene = or_nothing(target.name.as_ref(), |name| format!("{name}: "));
+        let gates = self.args.fail_if.iter();
+        let failures = gates.flat_map(|gate| gate.failures(results));
+        self.failures
+            .extend(failures.map(|line| format!("{scene}{line}")));
+        if let Some(baseline) = &self.baseline {
+            let changes = baseline.against(results)?;
+            let worse = baseline_text::failures(&changes).into_iter();
+            self.worse
+                .extend(worse.map(|line| format!("{scene}{line}")));
+            match self.args.format {
+                Format::Table => print(&format!("\n{}", baseline_text::text(&changes)))?,
+                Format::Markdown | Format::Json => note(&baseline_text::text(&changes)),
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The comparisons that the arguments ask for, not checked yet.
@@ -142,23 +266,17 @@ impl Loaded {
         let scenes = args.scene.each()?;
         let published = published::read(&args.published)?;
         let sources = preset::sources(&Terminal);
-        let names = if args.presets.is_empty() && !args.all {
-            preset::shipped_and_own(&sources)
-        } else {
-            preset::named_or_all(&args.presets, &sources)
+        let names = match &args.presets[..] {
+            [] if !args.all => preset::shipped_and_own(&sources),
+            presets => preset::named_or_all(presets, &sources),
         };
         let sizes = if args.map_curve {
             &MAP_CURVE[..]
         } else {
             &args.map_size
         };
-        let methods = method::load(
-            &names,
-            &args.params,
-            sizes,
-            &sources,
-            shadow_method::load_each,
-        )?;
+        let (params, load) = (&args.params, shadow_method::load_each);
+        let methods = method::load(&names, params, sizes, &sources, load)?;
         note_without_map(&methods, &args.map_size);
         Gate::check(&args.fail_if, &methods).map_err(CliError::Input)?;
         let primary = PrimaryVisibility::load(&sources)?;
@@ -240,23 +358,6 @@ fn search_ended(why: CompareError) -> CliError {
     }
 }
 
-/// Checks that the earlier results of a scene can be continued, and that the baseline has some of
-/// its cells, before the first scene is measured.
-fn check_earlier(
-    args: &CompareArgs,
-    comparison: &Comparison,
-    baseline: Option<&Baseline>,
-    target: &Target,
-    gpu: &Gpu,
-) -> Result<(), CliError> {
-    let silent = Session::new(gpu, &Silent);
-    let series = Series::new(comparison, silent, Some((&target.folder, kept(args))))?;
-    if let Some(baseline) = baseline {
-        baseline.check(&series.results, series.planned_runs())?;
-    }
-    Ok(())
-}
-
 /// A scene's folder for results.
 pub struct Target {
     /// The folder.
@@ -282,21 +383,6 @@ impl Target {
     }
 }
 
-/// Results of the scenes so far.
-#[derive(Default)]
-struct Measured {
-    /// Results of the scenes that have any, in the order of the scenes.
-    results: Vec<Results>,
-    /// Mistakes of methods, and scenes on which none can run.
-    mistakes: Vec<String>,
-    /// Conditions of `--fail-if` that do not hold.
-    failures: Vec<String>,
-    /// Methods that are worse than in `--baseline`.
-    worse: Vec<String>,
-    /// Folders of the scenes that are done.
-    folders: Vec<PathBuf>,
-}
-
 /// A scene with the views or paths that the arguments select.
 fn views(
     args: &CompareArgs,
@@ -305,25 +391,17 @@ fn views(
     methods: &[Method],
     session: Session,
 ) -> Result<(Arc<Scene>, Vec<ViewOrPath>), CliError> {
-    let SceneSelection {
-        scene,
-        mut views,
-        further,
-        paths: own,
-        ..
-    } = selection;
-    views.extend(further);
-    let scene = Arc::new(scene);
+    let scene = Arc::new(selection.scene);
     let light = light_name(scene_args, methods, &scene, session);
-    let views = match (&args.path, &scene_args.light) {
-        (Some(name), _) => paths(scene_args, &scene, &own, name, light)?,
-        (None, Some(_)) => views.into_iter().map(ViewOrPath::Still).collect(),
-        (None, None) => {
-            let views = under_lights(&scene, views, light)?.into_iter();
-            views.map(ViewOrPath::Still).collect()
-        }
-    };
-    Ok((scene, views))
+    if let Some(name) = &args.path {
+        let views = paths(scene_args, &scene, &selection.paths, name, light)?;
+        return Ok((scene, views));
+    }
+    let mut views = [selection.views, selection.further].concat();
+    if scene_args.light.is_none() {
+        views = under_lights(&scene, views, light)?;
+    }
+    Ok((scene, views.into_iter().map(ViewOrPath::Still).collect()))
 }
 
 /// The parts that move on the scene's paths; a path that cannot move them is noted.
@@ -346,54 +424,14 @@ fn kept(args: &CompareArgs) -> Kept {
     }
 }
 
-/// Measures a scene, prints and saves its results.
-async fn measure(
-    args: &CompareArgs,
-    comparison: &Comparison,
-    baseline: Option<&Baseline>,
-    target: &Target,
-    session: Session<'_>,
-    measured: &mut Measured,
-) -> Result<(), CliError> {
-    let folder = &target.folder;
-    let mut series = Series::new(comparison, session, Some((folder, kept(args))))?;
-    let file = folder.join("results.json");
-    let written = |file: &Path| file.metadata().and_then(|file| file.modified()).ok();
-    let (before, has_runs) = (written(&file), !series.results.runs.is_empty());
-    let some = format!("finished runs are kept in {}", file.display());
-    let [none, some] =
-        [None, Some(some)].map(|runs| what_is_kept(args, target, measured.folders.len(), runs));
-    let (page, finished) = (args.out.join(page::FILE), measured.folders.clone());
-    interrupt::on_end_in_the_middle(move || {
-        show_scenes(&finished, &page)?;
-        let is_some = has_runs || written(&file) != before;
-        let kept = if is_some { some } else { none };
-        Err(CliError::Interrupted { kept })
-    });
-    // Behind the above, so that an end after it tells what is kept of this scene.
-    if let Some(name) = &target.name {
-        let number = measured.folders.len() + 1;
-        note(&format!(
-            "{name}, scene {number} of {}",
-            args.scene.scenes.len()
-        ));
-    }
-    write_graphs(comparison, folder, session)?;
-    let outcome = run(args, comparison, &mut series).await;
-    let results = finish(args, target, series, outcome, measured)?;
-    judge(args, target, baseline, &results, measured)?;
-    measured.folders.push(folder.clone());
-    Ok(())
-}
-
 /// Prints a note on the methods without a param `map_size`, unless `map_sizes` is empty.
 pub fn note_without_map(methods: &[Method], map_sizes: &[u32]) {
     let without = methods.iter().filter(|method| method.map_size.is_none());
     let without: Vec<&str> = without.map(|method| method.name.as_str()).collect();
     if !map_sizes.is_empty() && !without.is_empty() {
+        let names = without.join(", ");
         note(&format!(
-            "--map-size has no effect on {}: no param `map_size`",
-            without.join(", ")
+            "--map-size has no effect on {names}: no param `map_size`"
         ));
     }
 }
@@ -451,13 +489,14 @@ async fn run(
     if args.format == Format::Markdown {
         let is_done = series.results.runs.len() == series.planned();
         let today = (!is_done).then(date::today);
-        let header = markdown::header(
-            &series.results,
+        let (results, published) = (&series.results, &args.published);
+        let is_path = args.path.is_some();
+        print(&markdown::header(
+            results,
             today.as_deref(),
-            &args.published,
-            args.path.is_some(),
-        );
-        print(&header)?;
+            published,
+            is_path,
+        ))?;
     }
     for (index, view_or_path) in comparison.views.iter().enumerate() {
         if args.format == Format::Markdown {
@@ -499,11 +538,8 @@ fn print_summary(args: &CompareArgs, results: &Results) -> Result<(), CliError> 
         Format::Markdown => {
             print(&summaries.iter().map(Summary::markdown).collect::<String>())?;
             for (viewport, lights) in matrices::by_light(results) {
-                print(&format!(
-                    "\n## By light, {}\n\n{}",
-                    size(viewport),
-                    lights.markdown()
-                ))?;
+                let (size, table) = (size(viewport), lights.markdown());
+                print(&format!("\n## By light, {size}\n\n{table}"))?;
             }
             Ok(())
         }
@@ -548,69 +584,6 @@ const NONE_FINISHED: &str = "no run was finished";
 /// The way out after Ctrl-C.
 const RESUME: &str = "the same command with --resume goes on from there";
 
-/// Says what is kept after an early end: finished scenes, and the `runs` of the one under way.
-fn what_is_kept(
-    args: &CompareArgs,
-    target: &Target,
-    finished: usize,
-    runs: Option<String>,
-) -> String {
-    let has_any = finished > 0 || runs.is_some();
-    let mut kept = runs.unwrap_or_else(|| NONE_FINISHED.into());
-    if has_any {
-        kept += &format!("; {RESUME}");
-    }
-    match &target.name {
-        Some(name) => {
-            let total = args.scene.scenes.len();
-            format!("scenes finished: {finished} of {total}; {name}: {kept}")
-        }
-        None => kept,
-    }
-}
-
-/// Says what came of a scene, and returns its results.
-fn finish(
-    args: &CompareArgs,
-    target: &Target,
-    mut series: Series,
-    outcome: Result<(), CliError>,
-    measured: &mut Measured,
-) -> Result<Results, CliError> {
-    let (planned, folder) = (series.planned(), &target.folder);
-    if !series.results.runs.is_empty() {
-        let whole = series.whole();
-        print_summary(args, &whole)?;
-        series.save(&[])?;
-        page::write_beside(folder, &Terminal)?;
-        measured.results.push(whole);
-    }
-    let Series {
-        results, broken, ..
-    } = series;
-    let file = folder.join("results.json");
-    let (done, file) = (results.runs.len(), file.display());
-    let runs = (done > 0).then(|| format!("{done} of {planned} runs are kept in {file}"));
-    let kept = what_is_kept(args, target, measured.folders.len(), runs);
-    match outcome {
-        Ok(()) => {}
-        Err(CliError::Interrupted { .. }) => return Err(CliError::Interrupted { kept }),
-        Err(error) => {
-            note(&kept);
-            return Err(error);
-        }
-    }
-    measured.mistakes.extend(broken);
-    if results.runs.iter().all(|run| run.measured.is_none()) {
-        measured.mistakes.push(format!(
-            "no method can run on {}; the reasons stand above",
-            target.name.as_ref().unwrap_or(&results.adapter.name)
-        ));
-    }
-    tell_files(args, target, &results);
-    Ok(results)
-}
-
 /// Says which files are there, and what they lack.
 fn tell_files(args: &CompareArgs, target: &Target, results: &Results) {
     let files = match args.images {
@@ -632,31 +605,4 @@ fn tell_files(args: &CompareArgs, target: &Target, results: &Results) {
              none"
         ));
     }
-}
-
-/// Holds the results of a scene against the gates, and shows what has changed since the baseline.
-fn judge(
-    args: &CompareArgs,
-    target: &Target,
-    baseline: Option<&Baseline>,
-    results: &Results,
-    measured: &mut Measured,
-) -> Result<(), CliError> {
-    let scene = target.name.as_ref().map(|name| format!("{name}: "));
-    let scene = scene.unwrap_or_default();
-    let failures = args.fail_if.iter().flat_map(|gate| gate.failures(results));
-    let failures = failures.map(|line| format!("{scene}{line}"));
-    measured.failures.extend(failures);
-    if let Some(baseline) = baseline {
-        let changes = baseline.against(results)?;
-        let worse = baseline_text::failures(&changes).into_iter();
-        measured
-            .worse
-            .extend(worse.map(|line| format!("{scene}{line}")));
-        match args.format {
-            Format::Table => print(&format!("\n{}", baseline_text::text(&changes)))?,
-            Format::Markdown | Format::Json => note(&baseline_text::text(&changes)),
-        }
-    }
-    Ok(())
 }

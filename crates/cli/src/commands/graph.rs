@@ -31,11 +31,8 @@ pub fn graph(args: &GraphArgs) -> Result<(), CliError> {
 
 /// The format asked for, else the one that the file's ending names, else SVG.
 fn format(args: &GraphArgs) -> DrawingFormat {
-    let ending = args
-        .out
-        .as_deref()
-        .and_then(Path::extension)
-        .and_then(OsStr::to_str);
+    let ending = args.out.as_deref().and_then(Path::extension);
+    let ending = ending.and_then(OsStr::to_str);
     args.format.unwrap_or(match ending {
         Some("dot" | "gv") => DrawingFormat::Dot,
         Some("json") => DrawingFormat::Json,
@@ -47,10 +44,12 @@ fn text(drawing: &Drawing, format: DrawingFormat) -> Result<String, CliError> {
     match format {
         DrawingFormat::Svg => Ok(to_svg(drawing)),
         DrawingFormat::Dot => Ok(to_dot(drawing)),
-        DrawingFormat::Json => serde_json::to_string_pretty(drawing)
-            .map(|json| json + "\n")
-            .map_err(|error| {
-                CliError::Input(format!("the plan cannot be written as JSON: {error}"))
-            }),
+        DrawingFormat::Json => match serde_json::to_string_pretty(drawing) {
+            Ok(json) => Ok(json + "\n"),
+            Err(error) => {
+                let text = format!("the plan cannot be written as JSON: {error}");
+                Err(CliError::Input(text))
+            }
+        },
     }
 }

@@ -9,7 +9,7 @@ use crate::terminal::{Terminal, console::print, interrupt, stop};
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::foreign::judging::{Judging, Surfaces, judge as judge_pictures};
 use skiagraph_compare::foreign::truth::{TruthRequest, write_truth};
-use skiagraph_report::judged_text;
+use skiagraph_report::{gate::Gate, judged_text};
 use skiagraph_scene::{Scene, View};
 use std::io::{IsTerminal, stdout};
 
@@ -34,16 +34,11 @@ pub async fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         reference_samples: args.reference_samples,
         draws: args.out.is_some(),
     };
-    let files: Vec<String> = args
-        .pictures
-        .iter()
-        .map(|it| it.display().to_string())
-        .collect();
-    let gates = args.fail_if.iter();
-    let checked = gates
-        .clone()
-        .try_for_each(|gate| gate.check_pictures(&files));
-    checked.map_err(CliError::Input)?;
+    let files = args.pictures.iter().map(|it| it.display().to_string());
+    let files: Vec<String> = files.collect();
+    for gate in &args.fail_if {
+        gate.check_pictures(&files).map_err(CliError::Input)?;
+    }
     let (scene, view) = single_view(&args.scene)?;
     interrupt::install()?;
     let judged = judge_pictures(&judging, scene, &view, &gpu.request(), &Terminal).await?;
@@ -55,13 +50,10 @@ pub async fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         RecordFormat::Table => print(&judged_text::text(&judged.record, stdout().is_terminal()))?,
         RecordFormat::Json => print(&to_text(&judged.record))?,
     }
-    let failures: Vec<String> = gates
-        .flat_map(|gate| gate.picture_failures(&judged.record))
-        .collect();
-    if failures.is_empty() {
-        Ok(())
-    } else {
-        Err(CliError::Gate(failures.join("\n")))
+    let failures = |gate: &Gate| gate.picture_failures(&judged.record);
+    match &args.fail_if.iter().flat_map(failures).collect::<Vec<_>>()[..] {
+        [] => Ok(()),
+        failures => Err(CliError::Gate(failures.join("\n"))),
     }
 }
 
@@ -80,11 +72,8 @@ pub async fn truth(args: &TruthArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let (scene, view) = single_view(&args.scene)?;
     interrupt::install()?;
     let lines = write_truth(&request, scene, &view, &args.out, &gpu.request(), &Terminal).await?;
-    print(&format!(
-        "{}:\n  {}\n",
-        args.out.display(),
-        lines.join("\n  ")
-    ))
+    let (folder, lines) = (args.out.display(), lines.join("\n  "));
+    print(&format!("{folder}:\n  {lines}\n"))
 }
 
 /// Loads a scene with the one view that the arguments select.

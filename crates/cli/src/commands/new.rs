@@ -47,19 +47,16 @@ fn check_name(name: &str) -> Result<(), CliError> {
         )));
     }
     let sources = preset::sources(&Terminal);
-    for path in [
-        format!("pipelines/{name}.ron"),
-        format!("shaders/{name}.wgsl"),
-    ] {
-        match sources.read(&path) {
-            Ok(None) => {}
+    for (folder, ending) in [("pipelines", "ron"), ("shaders", "wgsl")] {
+        let path = format!("{folder}/{name}.{ending}");
+        let why = match sources.read(&path) {
+            Ok(None) => continue,
             Ok(Some(_)) => {
-                return Err(CliError::Input(format!(
-                    "`{path}` is there already, here or built in; take another name"
-                )));
+                format!("`{path}` is there already, here or built in; take another name")
             }
-            Err(reason) => return Err(CliError::Input(format!("cannot read `{path}`: {reason}"))),
-        }
+            Err(reason) => format!("cannot read `{path}`: {reason}"),
+        };
+        return Err(CliError::Input(why));
     }
     Ok(())
 }
@@ -76,22 +73,17 @@ fn variant(name: &str, from: &str) -> Result<String, CliError> {
     let loaded = preset::load_all(&[from.to_owned()], &sources)?;
     let params = preset::graphs(&loaded).flat_map(|graph| graph.params());
     let lines: String = params.map(line_of).collect();
-    Ok(VARIANT
-        .replace("METHOD", name)
-        .replace("PRESET", from)
-        .replace("PARAMS", &lines))
+    let text = VARIANT.replace("METHOD", name).replace("PRESET", from);
+    Ok(text.replace("PARAMS", &lines))
 }
 
 /// A param at its default, as a comment.
 fn line_of(param: &Param) -> String {
-    let value = param.default.as_ref().map(|value| value.text());
-    let value = value.map_or("…".to_owned(), |text| {
-        if is_literal(text) {
-            text.to_owned()
-        } else {
-            format!("\"{text}\"")
-        }
-    });
+    let value = match param.default.as_ref().map(|value| value.text()) {
+        None => "…".to_owned(),
+        Some(text) if is_literal(text) => text.to_owned(),
+        Some(text) => format!("\"{text}\""),
+    };
     let about = match param.description.as_str() {
         "" => String::new(),
         text => format!(": {text}"),
@@ -105,23 +97,19 @@ fn line_of(param: &Param) -> String {
 fn is_literal(text: &str) -> bool {
     let is_word = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     let numbers = text.trim_start_matches('(').trim_end_matches(')');
-    is_word
-        || numbers
-            .split(',')
-            .all(|part| part.trim().parse::<f64>().is_ok())
+    let is_number = |part: &str| part.trim().parse::<f64>().is_ok();
+    is_word || numbers.split(',').all(is_number)
 }
 
 /// All files or none, and none that is there already.
 fn write_all(files: &[(String, String)]) -> Result<(), CliError> {
     let is_there = |file: &str| {
-        CliError::Input(format!(
-            "there is a `{file}` already; take another name, or move it away"
-        ))
+        let text = format!("there is a `{file}` already; take another name, or move it away");
+        CliError::Input(text)
     };
-    for (file, _) in files {
-        if fs::symlink_metadata(file).is_ok() {
-            return Err(is_there(file));
-        }
+    let mut names = files.iter().map(|(file, _)| file);
+    if let Some(file) = names.find(|file| fs::symlink_metadata(file).is_ok()) {
+        return Err(is_there(file));
     }
     for (index, (file, text)) in files.iter().enumerate() {
         let error = match write_new(Path::new(file), text.as_bytes()) {

@@ -19,9 +19,8 @@ use std::sync::Arc;
 pub fn presets(args: &PresetsArgs) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
     let loaded = preset::load_all(&preset::names(&sources), &sources)?;
-    let mut texts = loaded
-        .iter()
-        .map(|preset| describe(&preset.name, &preset.graph));
+    let presets = loaded.iter();
+    let mut texts = presets.map(|preset| describe(&preset.name, &preset.graph));
     print(&match args.format {
         PresetsFormat::Text => texts.join("\n"),
         PresetsFormat::Markdown => table(&loaded)?,
@@ -69,10 +68,8 @@ fn table(presets: &[Arc<Preset>]) -> Result<String, CliError> {
 fn row(preset: &Arc<Preset>) -> Result<Vec<String>, CliError> {
     let graph = &preset.graph;
     let provider = placeholder([64, 64], graph);
-    let plan = preset.plan(
-        &Capabilities::greatest().request([64, 64], &provider),
-        &Terminal,
-    )?;
+    let request = Capabilities::greatest().request([64, 64], &provider);
+    let plan = preset.plan(&request, &Terminal)?;
     let outputs = plan.outputs();
     let format = outputs.iter().find(|output| output.name == VISIBILITY);
     let answers = match format.and_then(|output| output.format) {

@@ -51,9 +51,8 @@ pub async fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> 
     let mut profiles: Vec<Profile> = Vec::new();
     let mut timed = Vec::new();
     let (mut unavailable, mut mistakes) = (Vec::new(), Vec::new());
-    let settled = methods
-        .into_iter()
-        .map(|method| method.settled(gpu.device.features()));
+    let features = gpu.device.features();
+    let settled = methods.into_iter().map(|method| method.settled(features));
     let places = views.iter().cartesian_product(viewports);
     for (method, (view, viewport)) in settled.collect_vec().iter().cartesian_product(places) {
         let (method, count) = (method.at(viewport), [args.warmup, args.frames]);
@@ -84,24 +83,17 @@ pub async fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> 
         }
     }
     if profiles.is_empty() {
-        let reasons = unavailable.concat();
-        return Err(CliError::Input(format!(
-            "nothing can run\n{}",
-            reasons.trim_end()
-        )));
+        let text = format!("nothing can run\n{}", unavailable.concat());
+        return Err(CliError::Input(text.trim_end().into()));
     }
     stop::take_end();
     show(&profiles)?;
     print(&unavailable.concat())?;
     let written = write(args, &profiles, &timed)?;
     if timed.len() < args.frames as usize {
-        return Err(CliError::Interrupted {
-            kept: format!(
-                "the figures are of the {} of {} frames that were timed{written}",
-                timed.len(),
-                args.frames
-            ),
-        });
+        let done = format!("{} of {} frames", timed.len(), args.frames);
+        let kept = format!("the figures are of the {done} that were timed{written}");
+        return Err(CliError::Interrupted { kept });
     }
     match &unique(mistakes)[..] {
         [] => Ok(()),
@@ -120,13 +112,9 @@ fn show(profiles: &[Profile]) -> Result<(), CliError> {
 /// Shows and writes what there is.
 fn interrupted(args: &ProfileArgs, profiles: &[Profile], planned: usize) -> Result<(), CliError> {
     show(profiles)?;
-    let written = write(args, profiles, &[])?;
-    Err(CliError::Interrupted {
-        kept: format!(
-            "{} of {planned} profiles are shown{written}",
-            profiles.len()
-        ),
-    })
+    let (written, count) = (write(args, profiles, &[])?, profiles.len());
+    let kept = format!("{count} of {planned} profiles are shown{written}");
+    Err(CliError::Interrupted { kept })
 }
 
 /// Refuses files that hold one profile where there are several.
@@ -152,9 +140,8 @@ fn files(args: &ProfileArgs) -> Vec<(String, &Path)> {
         ("--json", &args.json),
         ("--trace", &args.trace),
     ];
-    let given = files
-        .into_iter()
-        .filter_map(|(name, path)| Some((name.to_owned(), path.as_deref()?)));
+    let files = files.into_iter();
+    let given = files.filter_map(|(name, path)| Some((name.to_owned(), path.as_deref()?)));
     given.collect()
 }
 

@@ -16,9 +16,7 @@ pub fn report(args: &ReportArgs) -> Result<(), CliError> {
     let file = args.out.clone().or(first).unwrap_or_else(|| FILE.into());
     check_writable(&[("--out".to_owned(), &file)])?;
     page::write(&args.folders, &file, &Terminal)?;
-    note(&format!(
-        "{} shows it all; open it in a browser",
-        file.display()
-    ));
+    let file = file.display();
+    note(&format!("{file} shows it all; open it in a browser"));
     Ok(())
 }

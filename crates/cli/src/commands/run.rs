@@ -43,14 +43,9 @@ pub async fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     check_writable(&files.collect::<Vec<_>>())?;
     let gpu = device::open(&gpu.request(), [&preset.graph])?;
     let session = Session::new(&gpu, &Terminal);
-    let SceneSelection {
-        scene,
-        mut views,
-        paths,
-        ..
-    } = SceneSelection::load(&args.scene)?;
-    let sequence = sequence(args, &scene, &views, &paths)?;
-    let scene = Arc::new(scene);
+    let selection = SceneSelection::load(&args.scene)?;
+    let (mut views, scene) = (selection.views, Arc::new(selection.scene));
+    let sequence = sequence(args, &scene, &views, &selection.paths)?;
     let mut provider = SceneProvider::new(scene.clone());
     if let Some(sequence) = &sequence {
         let first = sequence.poses.iter().take(1);
@@ -66,14 +61,8 @@ pub async fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let plan = preset.plan(&request, &Terminal)?;
         idle.note_of(&Terminal, &preset.name, &plan, provider.light());
         check_encodings(&plan, saves)?;
-        print(&format!(
-            "{} on {}, view {}, {}\n{}",
-            preset.name,
-            scene.name,
-            view.name,
-            method.size,
-            summary(&plan)
-        ))?;
+        let place = format!("{}, view {}, {}", scene.name, view.name, method.size);
+        print(&format!("{} on {place}\n{}", preset.name, summary(&plan)))?;
         let poisoned = match args.poison {
             true => Some(poison::check(session, &plan, &mut provider, preset).await?),
             false => None,
@@ -103,10 +92,7 @@ fn summary(plan: &Plan) -> String {
         names => names.join(", "),
     };
     text += &format!("  built for it: {provided}\n");
-    text += &format!(
-        "  materials: {}, {} saved by sharing\n",
-        bytes(plan.memory_bytes()),
-        bytes(plan.saved_bytes())
-    );
+    let [size, saved] = [plan.memory_bytes(), plan.saved_bytes()].map(bytes);
+    text += &format!("  materials: {size}, {saved} saved by sharing\n");
     text
 }

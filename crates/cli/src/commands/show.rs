@@ -4,6 +4,7 @@
 use crate::args::commands::ShowArgs;
 use crate::error::CliError;
 use crate::terminal::{Terminal, console::print};
+use itertools::Itertools;
 use skiagraph_compare::graphs::faults::GraphFaults;
 use skiagraph_compare::graphs::planning::{Capabilities, placeholder};
 use skiagraph_compare::graphs::preset;
@@ -11,7 +12,6 @@ use skiagraph_compare::wording::did_you_mean;
 use skiagraph_graph::{Access, Graph, Sources};
 use skiagraph_passes::registry;
 use skiagraph_scene::SceneLibrary;
-use std::collections::BTreeSet;
 
 /// Prints a file of the working directory, or a built-in one. Behind a document it prints, as
 /// comments, the materials that each pass reads and writes.
@@ -20,24 +20,17 @@ use std::collections::BTreeSet;
 /// If the file does not exist, a document cannot be read, or standard output cannot be written.
 pub fn show(args: &ShowArgs) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
-    let (path, text) = match find(&args.file, &sources)? {
-        Found::Text(path, text) => (path, text),
-        Found::Scene(text) if !args.flat => return print(&text),
-        Found::Scene(_) => {
-            return Err(CliError::Usage(format!(
-                "--flat writes out what a document extends; `{}` is a scene file",
-                args.file
-            )));
-        }
+    let not_flat = |name: &str, kind| {
+        let text = format!("--flat writes out what a document extends; `{name}` is a {kind}");
+        Err(CliError::Usage(text))
     };
-    if !path.ends_with(".ron") {
-        if args.flat {
-            return Err(CliError::Usage(format!(
-                "--flat writes out what a document extends; `{path}` is a shader"
-            )));
-        }
-        return print(&text);
-    }
+    let (path, text) = match find(&args.file, &sources)? {
+        Found::Text(path, text) if path.ends_with(".ron") => (path, text),
+        Found::Text(_, text) if !args.flat => return print(&text),
+        Found::Scene(text) if !args.flat => return print(&text),
+        Found::Text(path, _) => return not_flat(&path, "shader"),
+        Found::Scene(_) => return not_flat(&args.file, "scene file"),
+    };
     let passes = passes(&path, &sources).unwrap_or_default();
     if !args.flat {
         return print(&format!("{text}{passes}"));
@@ -60,10 +53,8 @@ fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
     for pass in plan.live() {
         let names = |is_meant: fn(&Access) -> bool| {
             let used = pass.accesses.iter().filter(|access| is_meant(access));
-            let names: BTreeSet<&str> = used
-                .map(|access| plan.resource(access.resource).name.as_str())
-                .collect();
-            names.into_iter().collect::<Vec<_>>().join(", ")
+            let names = used.map(|access| plan.resource(access.resource).name.as_str());
+            names.sorted().dedup().join(", ")
         };
         let (reads, writes) = (names(|access| access.reads), names(|access| access.writes));
         text += &format!("//   {}\n", *pass.name);
@@ -109,13 +100,11 @@ fn find(name: &str, sources: &dyn Sources) -> Result<Found, CliError> {
     if let Ok(text) = scenes.text(name) {
         return Ok(Found::Scene(text));
     }
-    let in_folder = |folder: &&str| {
+    let in_folder = |folder: &'static str| {
         let files = sources.list(folder).into_iter();
-        files
-            .map(|file| format!("{folder}/{file}"))
-            .collect::<Vec<_>>()
+        files.map(move |file| format!("{folder}/{file}"))
     };
-    let files: Vec<String> = preset::FOLDERS.iter().flat_map(in_folder).collect();
+    let files: Vec<String> = preset::FOLDERS.into_iter().flat_map(in_folder).collect();
     let listed = scenes.list().into_iter().map(|scene| scene.name);
     let listed: Vec<String> = listed.collect();
     // With their ending and without.
@@ -123,10 +112,9 @@ fn find(name: &str, sources: &dyn Sources) -> Result<Found, CliError> {
         let name = file.split_once('/').map_or(&**file, |(_, name)| name);
         [name, name.rsplit_once('.').map_or(name, |(stem, _)| stem)]
     });
+    let hint = did_you_mean(name, short.chain(listed.iter().map(String::as_str)));
+    let [files, scenes] = [&files, &listed].map(|names| names.join(", "));
     Err(CliError::Input(format!(
-        "there is no file `{name}`{}\n  there are {}; and the scenes {}",
-        did_you_mean(name, short.chain(listed.iter().map(String::as_str))),
-        files.join(", "),
-        listed.join(", ")
+        "there is no file `{name}`{hint}\n  there are {files}; and the scenes {scenes}"
     )))
 }

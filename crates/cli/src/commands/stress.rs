@@ -152,10 +152,10 @@ fn finish(
     if let Err(CliError::Interrupted { .. }) = outcome {
         let kept = match &args.out {
             _ if done == 0 => "no case was finished".into(),
-            Some(folder) => format!(
-                "{done} of {wanted} cases are kept in {}",
-                folder.join("stress.json").display()
-            ),
+            Some(folder) => {
+                let file = folder.join("stress.json");
+                format!("{done} of {wanted} cases are kept in {}", file.display())
+            }
             None => format!("{done} of {wanted} cases were finished"),
         };
         return Err(CliError::Interrupted { kept });
@@ -166,10 +166,8 @@ fn finish(
         (report.failed_cases(), "case"),
     ];
     let failed = failed.into_iter().filter(|(count, _)| *count > 0);
-    let failed = failed
-        .map(|(count, noun)| plural(count, noun))
-        .join(" and ");
-    match failed.as_str() {
+    let mut failed = failed.map(|(count, noun)| plural(count, noun));
+    match failed.join(" and ").as_str() {
         "" => Ok(()),
         failed => Err(CliError::Judged(format!("{failed} failed"))),
     }

@@ -31,8 +31,8 @@ pub fn note(text: &str) {
 /// Prints text on standard output, without adding a newline.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = io::stdout().lock();
-    stdout
-        .write_all(text.as_bytes())
+    let written = stdout.write_all(text.as_bytes());
+    written
         .and_then(|()| stdout.flush())
         .map_err(CliError::Stdout)
 }

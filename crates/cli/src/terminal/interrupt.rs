@@ -6,7 +6,7 @@ use crate::terminal::{console, progress::Terminal, stop};
 use skiagraph_compare::{files::write::remove_unfinished, sink::Sink};
 use std::{
     process,
-    sync::{Mutex, PoisonError, atomic::Ordering},
+    sync::{Mutex, MutexGuard, PoisonError, atomic::Ordering},
     thread,
     time::Duration,
 };
@@ -18,6 +18,10 @@ const PATIENCE: Duration = Duration::from_millis(700);
 type LastWords = Box<dyn FnOnce() -> Result<(), CliError> + Send>;
 
 static LAST_WORDS: Mutex<Option<LastWords>> = Mutex::new(None);
+
+fn last_words() -> MutexGuard<'static, Option<LastWords>> {
+    LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Installs the handler of Ctrl-C, which raises [`stop::flag`].
 ///
@@ -38,7 +42,7 @@ pub fn install() -> Result<(), CliError> {
 /// Sets the function that shows and writes what is finished if the process has to end in the middle
 /// of work. It returns the error that says so.
 pub fn on_end_in_the_middle(words: impl FnOnce() -> Result<(), CliError> + Send + 'static) {
-    *LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(words));
+    *last_words() = Some(Box::new(words));
 }
 
 fn end_unnoticed() {
@@ -47,10 +51,7 @@ fn end_unnoticed() {
         return;
     }
     Terminal.end_step(false);
-    let words = LAST_WORDS
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner)
-        .take();
+    let words = last_words().take();
     let outcome = words.map_or(Ok(()), |words| words());
     console::report(&outcome.err().unwrap_or_else(|| CliError::Interrupted {
         kept: "what was under way is lost".into(),

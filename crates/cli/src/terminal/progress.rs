@@ -6,6 +6,7 @@ use crate::terminal::console::{self, note};
 use crate::terminal::stop;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use skiagraph_compare::sink::Sink;
+use skiagraph_compare::wording::or_nothing;
 use skiagraph_graph::{Diagnostic, diagnostics};
 use std::{
     io::{self, IsTerminal},
@@ -65,10 +66,10 @@ impl Share {
 /// Time left in words after `done` of `total` parts took `elapsed`; none before the first part and
 /// after the last.
 fn left(elapsed: Duration, done: u64, total: u64) -> Option<String> {
-    if done == 0 || done >= total {
-        return None;
-    }
-    let seconds = elapsed.as_secs_f64() * (total - done) as f64 / done as f64;
+    let left = total
+        .checked_sub(done)
+        .filter(|left| done > 0 && *left > 0)?;
+    let seconds = elapsed.as_secs_f64() * left as f64 / done as f64;
     Some(format!("about {} left", duration(seconds)))
 }
 
@@ -113,10 +114,10 @@ impl Now {
     fn line(&self) -> Option<String> {
         let step = self.step.as_ref()?;
         let share = self.runs.as_ref().unwrap_or(&step.share);
-        let mut words = vec![format!("{} of {} {}", share.done, share.total, share.unit)];
-        words.push(duration(share.began.elapsed().as_secs_f64()));
-        words.extend(share.left());
-        Some(format!("{}: {}", words.join(", "), step.name))
+        let (done, total, unit, name) = (share.done, share.total, share.unit, &step.name);
+        let elapsed = duration(share.began.elapsed().as_secs_f64());
+        let left = or_nothing(share.left(), |left| format!(", {left}"));
+        Some(format!("{done} of {total} {unit}, {elapsed}{left}: {name}"))
     }
 
     /// Prints a line each [`PERIOD`] while a step is under way, from now until the program ends.
@@ -205,13 +206,11 @@ pub fn begin_quietly(name: &str, total: u64, unit: &'static str) {
         "{{msg:40!}} {{wide_bar:.cyan/dim}} {{pos}}/{{len}} {unit} {{elapsed:>4}}{{prefix}}"
     );
     // The template is ours and fixed; if indicatif should refuse it, its default does as well.
-    bar.set_style(
-        ProgressStyle::with_template(&template).unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
+    let style_of_bar = ProgressStyle::with_template(&template);
+    bar.set_style(style_of_bar.unwrap_or_else(|_| ProgressStyle::default_bar()));
     bar.set_message(name.to_owned());
     if let Some(runs) = &now.runs {
-        let left = runs.left().map(|left| format!(", {left}"));
-        let left = left.unwrap_or_default();
+        let left = or_nothing(runs.left(), |left| format!(", {left}"));
         bar.set_prefix(format!(" · {} of {} runs{left}", runs.done, runs.total));
     }
     bar.enable_steady_tick(Duration::from_millis(250));

@@ -117,22 +117,16 @@ impl Abilities {
 /// Returns an adapter as `doctor` lists it: name, graphics API, device type and driver, separated
 /// by ` · `.
 pub fn line(adapter: &Adapter) -> String {
-    let Adapter {
-        name,
-        backend,
-        device_type,
-        driver,
-        ..
-    } = adapter;
-    format!("{name} · {backend} · {device_type} · {driver}")
+    let (name, backend) = (&adapter.name, &adapter.backend);
+    let (kind, driver) = (&adapter.device_type, &adapter.driver);
+    format!("{name} · {backend} · {kind} · {driver}")
 }
 
 impl fmt::Display for Abilities {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let limits = &self.limits;
-        let edge = limits.texture_edge;
+        let (edge, storage) = (limits.texture_edge, limits.storage_binding);
         // Larger meshes are drawn and traced in parts, but indices are bound whole.
-        let storage = limits.storage_binding;
         let (storage, triangles) = (bytes(storage), storage / 12 / 1_000_000);
         let memory = limits.memory.map(bytes);
         let memory = memory.unwrap_or("what the driver gives (it does not say how much)".into());
@@ -144,11 +138,9 @@ impl fmt::Display for Abilities {
         )?;
         writeln!(f, "  buffer: up to {}", bytes(limits.buffer))?;
         writeln!(f, "  memory for a graph: {memory}")?;
-        writeln!(
-            f,
-            "  compute: {} invocations per workgroup, {} groups per dimension",
-            limits.threads, limits.groups
-        )?;
+        let (threads, groups) = (limits.threads, limits.groups);
+        write!(f, "  compute: {threads} invocations per workgroup, ")?;
+        writeln!(f, "{groups} groups per dimension")?;
         for ability in Ability::ALL {
             let has = if self.has(ability) { "yes" } else { "no" };
             writeln!(f, "  {has:<3} {}", ability.purpose())?;

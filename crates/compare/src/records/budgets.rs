@@ -46,12 +46,9 @@ impl Budgets {
 impl fmt::Display for Budgets {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let time = self.frame_ms.map(|ms| format!("at most {ms} ms a frame"));
-        let wrong = self
-            .wrong_percent
-            .map(|share| format!("less than {share} % wrong"));
-        let memory = self
-            .memory_bytes
-            .map(|most| format!("at most {}", bytes(most)));
+        let (wrong, memory) = (self.wrong_percent, self.memory_bytes);
+        let wrong = wrong.map(|share| format!("less than {share} % wrong"));
+        let memory = memory.map(|most| format!("at most {}", bytes(most)));
         let limits = [time, wrong, memory].into_iter().flatten();
         f.write_str(&limits.collect::<Vec<String>>().join(" and "))
     }

@@ -137,12 +137,11 @@ fn difference(name: &str, one: Option<&Value>, other: Option<&Value>) -> Option<
 /// The error of a cell whose errors differ in two places; `why` has the figures in their order.
 pub(crate) fn at_odds(run: &Run, places: [&Path; 2], why: &str) -> CompareError {
     let [one, other] = places.map(Path::display);
+    let (cell, label) = (&run.cell, run.label());
     CompareError::Input(format!(
-        "the cell {} ({}) was measured twice on one kind of adapter with other errors\n  {one}\n  \
-         {other}\n  {why}\n  errors repeat to the pixel: find out which machine is wrong, delete \
-         its cells, and measure them again",
-        run.cell,
-        run.label()
+        "the cell {cell} ({label}) was measured twice on one kind of adapter with other errors\n  \
+         {one}\n  {other}\n  {why}\n  errors repeat to the pixel: find out which machine is wrong, \
+         delete its cells, and measure them again"
     ))
 }
 
@@ -192,7 +191,7 @@ pub fn join(places: &[PathBuf]) -> Result<Joined, CompareError> {
 
 /// Refuses plans of two versions.
 fn check_plans(plans: [&CellPlan; 2], places: [&Path; 2]) -> Result<(), CompareError> {
-    let [one, other] = plans.map(|plan| version(&plan.head.program, plan.head.commit.as_deref()));
+    let [one, other] = plans.map(|plan| plan.head.version());
     if one == other {
         return Ok(());
     }
@@ -210,7 +209,7 @@ fn scene_folder(folder: &Path, plan: &CellPlan, cell: &PlannedCell) -> PathBuf {
 }
 
 fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<(), CompareError> {
-    let ours = version(&plan.head.program, plan.head.commit.as_deref());
+    let ours = plan.head.version();
     let (id, mut missing, mut twice) = (plan.id(), Vec::new(), 0);
     for cell in &plan.cells {
         let mut copies: Vec<(PathBuf, Kept)> = Vec::new();
@@ -288,12 +287,11 @@ fn check_truths(plan: &CellPlan, folders: &[&Path]) -> Result<(), CompareError> 
             let path = folder.join(&name);
             let other = by_name.entry(name).or_insert_with(|| path.clone());
             if *other != path && read(other)? != read(&path)? {
+                let [one, other] = [other, &path].map(|path| path.display());
                 return Err(CompareError::Input(format!(
-                    "two machines have traced the same reference, and their bits differ\n  {}\n  \
-                     {}\n  find out which machine is wrong, delete its cells and its truth, and \
-                     measure them again on machines that agree",
-                    other.display(),
-                    path.display()
+                    "two machines have traced the same reference, and their bits differ\n  \
+                     {one}\n  {other}\n  find out which machine is wrong, delete its cells and its \
+                     truth, and measure them again on machines that agree"
                 )));
             }
         }

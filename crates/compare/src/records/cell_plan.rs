@@ -19,7 +19,7 @@ use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
 use crate::files::json::{Mistake, check_schema};
 use crate::records::results::PROGRAM;
-use crate::wording::{plural, size};
+use crate::wording::{or_nothing, plural, size};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 use skiagraph_graph::SourceFile;
@@ -88,6 +88,11 @@ impl Head {
             arguments: without_plan(arguments),
             cells: 0,
         }
+    }
+
+    /// Returns the version of the program that wrote the plan, as messages show it.
+    pub fn version(&self) -> String {
+        version(&self.program, self.commit.as_deref())
     }
 }
 
@@ -194,15 +199,7 @@ impl CellPlan {
     /// # Errors
     /// Another version or commit.
     pub fn check_version(&self, commit: Option<&str>) -> Result<(), CompareError> {
-        let Head {
-            program: theirs,
-            commit: their_commit,
-            ..
-        } = &self.head;
-        let (theirs, ours) = (
-            version(theirs, their_commit.as_deref()),
-            version(PROGRAM, commit),
-        );
+        let (theirs, ours) = (self.head.version(), version(PROGRAM, commit));
         if theirs == ours {
             return Ok(());
         }
@@ -236,23 +233,20 @@ impl CellPlan {
     /// Returns the name of a cell for messages: `nsm on main 512x256, map 1024`; of several scenes
     /// with the scene's folder before it.
     pub fn label(&self, cell: &PlannedCell) -> String {
-        let map = cell
-            .map_size
-            .map_or(String::new(), |n| format!(", map {n}"));
+        let map = or_nothing(cell.map_size, |n| format!(", map {n}"));
         let Some(truth) = self.truth_of(cell) else {
             return format!("{}{map}", cell.preset);
         };
-        let folder = truth.folder.as_ref().map(|name| format!("{name}: "));
+        let folder = or_nothing(truth.folder.as_ref(), |name| format!("{name}: "));
         let (view, size) = (&truth.view, size(truth.viewport));
-        let folder = folder.unwrap_or_default();
         format!("{folder}{} on {view} {size}{map}", cell.preset)
     }
 }
 
 /// Returns a version of the program as messages show it, with the commit that it was built from.
 pub fn version(program: &str, commit: Option<&str>) -> String {
-    let commit = commit.map(|commit| format!(" of commit {commit}"));
-    format!("{program}{}", commit.unwrap_or_default())
+    let commit = or_nothing(commit, |commit| format!(" of commit {commit}"));
+    format!("{program}{commit}")
 }
 
 fn line(record: &impl Serialize) -> String {
@@ -274,6 +268,7 @@ fn parse(text: &str) -> Result<CellPlan, Mistake> {
     let (mut truths, mut cells) = (BTreeSet::new(), BTreeSet::new());
     for line in lines {
         let wrong = |what: String| Mistake::at_field(line, "{", what).behind(at);
+        let twice = |what, id| wrong(format!("the {what} `{id}` is there twice, or not an id"));
         match from_line(line).map_err(|mistake: Mistake| mistake.behind(at))? {
             Line::Truth(truth) => {
                 let folder = truth.folder.as_deref().unwrap_or("plain");
@@ -281,10 +276,7 @@ fn parse(text: &str) -> Result<CellPlan, Mistake> {
                     return Err(wrong(format!("`{folder}` is not the name of a folder")));
                 }
                 if !is_id(&truth.truth) || !truths.insert(truth.truth.clone()) {
-                    let id = &truth.truth;
-                    return Err(wrong(format!(
-                        "the truth `{id}` is there twice, or not an id"
-                    )));
+                    return Err(twice("truth", &truth.truth));
                 }
                 plan.truths.push(truth);
             }
@@ -297,9 +289,7 @@ fn parse(text: &str) -> Result<CellPlan, Mistake> {
                     )));
                 }
                 if !is_id(id) || !cells.insert(id.clone()) {
-                    return Err(wrong(format!(
-                        "the cell `{id}` is there twice, or not an id"
-                    )));
+                    return Err(twice("cell", id));
                 }
                 plan.cells.push(cell);
             }
@@ -344,9 +334,6 @@ fn is_id(text: &str) -> bool {
 
 /// True for the name of a folder that lies in another.
 fn is_plain(name: &str) -> bool {
-    let mut parts = Path::new(name).components();
-    matches!(
-        (parts.next(), parts.next()),
-        (Some(Component::Normal(_)), None)
-    )
+    let parts: Vec<Component> = Path::new(name).components().collect();
+    matches!(parts[..], [Component::Normal(_)])
 }

@@ -75,9 +75,8 @@ impl Cells {
         cells.refresh();
         if let Some(earlier) = earlier {
             let runs = earlier.clone().each_run().enumerate();
-            cells.order = runs
-                .map(|(place, one)| (one.runs[0].cell.clone(), place))
-                .collect();
+            let order = runs.map(|(place, one)| (one.runs[0].cell.clone(), place));
+            cells.order = order.collect();
             if cells.files.is_empty() {
                 cells.split(folder, earlier)?;
             }

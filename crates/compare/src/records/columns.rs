@@ -14,13 +14,12 @@
 //! for column in columns::terminal(&runs) {
 //!     println!("{}: {}", column.head, column.cell(&case, wording::percent));
 //! }
-//! assert_eq!(columns::figure("wrong_percent", &results, runs[0]), Some(0.503));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use crate::records::figure::{Case, Figure, Table};
 use crate::records::figures::FIGURES;
-use crate::records::results::{GBUFFER, Results, Run};
+use crate::records::results::{GBUFFER, Run};
 use itertools::Itertools;
 
 /// Names of the steps of the built-in presets, each with the word for it in heads of table columns.
@@ -68,10 +67,8 @@ impl Column {
 fn of_table(table: Table, runs: &[&Run]) -> impl Iterator<Item = Column> {
     let figures = FIGURES.iter().filter(|figure| figure.is_of(runs));
     let columns = figures.flat_map(move |figure| {
-        let heads = figure
-            .heads
-            .iter()
-            .filter(move |(shown, ..)| *shown == table);
+        let heads = figure.heads.iter();
+        let heads = heads.filter(move |(shown, ..)| *shown == table);
         heads.map(move |(_, place, head)| Column {
             head,
             figure,
@@ -128,33 +125,6 @@ pub fn steps_of(quantity: &str) -> Option<&str> {
     let steps = quantity.strip_prefix("ms.")?;
     let is_known = |step| step == GBUFFER || STEPS.iter().any(|(name, _)| *name == step);
     steps.split('+').all(is_known).then_some(steps)
-}
-
-/// Returns the head of the table column of a quantity such as `wrong_percent`; the quantity itself
-/// if it has no column.
-pub fn head_of(quantity: &str) -> String {
-    let column = published().find(|column| column.figure.quantity == quantity);
-    match (steps_of(quantity), column) {
-        (Some(steps), _) => step_head(steps),
-        (None, Some(column)) => column.head.to_owned(),
-        (None, None) => quantity.to_owned(),
-    }
-}
-
-/// Returns the measured figure of a run for a quantity such as `wrong_percent`, in the quantity's
-/// unit: percent, milliseconds, a count, frames per second. Returns `None` if the figure is unknown
-/// or not a number.
-pub fn figure(quantity: &str, results: &Results, run: &Run) -> Option<f64> {
-    if let Some(steps) = steps_of(quantity) {
-        return run.measured.as_ref()?.step_ms(steps);
-    }
-    let column = published().find(|column| column.figure.quantity == quantity)?;
-    let case = Case {
-        results,
-        run,
-        by_wall: false,
-    };
-    column.figure.number(column.figure.value(&case)?)
 }
 
 #[cfg(test)]

@@ -190,11 +190,10 @@ impl<'a> Clocks<'a> {
             times.into_iter().any(|times| times.gpu_ms.is_none())
         };
         let runs = results.runs.iter().filter(has_no_times);
+        let places = runs.map(|run| (run.viewport, run.light.as_deref()));
         Self {
             results,
-            by_wall: runs
-                .map(|run| (run.viewport, run.light.as_deref()))
-                .collect(),
+            by_wall: places.collect(),
         }
     }
 
@@ -413,8 +412,11 @@ impl Figure {
         let values = values.into_iter();
         let values = values.map(|(value, place)| Worst { value, place });
         values.reduce(|worst, next| {
-            let is_more = next.value > worst.value;
-            if is_more { next } else { worst }
+            if next.value > worst.value {
+                next
+            } else {
+                worst
+            }
         })
     }
 

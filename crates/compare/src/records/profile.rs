@@ -82,10 +82,8 @@ impl Conditions {
     /// Returns each param's name, such as `cull`, and its value as text, such as `front`.
     pub fn params(&self) -> impl Iterator<Item = (&str, String)> {
         self.params.iter().map(|(name, value)| {
-            let text = value
-                .as_str()
-                .map_or_else(|| value.to_string(), str::to_owned);
-            (name.as_str(), text)
+            let word = value.as_str().map(str::to_owned);
+            (name.as_str(), word.unwrap_or_else(|| value.to_string()))
         })
     }
 
@@ -108,16 +106,19 @@ impl Conditions {
             let value = conditions.params().find(|(key, _)| *key == name);
             value.map_or_else(|| "–".to_owned(), |(_, value)| value)
         };
-        let params = names
-            .into_iter()
-            .map(|name| (format!("param {name}"), param(old, name), param(self, name)));
+        let params = names.into_iter().map(|name| Difference {
+            what: format!("param {name}"),
+            old: param(old, name),
+            new: param(self, name),
+        });
         let facts = facts(old).into_iter().zip(facts(self));
-        facts
-            .map(|((what, old), (_, new))| (what.to_owned(), old, new))
-            .chain(params)
-            .filter(|(_, old, new)| old != new)
-            .map(|(what, old, new)| Difference { what, old, new })
-            .collect()
+        let facts = facts.map(|((what, old), (_, new))| Difference {
+            what: what.into(),
+            old,
+            new,
+        });
+        let pairs = facts.chain(params);
+        pairs.filter(|fact| fact.old != fact.new).collect()
     }
 }
 
@@ -211,14 +212,11 @@ impl Profile {
                 cpu_ms: Series::new(pass.cpu)?,
             })
         };
+        let passes = samples.passes.into_iter().map(pass);
         Some(Self {
             schema: 1,
             kind: KIND.into(),
-            passes: samples
-                .passes
-                .into_iter()
-                .map(pass)
-                .collect::<Option<_>>()?,
+            passes: passes.collect::<Option<_>>()?,
             conditions,
             frame,
             memory,

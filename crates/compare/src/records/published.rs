@@ -12,14 +12,14 @@
 //!     park,main,512x256,1024,nsm,wrong_percent,0.48,table 12,\n")?;
 //! let rows = published::read(&[PublishedFile { label: "D".into(), file }])?;
 //! let mut results = read_back::kept(out.path())?;
-//! published::attach_all(&rows, &mut results);
+//! published::attach(&rows, &results.scene.name, &mut results.runs[0]);
 //! assert_eq!(results.runs[0].published[0].value, 0.48);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use crate::error::CompareError;
 use crate::records::published_row::{Columns, HEADER, Line, PublishedFile, Row};
-use crate::records::results::{Results, Run};
+use crate::records::results::Run;
 use crate::wording::plural;
 use csv::ReaderBuilder;
 use skiagraph_graph::{Code, Diagnostic, SourceFile};
@@ -40,9 +40,8 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
     let (mut rows, mut faults) = (Vec::new(), Vec::new());
     for PublishedFile { label, file } in files {
         let name = file.display().to_string();
-        let text = CSV_FILE
-            .read_text(file)
-            .map_err(|error| CompareError::Input(format!("{name}: {error}")))?;
+        let text = CSV_FILE.read_text(file);
+        let text = text.map_err(|error| CompareError::Input(format!("{name}: {error}")))?;
         let (read, mut mistakes) = parse(label, &SourceFile::new(name, text));
         rows.extend(read);
         faults.append(&mut mistakes);
@@ -61,14 +60,6 @@ pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
 pub fn attach(rows: &[Row], scene: &str, run: &mut Run) {
     let figures = rows.iter().filter(|row| row.applies_to(scene, run));
     run.published = figures.map(|row| row.figure.clone()).collect();
-}
-
-/// Sets [`Run::published`] of each run of `results` to the figures of the `rows` that [apply to the
-/// run](Row::applies_to). Runs of [`Results::others`] stay as they are.
-pub fn attach_all(rows: &[Row], results: &mut Results) {
-    for run in &mut results.runs {
-        attach(rows, &results.scene.name, run);
-    }
 }
 
 /// The rows of a file, and what is wrong with the others.
@@ -91,8 +82,8 @@ fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
             continue;
         };
         match Row::read(label, &line, columns) {
-            Ok(row) => {
-                for row in row.of_each_preset() {
+            Ok(read) => {
+                for row in read {
                     let Some(other) = rows.iter().find(|other| other.key() == row.key()) else {
                         rows.push(row);
                         continue;

@@ -63,11 +63,8 @@ pub struct Row {
     viewport: [u32; 2],
     map_size: Option<u32>,
     /// Name of the preset; empty for a figure of the [reference](crate#terms), such as its number
-    /// of lit pixels. In a row from [`Row::read`] it is all preset names of the line, separated by
-    /// spaces.
+    /// of lit pixels.
     pub preset: String,
-    /// Names of all presets on the row's line; empty for a figure of the [reference](crate#terms).
-    pub named: Vec<String>,
     /// The figure, with its quantity and source.
     pub figure: Published,
     /// Number of the row's line in the file, from 1.
@@ -84,34 +81,21 @@ impl Row {
         (scene, view, viewport, map_size, &self.preset, quantity)
     }
 
-    /// Returns one row for each preset that the line names; the row itself for a figure of the
-    /// [reference](crate#terms).
-    pub fn of_each_preset(self) -> Vec<Self> {
-        if self.preset.is_empty() {
-            return vec![self];
-        }
-        let row = |preset: &String| Self {
-            preset: preset.clone(),
-            ..self.clone()
-        };
-        self.named.iter().map(row).collect()
-    }
-
     /// True if the figure was published for the scene named `scene`, the view and viewport of
     /// `run`, and, unless it is of the [reference](crate#terms), for its map size and its
-    /// [`preset`](Run::preset), which both must spell alike, setting included. A row of several
-    /// presets applies to no run: split it by [`of_each_preset`](Self::of_each_preset).
+    /// [`preset`](Run::preset), which both must spell alike, setting included.
     pub fn applies_to(&self, scene: &str, run: &Run) -> bool {
         let of_run = self.preset == run.preset && self.map_size == run.map_size;
         (self.scene.as_str(), &self.view, self.viewport) == (scene, &run.view, run.viewport)
             && (self.preset.is_empty() || of_run)
     }
 
-    /// Reads a line of the file whose label is `label`.
+    /// Reads a line of the file whose label is `label`. Returns a row for each preset that the line
+    /// names; for a figure of the [reference](crate#terms) one.
     ///
     /// # Errors
     /// All mistakes in the line.
-    pub fn read(label: &str, line: &Line, columns: &Columns) -> Result<Self, Vec<Diagnostic>> {
+    pub fn read(label: &str, line: &Line, columns: &Columns) -> Result<Vec<Self>, Vec<Diagnostic>> {
         let count = line.record.len();
         if count != HEADER.len() {
             let what = format!("{count} fields; expected {}", HEADER.len());
@@ -138,16 +122,16 @@ impl Row {
             return Err(fields.faults);
         }
         let text = |name| fields.text(name).to_owned();
-        Ok(Self {
+        let presets = match fields.text("preset") {
+            "" => vec![""],
+            names => names.split_whitespace().collect(),
+        };
+        let rows = presets.into_iter().map(|preset| Self {
             scene: text("scene"),
             view: text("view"),
             viewport,
             map_size,
-            preset: text("preset"),
-            named: text("preset")
-                .split_whitespace()
-                .map(str::to_owned)
-                .collect(),
+            preset: preset.into(),
             figure: Published {
                 by: label.into(),
                 quantity: text("quantity"),
@@ -156,7 +140,8 @@ impl Row {
                 note: Some(text("note")).filter(|note| !note.is_empty()),
             },
             line: line.span(0).line_column().0,
-        })
+        });
+        Ok(rows.collect())
     }
 }
 
@@ -256,8 +241,8 @@ fn is_known(quantity: &str) -> bool {
     OF_REFERENCE.contains(&quantity) || is_of_run(quantity)
 }
 
-/// Position of each column of [`HEADER`] in the lines of a file.
-pub struct Columns([usize; 9]);
+/// Columns of a file, as its first line names them.
+pub struct Columns(Vec<String>);
 
 impl Columns {
     /// Finds the columns of a file in its first line.
@@ -265,26 +250,24 @@ impl Columns {
     /// # Errors
     /// Unknown or missing columns.
     pub fn new(line: &Line) -> Result<Self, Vec<Diagnostic>> {
-        let names: Vec<&str> = line.record.iter().map(str::trim).collect();
+        let names: Vec<String> = line.record.iter().map(|it| it.trim().to_owned()).collect();
         let mut faults = Vec::new();
         for (index, name) in names.iter().enumerate() {
-            if !HEADER.contains(name) {
+            if !HEADER.contains(&name.as_str()) {
                 let what = format!("unknown column `{name}`");
                 let fault = line.fault(Code::UnknownField, index, what);
                 faults.push(fault.suggest(name, HEADER));
             }
         }
-        let columns = HEADER.map(|column| {
-            let index = names.iter().position(|name| *name == column);
-            index.unwrap_or_else(|| {
+        for column in HEADER {
+            if !names.iter().any(|name| name == column) {
                 let what = format!("there is no column `{column}`");
                 let fault = line.fault(Code::MissingField, 0, what);
                 faults.push(fault.help(format!("the columns are {}", HEADER.join(","))));
-                0
-            })
-        });
+            }
+        }
         if faults.is_empty() {
-            Ok(Self(columns))
+            Ok(Self(names))
         } else {
             Err(faults)
         }
@@ -293,9 +276,8 @@ impl Columns {
     /// Returns the index of the column `name`, one of [`HEADER`], among the fields of a line; 0 for
     /// any other name.
     pub fn at(&self, name: &str) -> usize {
-        let mut columns = HEADER.into_iter().zip(self.0);
-        let column = columns.find(|(head, _)| *head == name);
-        column.map_or(0, |(_, index)| index)
+        let column = self.0.iter().position(|head| head == name);
+        column.unwrap_or(0)
     }
 }
 

@@ -61,10 +61,10 @@ const PROFILE: Limit = Limit {
 /// # Errors
 /// A file that cannot be read, or is not a profile; the message shows the place.
 pub fn profile(path: &Path) -> Result<Profile, CompareError> {
-    let text = PROFILE
-        .read_text(path)
-        .map_err(|error| CompareError::Input(format!("{}: {error}", path.display())))?;
-    profile_of(&SourceFile::new(path.display().to_string(), text))
+    let name = path.display().to_string();
+    let text = PROFILE.read_text(path);
+    let text = text.map_err(|error| CompareError::Input(format!("{name}: {error}")))?;
+    profile_of(&SourceFile::new(name, text))
 }
 
 /// Reads the results.json at `path`, for `--resume`; `None` if the file does not exist.
@@ -216,13 +216,10 @@ fn parse_profile(text: &str) -> Result<Profile, Mistake> {
     }
     check_schema(text, head.schema, 1)?;
     let profile: Profile = parse(text)?;
+    let what = "no samples here, or some that are not times";
     match without_times(&profile) {
         None => Ok(profile),
-        Some(place) => Err(Mistake::at_field(
-            text,
-            &place,
-            "no samples here, or some that are not times".into(),
-        )),
+        Some(place) => Err(Mistake::at_field(text, &place, what.into())),
     }
 }
 
@@ -254,10 +251,8 @@ fn parse_results(text: &str) -> Result<Results, Mistake> {
     match results.runs.iter().chain(other_runs).find(is_broken) {
         None => Ok(results),
         Some(run) => {
-            let what = format!(
-                "{} has neither all its measurements nor a reason why not",
-                run.label()
-            );
+            let label = run.label();
+            let what = format!("{label} has neither all its measurements nor a reason why not");
             let field = format!("\"preset\": {}", Value::from(run.preset.as_str()));
             Err(Mistake::at_field(text, &field, what))
         }

@@ -27,7 +27,7 @@ use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::steady::Steady;
 use crate::records::tuned::Tuned;
 use crate::records::turns::Turns;
-use crate::wording::{size, thousands};
+use crate::wording::{or_nothing, size, thousands};
 use itertools::Itertools;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{
@@ -156,20 +156,21 @@ impl Machine {
     /// True if the load is half of the logical processors or more: other processes then slow down
     /// what is timed.
     pub fn is_loaded(&self) -> bool {
-        self.load
-            .is_some_and(|load| load >= 0.5 * f64::from(self.cores))
+        let half = 0.5 * f64::from(self.cores);
+        self.load.is_some_and(|load| load >= half)
     }
 
     /// True if `self` and `other` have the same host name, processor and number of cores; their
     /// loads may differ.
     pub fn is_same(&self, other: &Self) -> bool {
-        let Self {
-            host,
-            processor,
-            cores,
-            ..
-        } = self;
-        (host, processor, cores) == (&other.host, &other.processor, &other.cores)
+        let key = |machine: &Self| {
+            (
+                machine.host.clone(),
+                machine.processor.clone(),
+                machine.cores,
+            )
+        };
+        key(self) == key(other)
     }
 }
 
@@ -330,9 +331,7 @@ impl Run {
 
     /// Returns method, view, viewport and map size as text: `nsm on main 512x256, map 1024`.
     pub fn label(&self) -> String {
-        let map = self
-            .map_size
-            .map_or(String::new(), |n| format!(", map {n}"));
+        let map = or_nothing(self.map_size, |n| format!(", map {n}"));
         let size = size(self.viewport);
         format!("{} on {} {size}{map}", self.preset, self.view)
     }
@@ -352,11 +351,9 @@ impl Run {
     /// True if both runs have the same preset, view, viewport, map size and cell (in results of
     /// older versions, the same params), so that reports use only the newer one.
     pub fn is_same_cell(&self, other: &Self) -> bool {
-        let are_known = !self.cell.is_empty() && !other.cell.is_empty();
-        let is_same = if are_known {
-            self.cell == other.cell
-        } else {
-            self.params == other.params
+        let is_same = match (&*self.cell, &*other.cell) {
+            ("", _) | (_, "") => self.params == other.params,
+            (cell, other_cell) => cell == other_cell,
         };
         is_same && self.is_in_place_of(other)
     }
@@ -435,10 +432,8 @@ impl AreaReference {
     /// extent](crate#terms).
     pub fn new(area: &AreaVisibility, truth: &GroundTruthPixels) -> Self {
         let [standard_error_rms, standard_error_worst] = area.standard_error(truth);
-        let partial = area
-            .shares
-            .iter()
-            .filter(|share| **share > 0.0 && **share < 1.0);
+        let is_partial = |share: &&f32| **share > 0.0 && **share < 1.0;
+        let partial = area.shares.iter().filter(is_partial);
         Self {
             samples: area.samples,
             standard_error_rms,
@@ -590,11 +585,9 @@ impl Measured {
     }
 
     fn sum_ms(&self, counts: impl Fn(&str) -> bool) -> Option<f64> {
-        let passes = self.passes.iter();
-        let medians: Vec<f64> = passes
-            .filter(|pass| counts(&pass.name))
-            .map(|pass| Some(pass.gpu_ms?.median))
-            .collect::<Option<_>>()?;
+        let passes = self.passes.iter().filter(|pass| counts(&pass.name));
+        let medians = passes.map(|pass| Some(pass.gpu_ms?.median));
+        let medians = medians.collect::<Option<Vec<f64>>>()?;
         (!medians.is_empty()).then(|| medians.iter().sum())
     }
 

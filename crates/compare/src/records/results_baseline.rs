@@ -208,53 +208,34 @@ impl Baseline {
     /// The scene has changed: the [reference](crate#terms) counts other numbers of lit and shadowed
     /// pixels, by more than the [`Tolerance`].
     pub fn against(&self, now: &Results) -> Result<Changes, CompareError> {
-        let mut changes = Changes {
-            baseline: self.name.clone(),
-            began: self
-                .all
-                .iter()
-                .map(|results| results.began.clone())
-                .max()
-                .unwrap_or_default(),
-            cells: Vec::new(),
-            only_then: 0,
-            only_now: Vec::new(),
-            notes: Vec::new(),
-        };
-        let mut notes = Vec::new();
+        let (mut cells, mut only_now, mut notes) = (Vec::new(), Vec::new(), Vec::new());
         for run in &now.runs {
-            let Some(then) = self.of(now, run) else {
-                changes
-                    .only_now
-                    .extend(run.measured.as_ref().map(|_| run.label()));
-                continue;
-            };
-            let cell = self.cell(then, now, run, &mut notes)?;
-            changes.cells.push(cell);
+            match self.of(now, run) {
+                Some(then) => cells.push(self.cell(then, now, run, &mut notes)?),
+                None => only_now.extend(run.measured.as_ref().map(|_| run.label())),
+            }
         }
         let is_now = |then: &Run| now.runs.iter().any(|run| run.cell == then.cell);
         let same_scene = self.runs().filter(|(old, _)| old.scene == now.scene);
         let gone = same_scene.filter(|(_, then)| !then.cell.is_empty() && !is_now(then));
-        changes.only_then = gone.unique_by(|(_, then)| &then.cell).count();
-        for (note, count) in notes.iter().counts().into_iter().sorted() {
-            changes
-                .notes
-                .push(format!("{note} ({})", plural(count, "cell")));
-        }
-        Ok(changes)
+        let began = self.all.iter().map(|results| results.began.clone());
+        let notes = notes.iter().counts().into_iter().sorted();
+        Ok(Changes {
+            baseline: self.name.clone(),
+            began: began.max().unwrap_or_default(),
+            cells,
+            only_then: gone.unique_by(|(_, then)| &then.cell).count(),
+            only_now,
+            notes: notes
+                .map(|(note, count)| format!("{note} ({})", plural(count, "cell")))
+                .collect(),
+        })
     }
 
     /// The baseline's run of a cell: of several the one that was measured the most alike.
     fn of<'a>(&'a self, now: &Results, run: &Run) -> Option<Measurement<'a>> {
         let same = self.runs().filter(|(_, then)| then.cell == run.cell);
-        let measured = same.filter_map(|(results, run)| {
-            let measured = run.measured.as_ref()?;
-            Some(Measurement {
-                results,
-                run,
-                measured,
-            })
-        });
+        let measured = same.filter_map(|(results, run)| Measurement::new(results, run));
         measured.max_by_key(|then| {
             let machine = then.results.machine_of(then.run);
             let is_same_adapter = then.is_on_adapter_of(now);
@@ -281,13 +262,8 @@ impl Baseline {
             errors: Change::Worse,
             times: Vec::new(),
         };
-        let Some(measured) = &run.measured else {
+        let Some(now) = Measurement::new(now, run) else {
             return Ok(cell);
-        };
-        let now = Measurement {
-            results: now,
-            run,
-            measured,
         };
         let tolerance = Tolerance::new(then, now);
         if !then.is_on_adapter_of(now.results) {
@@ -326,14 +302,11 @@ impl Baseline {
             let [facing, lit, shadow] = counts(measurement).map(thousands);
             format!("{facing} pixels face the light, {lit} lit and {shadow} in shadow")
         };
+        let (baseline, view, size) = (&self.name, &now.run.view, size(now.run.viewport));
+        let [theirs, ours] = [then, now].map(text);
         Err(CompareError::Input(format!(
-            "the baseline {} is of another scene: on {} at {} {} there, and {} here\n  measure it \
-             anew",
-            self.name,
-            now.run.view,
-            size(now.run.viewport),
-            text(then),
-            text(now)
+            "the baseline {baseline} is of another scene: on {view} at {size} {theirs} there, and \
+             {ours} here\n  measure it anew"
         )))
     }
 }
@@ -414,7 +387,15 @@ impl Tolerance {
     }
 }
 
-impl Measurement<'_> {
+impl<'a> Measurement<'a> {
+    fn new(results: &'a Results, run: &'a Run) -> Option<Self> {
+        run.measured.as_ref().map(|measured| Self {
+            results,
+            run,
+            measured,
+        })
+    }
+
     fn is_on_adapter_of(&self, other: &Results) -> bool {
         self.results.adapter.to_string() == other.adapter.to_string()
     }
@@ -443,8 +424,8 @@ fn times(then: Measurement, now: Measurement) -> Result<Vec<TimeChange>, String>
     }
     for (machine, when) in machines.into_iter().zip(["then", "now"]) {
         if machine.is_loaded() {
-            let cores = plural(machine.cores as usize, "core");
-            let load = machine.load.unwrap_or_default();
+            let (cores, load) = (plural(machine.cores as usize, "core"), machine.load);
+            let load = load.unwrap_or_default();
             return Err(format!(
                 "the machine was busy {when} (load {load:.1} on {cores})"
             ));
@@ -455,11 +436,8 @@ fn times(then: Measurement, now: Measurement) -> Result<Vec<TimeChange>, String>
     let costs = |times: &FrameTimes| times.costs(by_wall).unwrap_or_default();
     let [old, new] = frames.map(costs);
     let whole = TimeChange::new(None, &old, &new).ok_or_else(|| {
-        format!(
-            "{} then and {} now, and both must be {LEAST_TURNS} or more",
-            plural(old.len(), "frame"),
-            new.len()
-        )
+        let (then, now) = (plural(old.len(), "frame"), new.len());
+        format!("{then} then and {now} now, and both must be {LEAST_TURNS} or more")
     })?;
     let regimes = Regime::ALL.into_iter().filter_map(|regime| {
         let [old, new] = [then, now].map(|measurement| {
@@ -476,7 +454,8 @@ fn times(then: Measurement, now: Measurement) -> Result<Vec<TimeChange>, String>
 type Fact = (String, String);
 
 fn facts((results, run): (&Results, &Run)) -> Vec<Fact> {
-    let mut facts = vec![
+    let params = format!("params of {}", run.method_label());
+    let facts = [
         ("scene", results.scene.to_string()),
         ("oracle", results.oracle.clone()),
         ("frames", results.frames.to_string()),
@@ -485,13 +464,9 @@ fn facts((results, run): (&Results, &Run)) -> Vec<Fact> {
         ("views", run.view.clone()),
         ("viewports", size(run.viewport)),
         ("methods", run.method_label()),
+        (&params, run.assignments()),
     ];
-    let name = format!("params of {}", run.method_label());
-    facts.push((&name, run.assignments()));
-    let facts = facts.into_iter();
-    facts
-        .map(|(what, value)| (what.to_owned(), value))
-        .collect()
+    facts.map(|(what, value)| (what.to_owned(), value)).into()
 }
 
 /// Lists the facts of which both sides have no value in common.
@@ -508,11 +483,8 @@ fn differences(
     for what in unique(own.iter().map(|(what, _)| what.clone())) {
         let [there, own] = [&there, &own].map(|facts| values(facts, &what));
         if !there.is_empty() && !own.iter().any(|value| there.contains(value)) {
-            lines.push(format!(
-                "{what}: there {}, here {}",
-                there.join(", "),
-                own.join(", ")
-            ));
+            let [theirs, ours] = [there, own].map(|values| values.join(", "));
+            lines.push(format!("{what}: there {theirs}, here {ours}"));
         }
     }
     if lines.is_empty() {

@@ -44,12 +44,8 @@ impl Kept {
     /// The errors of [`read_back::kept`].
     pub fn read(place: &Path) -> Result<Vec<Self>, CompareError> {
         let results = read_back::kept(place)?;
-        let folder = if place.is_dir() {
-            Some(place)
-        } else {
-            place.parent()
-        };
-        let folder = folder.unwrap_or(Path::new(""));
+        let own = place.is_dir().then_some(place);
+        let folder = own.or(place.parent()).unwrap_or(Path::new(""));
         let each = results.each().into_iter().flat_map(by_machine);
         let each = each.map(|results| Self {
             folder: folder.to_path_buf(),
@@ -126,11 +122,9 @@ impl Source {
             (results.program.clone(), adapter, scene, protocol)
         };
         let results = &self.results;
-        let joins = if results.plan == other.plan {
-            results.joins(&results.machine, &other.machine)
-        } else {
-            results.machine.is_same(&other.machine)
-        };
+        let (machine, other_machine) = (&results.machine, &other.machine);
+        let is_of_plan = results.plan == other.plan && results.joins(machine, other_machine);
+        let joins = is_of_plan || machine.is_same(other_machine);
         joins && conditions(results) == conditions(other)
     }
 
@@ -149,11 +143,9 @@ impl Source {
         let hosts = runs.filter_map(|run| run.machine.as_ref()?.host.clone());
         let hosts = unique(hosts);
         if self.results.plan.is_some() && hosts.len() > 1 {
-            self.results.machine.host = Some(match &hosts[..] {
-                [first, other_hosts @ ..] if other_hosts.len() > 3 => {
-                    format!("{first} and {} others", other_hosts.len())
-                }
-                hosts => hosts.join(", "),
+            self.results.machine.host = Some(match hosts.len() - 1 {
+                further @ 4.. => format!("{} and {further} others", hosts[0]),
+                _ => hosts.join(", "),
             });
         }
     }

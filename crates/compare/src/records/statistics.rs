@@ -81,10 +81,9 @@ impl FrameTimes {
         }
         let mut costs = self.gpu_frames.clone()?;
         let upkeep = self.cpu_frames.iter().flatten();
-        costs
-            .iter_mut()
-            .zip(upkeep)
-            .for_each(|(ms, cpu)| *ms += cpu);
+        for (ms, cpu) in costs.iter_mut().zip(upkeep) {
+            *ms += cpu;
+        }
         Some(costs)
     }
 
@@ -149,13 +148,10 @@ impl Series {
     /// Creates a series of times in milliseconds; `None` if there are no samples.
     pub fn new(samples: Vec<f64>) -> Option<Self> {
         let spread = Spread::new(samples.iter().copied())?;
-        let Spread {
-            min, median, p95, ..
-        } = spread;
         Some(Self {
-            min,
-            median,
-            p95,
+            min: spread.min,
+            median: spread.median,
+            p95: spread.p95,
             max: samples.iter().copied().reduce(f64::max)?,
             samples,
         })

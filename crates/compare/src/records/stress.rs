@@ -263,9 +263,8 @@ impl Report {
         let cases = self.cases.iter();
         let cells = cases.flat_map(|case| case.cells.iter().map(move |cell| (case, cell)));
         let passed = cells.filter(|(_, cell)| cell.verdict == Verdict::Pass);
-        passed
-            .filter(|(case, cell)| case.is_left_to_rays(cell))
-            .count()
+        let left = passed.filter(|(case, cell)| case.is_left_to_rays(cell));
+        left.count()
     }
 
     /// Returns the number of cases with the [verdict](Case::verdict) `Fail`: too many of their

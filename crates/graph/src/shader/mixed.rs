@@ -183,7 +183,7 @@ mod tests {
             "var<workgroup> all: array<atomic<u32>, 4>; x = a - -b * -1.0e-3 + 2e-5;",
             "x = a << 1u == b && c + d < e; /* a | b & c */ // a | b & c",
             "for (var i = 0u; i < 4u && a < b; i++) { p = &q; *p |= 1u << i; }",
-            "fn f(a: ptr<function, vec4<f32>>, b: u32) -> vec3<u32> { return vec3(a >> 1u, b & 1u, c); }",
+            "fn f(a: ptr<function, vec4<f32>>, b: u32) -> u32 { return g(a >> 1u, b & 1u); }",
             "#import \"shared/light.wgsl\"\n@compute @workgroup_size(8, 8) fn main() { }",
             "x = select(a < b, c < d, e < f) | g; switch a & 3u { case 1u: { } default: { } }",
         ] {

@@ -83,10 +83,8 @@ pub fn begins(tables: &[Shown]) -> String {
         for (name, early, mean) in errors {
             let line = |row: &Row| {
                 let mut errors: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
-                for steady in row
-                    .runs()
-                    .filter_map(|(_, measured)| measured.steady.as_ref())
-                {
+                let runs = row.runs();
+                for steady in runs.filter_map(|(_, measured)| measured.steady.as_ref()) {
                     let begin = steady.begin.iter();
                     let end = steady.judged.as_ref();
                     let marks = begin.map(|picture| (picture.frames, early(picture)));
@@ -149,24 +147,15 @@ fn front(table: &Shown, when: When) -> Panel {
         }
     }
     series.sort_by(|one, other| one.marks[0].x.total_cmp(&other.marks[0].x));
-    let clock = if table.summary.by_wall() {
-        "wall clock"
-    } else {
-        "GPU and CPU"
-    };
+    let (by_wall, is_soft) = (table.summary.by_wall(), table.summary.is_soft());
+    let clock = if by_wall { "wall clock" } else { "GPU and CPU" };
     let frame = when.map_or("frames as in the table", Regime::condition);
-    let error = if table.summary.is_soft() {
-        "rmse"
-    } else {
-        "wrong"
-    };
+    let error = figures::named(if is_soft { "rmse" } else { "wrong" });
     Panel {
         title: table.title.clone(),
         kind: Kind::Front,
         x: format!("{clock} ms a frame, {frame}"),
-        y: figures::named(error)
-            .map_or("", |figure| figure.axis)
-            .into(),
+        y: error.map_or("", |figure| figure.axis).into(),
         series,
     }
 }

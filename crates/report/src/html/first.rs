@@ -1,15 +1,16 @@
 //! Writes the first screen: pictures of the reference, of the method to take, and of the errors of
 //! the alternative, beside each other. The page's script inserts the picture files.
 
-use crate::contender::MAX_BAND;
+use crate::contender::is_conditioned;
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
 use crate::summary::Row;
+use crate::table::or_dash;
 use crate::verdict::main_choice;
 use skiagraph_chart::xml;
 use skiagraph_compare::records::results::{Measured, Run};
 use skiagraph_compare::records::sequence::SequenceFrame;
-use skiagraph_compare::wording::{ms, percent};
+use skiagraph_compare::wording::{ms, or_nothing, percent};
 
 /// Returns HTML with the pictures of each table's verdict: reference, recommended method, and
 /// errors of the alternative. A table without a verdict or without pictures has none.
@@ -46,19 +47,16 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
             let frame = frame_in_words(Some(frame));
             return Some(format!("<b>{sign}{label}</b>{frame}: {figures}"));
         }
-        let time = row
-            .frame_ms(main_choice(&table.summary.rows))
-            .map_or("–".into(), ms);
+        let time = or_dash(row.frame_ms(main_choice(&table.summary.rows)), ms);
         let error = error(table, row);
-        let suffix = if row.views() > 1 && !table.summary.is_soft() && !is_right(row) {
+        let is_part = row.views() > 1 && !table.summary.is_soft() && !is_right(row);
+        let suffix = or_nothing(is_part.then_some(run), |run| {
             let share = percent(measured.wrong_outside_band(), run.pixels.facing_light);
             format!(" ({share} on this view)")
-        } else {
-            String::new()
-        };
+        });
         Some(format!("<b>{sign}{label}</b>: {error}{suffix}, {time} ms"))
     };
-    let (its_run, measured) = on_view(taken, &run.view)?;
+    let (its_run, measured) = taken.runs().find(|(own, _)| own.view == run.view)?;
     let mut shown = vec![
         reference(run, frame(judged)?),
         Figure {
@@ -99,11 +97,9 @@ fn reference(run: &Run, frame: Option<usize>) -> Figure<'_> {
 
 /// The wrong pixels of a row on one of its views.
 fn wrong<'a>(row: &Row, (run, judged): (&'a Run, &Measured), caption: &str) -> Option<Figure<'a>> {
-    let colours = if run.is_hard() {
-        "blue lights a shadow, red shadows light"
-    } else {
-        "blue is too light, red too dark"
-    };
+    let hard = "blue lights a shadow, red shadows light";
+    let hard = run.is_hard().then_some(hard);
+    let colours = hard.unwrap_or("blue is too light, red too dark");
     Some(Figure {
         run,
         frame: frame(judged)?,
@@ -124,12 +120,9 @@ fn figures_of_frame(table: &Shown, measured: &Measured, frame: usize) -> Option<
     let frame = measured.sequence.as_ref()?.frames.get(frame)?;
     let error = error_of_frame(frame, !table.summary.is_soft());
     let cost = frame.cost;
-    let time = if table.summary.by_wall() {
-        Some(cost.wall_ms)
-    } else {
-        cost.gpu_ms.map(|_| cost.ms())
-    };
-    Some(format!("{error}, {} ms", time.map_or("–".into(), ms)))
+    let wall = table.summary.by_wall().then_some(cost.wall_ms);
+    let time = wall.or_else(|| cost.gpu_ms.map(|_| cost.ms()));
+    Some(format!("{error}, {} ms", or_dash(time, ms)))
 }
 
 /// Returns the error of one frame of a camera path: of hard shadows (`is_hard`) the share of the
@@ -163,10 +156,6 @@ fn worst_view<'a>(row: &Row<'a>) -> Option<(&'a Run, &'a Measured)> {
     })
 }
 
-fn on_view<'a>(row: &Row<'a>, view: &str) -> Option<(&'a Run, &'a Measured)> {
-    row.runs().find(|(run, _)| run.view == view)
-}
-
 fn is_right(row: &Row) -> bool {
     row.is_exact() && row.wrong().outside_band == 0
 }
@@ -178,15 +167,11 @@ fn error(table: &Shown, row: &Row) -> String {
         return format!("RMSE {:.4}", row.rmse().unwrap_or(0.0));
     }
     let judged = wrong.facing_light.saturating_sub(wrong.band);
-    let (whole, which) = if wrong.band as f64 > MAX_BAND * wrong.facing_light as f64 {
-        (judged, " of what can be judged")
-    } else {
-        (wrong.facing_light, "")
-    };
-    if is_right(row) {
-        format!("no wrong pixel{which}")
-    } else {
-        format!("{} wrong{which}", percent(wrong.outside_band, whole))
+    let part = is_conditioned(wrong).then_some((judged, " of what can be judged"));
+    let (whole, which) = part.unwrap_or((wrong.facing_light, ""));
+    match percent(wrong.outside_band, whole) {
+        _ if is_right(row) => format!("no wrong pixel{which}"),
+        share => format!("{share} wrong{which}"),
     }
 }
 
@@ -194,20 +179,14 @@ fn html(figures: &[Figure]) -> String {
     let figure = |picture: &Figure| {
         let [wide, high] = picture.run.viewport;
         let label = (!picture.is_reference).then(|| picture.run.method_label());
-        let label = label.map_or(String::new(), |label| {
-            format!(" data-label=\"{}\"", xml(&label))
-        });
-        let frame = picture
-            .frame
-            .map_or(String::new(), |frame| format!(" data-frame=\"{frame}\""));
+        let label = or_nothing(label, |label| format!(" data-label=\"{}\"", xml(&label)));
+        let frame = or_nothing(picture.frame, |frame| format!(" data-frame=\"{frame}\""));
+        let (view, alt) = (xml(&picture.run.view), xml(&picture.alt));
+        let (kind, caption) = (picture.kind, &picture.caption);
         format!(
-            "<figure><button type=\"button\" data-view=\"{}\" data-kind=\"{}\"{label}{frame}>\
-             <img width=\"{wide}\" height=\"{high}\" alt=\"{}\"></button>\
-             <figcaption>{}</figcaption></figure>\n",
-            xml(&picture.run.view),
-            picture.kind,
-            xml(&picture.alt),
-            picture.caption
+            "<figure><button type=\"button\" data-view=\"{view}\" data-kind=\"{kind}\"{label}\
+             {frame}><img width=\"{wide}\" height=\"{high}\" alt=\"{alt}\"></button>\
+             <figcaption>{caption}</figcaption></figure>\n"
         )
     };
     figures.iter().map(figure).collect()

@@ -116,9 +116,8 @@ impl Pictures {
     /// Embeds the pictures in the sources' folders, using at most `room` bytes of the page: those
     /// of the references first, then errors, shaded pictures, graphs and the others. Missing files
     /// are skipped without a message.
-    pub fn embed(sources: &[Source], room: usize) -> Self {
+    pub fn embed(sources: &[Source], mut room: usize) -> Self {
         let mut pictures = Self::default();
-        let mut room = room;
         let mut candidates = candidates(sources);
         candidates.sort_by_key(|candidate| candidate.kind);
         let mut left_out: BTreeMap<&str, usize> = BTreeMap::new();
@@ -166,22 +165,15 @@ impl Pictures {
             return;
         }
         let label = (candidate.kind != Kind::Reference).then(|| run.method_label());
-        let is_of = |set: &Set| {
-            (set.source, &set.view, set.viewport, &set.label, set.frame)
-                == (
-                    candidate.source,
-                    &run.view,
-                    run.viewport,
-                    &label,
-                    candidate.frame,
-                )
-        };
+        let (source, frame) = (candidate.source, candidate.frame);
+        let key = (source, &run.view, run.viewport, &label, frame);
+        let is_of = |set: &Set| (set.source, &set.view, set.viewport, &set.label, set.frame) == key;
         let set = find_or_push(&mut self.sets, is_of, || Set {
-            source: candidate.source,
+            source,
             view: run.view.clone(),
             viewport: run.viewport,
             label: label.clone(),
-            frame: candidate.frame,
+            frame,
             frame_error: frame_error(run).filter(|_| label.is_some()),
             graded: !run.is_hard(),
             ..Set::default()
@@ -240,21 +232,16 @@ fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
         (Kind::Perspective, &images.perspective),
         (Kind::Projection, &images.projection),
     ];
-    let optional = optional.into_iter();
-    [
+    let mut names = vec![
         (Kind::Reference, images.reference.clone()),
         (Kind::Error, images.error.clone()),
         (Kind::Shaded, images.shaded.clone()),
         (Kind::Graph, graph_name(&run.preset)),
         (Kind::Visibility, images.visibility.clone()),
-    ]
-    .into_iter()
-    .chain(optional.filter_map(|(kind, name)| Some((kind, name.clone()?))))
-    .chain(
-        images
-            .worst_second
-            .iter()
-            .map(|name| (Kind::Second, name.clone())),
-    )
-    .collect()
+    ];
+    let optional = optional.into_iter();
+    names.extend(optional.filter_map(|(kind, name)| Some((kind, name.clone()?))));
+    let second = images.worst_second.iter();
+    names.extend(second.map(|name| (Kind::Second, name.clone())));
+    names
 }

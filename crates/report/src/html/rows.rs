@@ -39,9 +39,8 @@ pub fn tables(tables: &[Shown]) -> String {
     let cells: Vec<Vec<String>> = cells.collect();
     heads.insert(1, "of".into());
     let rows = tables.iter().enumerate();
-    let rows: Vec<String> = rows
-        .flat_map(|(index, shown)| attributes(index, shown))
-        .collect();
+    let rows = rows.flat_map(|(index, shown)| attributes(index, shown));
+    let rows: Vec<String> = rows.collect();
     let all_rows = tables.iter().flat_map(|shown| &shown.summary.rows);
     let signs: Vec<String> = all_rows.map(|row| sign(tables, &row.method)).collect();
     let class = |row: usize, column: usize| match (&*heads[column], &*cells[row][column]) {
@@ -50,13 +49,11 @@ pub fn tables(tables: &[Shown]) -> String {
         _ => String::new(),
     };
     let table = Table::new(heads.clone(), 2, cells.clone());
-    let table = html(
-        &table,
-        |row| rows[row].clone(),
-        |row| signs[row].clone(),
-        class,
-        |_, text| text,
+    let (attributes, sign) = (
+        |row: usize| rows[row].clone(),
+        |row: usize| signs[row].clone(),
     );
+    let table = html(&table, attributes, sign, class, |_, text| text);
     let indices: Vec<usize> = (0..tables.len()).collect();
     part("rows", &indices, None, &table)
 }
@@ -69,18 +66,9 @@ pub fn lights(sources: &[Source], tables: &[Shown]) -> String {
         let scene = &source.results.scene.name;
         let table = |(viewport, table): ([u32; 2], Table)| {
             let head = format!("{scene}, {}", size(viewport));
-            let none = |_, _| String::new();
-            format!(
-                "<h3>{}</h3>{}",
-                xml(&head),
-                html(
-                    &table,
-                    |_| String::new(),
-                    |row| sign_of(tables, &table, row),
-                    none,
-                    |_, text| text
-                )
-            )
+            let (none, sign) = (|_, _| String::new(), |row| sign_of(tables, &table, row));
+            let body = html(&table, |_| String::new(), sign, none, |_, text| text);
+            format!("<h3>{}</h3>{body}", xml(&head))
         };
         of_lights.map(table).collect::<String>()
     };

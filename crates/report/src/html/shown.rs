@@ -8,7 +8,7 @@ use skiagraph_compare::records::regimes::{Regime, When};
 use skiagraph_compare::records::results::Results;
 use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::records::table::Table;
-use skiagraph_compare::wording::{frames, size};
+use skiagraph_compare::wording::{frames, or_nothing, size};
 use std::collections::BTreeSet;
 
 /// A table of the page: the rows of one source (a scene on one machine and adapter under one
@@ -28,29 +28,20 @@ pub struct Shown<'a> {
 /// Returns a table for each summary, in order. Each summary comes with the index of its source in
 /// `sources`.
 pub fn shown<'a>(sources: &[Source], summaries: &'a [(usize, Summary<'a>)]) -> Vec<Shown<'a>> {
-    let different = |describe: fn(&Results) -> String| {
-        let values = sources.iter().map(|source| describe(&source.results));
-        values.collect::<BTreeSet<String>>().len() > 1
-    };
-    let adapters = different(|results| results.adapter.to_string());
-    let machines = different(|results| results.machine.to_string());
-    let protocols = different(protocol);
+    let facts: [fn(&Results) -> String; 3] = [
+        |results| results.adapter.to_string(),
+        |results| results.machine.to_string(),
+        protocol,
+    ];
+    let values = |fact: fn(&Results) -> String| sources.iter().map(move |it| fact(&it.results));
+    let different = facts.into_iter().filter(|fact| !values(*fact).all_equal());
+    let different = different.collect_vec();
     let table = |source: usize, summary: &'a Summary| {
         let results = &sources[source].results;
-        let mut title = format!(
-            "{}, {}, {}",
-            results.scene.name,
-            summary.what(),
-            size(summary.viewport)
-        );
-        if adapters {
-            title += &format!(" · {}", results.adapter);
-        }
-        if machines {
-            title += &format!(" · {}", results.machine);
-        }
-        if protocols {
-            title += &format!(" · {}", protocol(results));
+        let (what, size) = (summary.what(), size(summary.viewport));
+        let mut title = format!("{}, {what}, {size}", results.scene.name);
+        for fact in &different {
+            title += &format!(" · {}", fact(results));
         }
         Shown {
             source,
@@ -60,9 +51,8 @@ pub fn shown<'a>(sources: &[Source], summaries: &'a [(usize, Summary<'a>)]) -> V
         }
     };
     let tables = summaries.iter();
-    let mut tables: Vec<Shown> = tables
-        .map(|(source, summary)| table(*source, summary))
-        .collect();
+    let tables = tables.map(|(source, summary)| table(*source, summary));
+    let mut tables: Vec<Shown> = tables.collect();
     // Sources that have other cells under the same labels are told apart by their folders, or by
     // their numbers.
     let alike = tables.iter().map(|table| table.title.clone()).duplicates();
@@ -84,11 +74,8 @@ pub fn shown<'a>(sources: &[Source], summaries: &'a [(usize, Summary<'a>)]) -> V
 
 /// The protocol of results in words.
 fn protocol(results: &Results) -> String {
-    let frames = frames(results.frames);
-    format!(
-        "{frames} after {}, oracle {}",
-        results.warmup, results.oracle
-    )
+    let (frames, warmup) = (frames(results.frames), results.warmup);
+    format!("{frames} after {warmup}, oracle {}", results.oracle)
 }
 
 impl Shown<'_> {
@@ -125,11 +112,9 @@ impl Shown<'_> {
 /// Returns the choices of frames for which the tables have times.
 pub fn times(tables: &[Shown]) -> Vec<When> {
     let regimes = |table: &Shown| table.summary.regimes();
-    let regimes: BTreeSet<Regime> = tables.iter().flat_map(regimes).collect();
-    [None]
-        .into_iter()
-        .chain(regimes.into_iter().map(Some))
-        .collect()
+    let regimes = tables.iter().flat_map(regimes).map(Some);
+    let choices: BTreeSet<When> = [None].into_iter().chain(regimes).collect();
+    choices.into_iter().collect()
 }
 
 /// Returns an HTML element with the CSS class `class` around the HTML `content`. The page's script
@@ -137,10 +122,7 @@ pub fn times(tables: &[Shown]) -> Vec<When> {
 /// `None`, while this choice of frames is.
 pub fn part(class: &str, tables: &[usize], when: Option<When>, content: &str) -> String {
     let word = |when: When| when.map_or("frame", Regime::word);
-    let time = when.map_or(String::new(), |when| {
-        format!(" data-time=\"{}\"", word(when))
-    });
-
+    let time = or_nothing(when, |when| format!(" data-time=\"{}\"", word(when)));
     // The script begins with the first table.
     let is_shown = tables.contains(&0) && when.is_none_or(|when| when.is_none());
     let hidden = if is_shown { "" } else { " hidden" };

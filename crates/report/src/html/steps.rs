@@ -15,10 +15,8 @@ pub fn bars(tables: &[Shown]) -> String {
         let rows = table.summary.rows.iter().map(|row| (row, row.steps()));
         let rows: Vec<_> = rows.filter(|(_, steps)| !steps.is_empty()).collect();
         let sum = |steps: &[(&str, f64)]| steps.iter().map(|(_, ms)| ms).sum::<f64>();
-        let most = rows
-            .iter()
-            .map(|(_, steps)| sum(steps))
-            .fold(1e-9, f64::max);
+        let sums = rows.iter().map(|(_, steps)| sum(steps));
+        let most = sums.fold(1e-9, f64::max);
         let mut totals: Vec<(&str, f64)> = Vec::new();
         for (name, ms) in rows.iter().flat_map(|(_, steps)| steps) {
             *entry(&mut totals, *name) += ms;

@@ -98,8 +98,7 @@ fn given_normals_are_normalised_and_shared() {
 #[test]
 fn faces_without_normals_are_flat() {
     // The second face names a normal at one corner only: that is as good as none.
-    let (mesh, _) =
-        parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nf 1 2 3\nf 1//1 3 4\n");
+    let (mesh, _) = parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nf 1 2 3\nf 1//1 3 4\n");
     assert_eq!(mesh.corner_normals(0), [glam::DVec3::Z; 3]);
     assert_eq!(mesh.corner_normals(1), [glam::DVec3::X; 3]);
 }

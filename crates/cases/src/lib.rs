@@ -1,8 +1,8 @@
 //! Scenes on which shadow methods go wrong: the catalogue of `skiagraph stress`.
 //!
 //! Every case builds a small scene with one view named `main` and one light, with the same bits on
-//! every machine. One line of text says which error the case provokes. Tests know of most of them from
-//! the geometry alone which points are lit, so that the ray tracer of the reference is tested, too.
+//! every machine. One line of text says which error the case provokes. Of most cases the geometry
+//! alone tells which points are lit: tests hold the ray tracer of the reference against it.
 //!
 //! ```
 //! for case in skiagraph_cases::cases().into_iter().take(3) {

@@ -42,6 +42,11 @@ const BEAM: Block = [[-0.15, 0.0, -0.15], [0.15, 4.0, 0.15]];
 
 const SHEET: [[f32; 2]; 2] = [[-0.7, -0.6], [0.6, 0.8]];
 
+/// Towards the light, nearly.
+fn lean(corner: Vec3) -> Vec3 {
+    corner - Vec3::new(0.6875, 0.0, 0.375) * corner.y
+}
+
 pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "thin_neighbours",
@@ -173,9 +178,4 @@ pub(crate) mod answers {
             among(upright(p), upright(LIGHT), &[BEAM], 1e-3)
         }),
     ];
-}
-
-/// Towards the light, nearly.
-fn lean(corner: Vec3) -> Vec3 {
-    corner - Vec3::new(0.6875, 0.0, 0.375) * corner.y
 }

@@ -173,8 +173,8 @@ pub(crate) mod answers {
         judge([in_sheet(p, LIGHT, ROOF, 1.0)], 1e-3)
     }
 
-    /// Inside the polygon of such a rim, from straight above; its sides are within a hundredth of the
-    /// circle.
+    /// Inside the polygon of such a rim, from straight above; its sides are within a hundredth of
+    /// the circle.
     fn rim_lit(p: DVec3, radius: f64, y: f64) -> Option<bool> {
         let depth = in_disc(p, DVec3::NEG_Y, [0.0, y, 0.0], 0.99 * radius);
         judge([depth], 0.0101 * radius)

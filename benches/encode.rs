@@ -2,7 +2,7 @@
 //! making and changing an executor. Encoding and finishing the encoder is measured, submission is
 //! not: no frame is submitted.
 
-use criterion::{BenchmarkId, Criterion};
+use criterion::{BenchmarkGroup, BenchmarkId, Criterion, measurement::WallTime};
 use skiagraph_benches::{
     Shaders, VIEWPORT,
     chain::{ByHand, Kind, executor},
@@ -129,71 +129,55 @@ fn changes(criterion: &mut Criterion, gpu: &Gpu) {
     };
     for passes in SIZES {
         let mut group = criterion.benchmark_group(format!("executor, {passes} passes"));
-        group.bench_function(BenchmarkId::from_parameter("new"), |bencher| {
-            bencher.iter_custom(|times| {
-                let once = |_| {
-                    let plan = planned(passes);
-                    let start = Instant::now();
-                    let executor = make(plan);
-                    let time = start.elapsed();
-                    drop(executor);
-                    settle();
-                    time
-                };
-                (0..times).map(once).sum()
-            });
+        each(&mut group, "new", || {
+            let plan = planned(passes);
+            let start = Instant::now();
+            let executor = make(plan);
+            let time = start.elapsed();
+            drop(executor);
+            settle();
+            time
         });
         let mut executor = make(planned(passes));
-        group.bench_function(BenchmarkId::from_parameter("encode"), |bencher| {
-            bencher.iter_custom(|frames| {
-                let once = |_| {
-                    frame(gpu, |encoder| {
-                        executor
-                            .encode(encoder, &Frame::new().with_all(true))
-                            .expect("the graph was encoded before");
-                    })
-                };
-                (0..frames).map(once).sum()
-            });
+        each(&mut group, "encode", || {
+            frame(gpu, |encoder| {
+                executor
+                    .encode(encoder, &Frame::new().with_all(true))
+                    .expect("the graph was encoded before");
+            })
         });
         let mut wide = false;
-        group.bench_function(BenchmarkId::from_parameter("resize"), |bencher| {
-            bencher.iter_custom(|times| {
-                let once = |_| {
-                    wide = !wide;
-                    let viewport = [VIEWPORT[0] * if wide { 2 } else { 1 }, VIEWPORT[1]];
-                    let start = Instant::now();
-                    executor
-                        .resize(viewport, &mut NoProvider)
-                        .expect("both sizes suit every device");
-                    let time = start.elapsed();
-                    settle();
-                    time
-                };
-                (0..times).map(once).sum()
-            });
+        each(&mut group, "resize", || {
+            wide = !wide;
+            let viewport = [VIEWPORT[0] * if wide { 2 } else { 1 }, VIEWPORT[1]];
+            let start = Instant::now();
+            executor
+                .resize(viewport, &mut NoProvider)
+                .expect("both sizes suit every device");
+            let time = start.elapsed();
+            settle();
+            time
         });
         let mut strength = 0.0;
-        group.bench_function(
-            BenchmarkId::from_parameter("set_param, upload"),
-            |bencher| {
-                bencher.iter_custom(|times| {
-                    let once = |_| {
-                        strength += 1.0;
-                        let start = Instant::now();
-                        let renewed = executor
-                            .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
-                            .expect("every value suits");
-                        let time = start.elapsed();
-                        assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
-                        assert!(!renewed.uploads.is_empty());
-                        settle();
-                        time
-                    };
-                    (0..times).map(once).sum()
-                });
-            },
-        );
+        each(&mut group, "set_param, upload", || {
+            strength += 1.0;
+            let start = Instant::now();
+            let renewed = executor
+                .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
+                .expect("every value suits");
+            let time = start.elapsed();
+            assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
+            assert!(!renewed.uploads.is_empty());
+            settle();
+            time
+        });
         group.finish();
     }
+}
+
+/// Measures an operation that times itself.
+fn each(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, mut once: impl FnMut() -> Duration) {
+    group.bench_function(BenchmarkId::from_parameter(name), |bencher| {
+        bencher.iter_custom(|times| (0..times).map(|_| once()).sum());
+    });
 }

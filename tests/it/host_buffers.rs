@@ -665,7 +665,8 @@ fn frames_read_nothing_back() {
         names.sort();
         names
     };
-    assert_eq!(mentions("map_async"), ["host.rs"]);
+    assert_eq!(mentions("map_async"), [""; 0]);
+    assert_eq!(mentions("DownloadBuffer::read_buffer("), ["host.rs"]);
     // `HostMesh::new` with a module of the host, and `check_bounds`.
     assert_eq!(mentions("host::read("), ["rest.rs", "writes.rs"]);
 }

@@ -17,9 +17,8 @@ fn provider() -> SceneProvider {
 }
 
 fn planned(graph: &Graph, provider: &SceneProvider, outputs: &[&str]) -> Result<Plan, Diagnostics> {
-    let request = PlanRequest::new(VIEWPORT, provider)
-        .with_any_adapter(true)
-        .with_outputs(outputs.iter().copied());
+    let mut request = PlanRequest::new(VIEWPORT, provider).with_any_adapter(true);
+    request.outputs = Some(outputs.iter().map(|name| (*name).to_owned()).collect());
     graph.plan(&request)
 }
 

@@ -1,12 +1,8 @@
 //! Describes one stress case, and builds its scene.
 
-use crate::{
-    answer::{among, among_at},
-    shape::{Block, Seen, Shape},
-};
-use glam::DVec3;
+use crate::shape::{Block, Seen, Shape};
 use serde::{Deserialize, Serialize};
-use skiagraph_scene::{LightKind, Scene};
+use skiagraph_scene::Scene;
 
 /// Stress case of the catalogue: a small scene on which shadow methods go wrong, with the
 /// conditions that its ground truth must meet.
@@ -20,12 +16,9 @@ pub struct HardCase {
     /// Kind of the scene's casters. On open casters, a method that culls front faces is also tested
     /// without culling.
     pub casters: Casters,
-    /// Answers, lit or in shadow, that occur in the picture of the case.
-    pub shows: Shows,
-    seen: Seen,
-    geometry: Geometry,
+    pub(crate) seen: Seen,
+    pub(crate) geometry: Geometry,
     change: fn(&mut Scene),
-    lit: Option<fn(DVec3) -> Option<bool>>,
     indeterminate: Indeterminate,
 }
 
@@ -69,10 +62,9 @@ impl Edges {
 
 /// Triangles of a case.
 #[derive(Clone, Copy, Debug)]
-enum Geometry {
+pub(crate) enum Geometry {
     Drawn(fn() -> Shape),
-    /// Boxes, which tell by themselves where light arrives, but for a margin.
-    Boxes(&'static [Block], f64),
+    Boxes(&'static [Block]),
 }
 
 /// Kind of the casters in a scene.
@@ -87,22 +79,8 @@ pub enum Casters {
     Open,
 }
 
-/// Answers of the ground truth that occur among the pixels of a case's picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shows {
-    /// Some of the pixels that face the light are lit, the others are in shadow.
-    Both,
-    /// All pixels that face the light are lit.
-    LitOnly,
-    /// All pixels that face the light are in shadow.
-    ShadowOnly,
-    /// No pixel faces the light.
-    Nothing,
-}
-
 impl HardCase {
-    /// Creates a case of closed casters, with at most 1 % indeterminate pixels and both light and
-    /// shadow in its picture.
+    /// Creates a case of closed casters, with at most 1 % indeterminate pixels.
     pub(crate) const fn closed(
         name: &'static str,
         reason: &'static str,
@@ -113,25 +91,22 @@ impl HardCase {
             name,
             reason,
             casters: Casters::Closed,
-            shows: Shows::Both,
             seen,
             geometry: Geometry::Drawn(shape),
             change: |_| {},
-            lit: None,
             indeterminate: Indeterminate::Share(0.01),
         }
     }
 
-    /// Creates a case of closed boxes, whose [`lit`](Self::lit) has answers for all points but
-    /// those within the margin (scene units) of a shadow's edge.
+    /// Creates a case of closed boxes.
     pub(crate) const fn boxes(
         name: &'static str,
         reason: &'static str,
         seen: Seen,
-        (blocks, margin): (&'static [Block], f64),
+        blocks: &'static [Block],
     ) -> Self {
         Self {
-            geometry: Geometry::Boxes(blocks, margin),
+            geometry: Geometry::Boxes(blocks),
             ..Self::closed(name, reason, seen, Shape::default)
         }
     }
@@ -152,23 +127,6 @@ impl HardCase {
     /// Returns the case with a function that changes its scene after it is built.
     pub(crate) const fn changed(mut self, change: fn(&mut Scene)) -> Self {
         self.change = change;
-        self
-    }
-
-    /// Returns the case with a function that [`HardCase::lit`] calls.
-    pub(crate) const fn with_answer(mut self, lit: fn(DVec3) -> Option<bool>) -> Self {
-        self.lit = Some(lit);
-        self
-    }
-
-    /// Returns the case as one in which all points that face the light are lit.
-    pub(crate) const fn all_lit(self) -> Self {
-        self.with_answer(|_| Some(true)).showing(Shows::LitOnly)
-    }
-
-    /// Returns the case with another value of [`HardCase::shows`].
-    pub(crate) const fn showing(mut self, shows: Shows) -> Self {
-        self.shows = shows;
         self
     }
 
@@ -198,33 +156,11 @@ impl HardCase {
     pub fn scene(&self) -> Scene {
         let shape = match self.geometry {
             Geometry::Drawn(draw) => draw(),
-            Geometry::Boxes(blocks, _) => Shape::default().cuboids(blocks),
+            Geometry::Boxes(blocks) => Shape::default().cuboids(blocks),
         };
         let mut scene = shape.scene(self.seen);
         scene.name = self.name.into();
         (self.change)(&mut scene);
         scene
-    }
-
-    /// Returns true if light reaches a point (world space) of a surface that faces the light,
-    /// computed from the geometry without tracing rays. Returns `None` for a point so close to a
-    /// shadow's edge that rounding may decide, or if the case is not [analytic](Self::is_analytic).
-    pub fn lit(&self, point: DVec3) -> Option<bool> {
-        match (self.lit, self.geometry, self.seen.light) {
-            (Some(lit), ..) => lit(point),
-            (None, Geometry::Drawn(_), _) => None,
-            (None, Geometry::Boxes(blocks, margin), LightKind::Directional(light)) => {
-                among(point, light.direction, blocks, margin)
-            }
-            (None, Geometry::Boxes(blocks, margin), light) => {
-                among_at(point, light.position()?, blocks, margin)
-            }
-        }
-    }
-
-    /// Returns true if the case tells from its geometry which points are lit: [`HardCase::lit`]
-    /// then has answers.
-    pub fn is_analytic(&self) -> bool {
-        self.lit.is_some() || matches!(self.geometry, Geometry::Boxes(..))
     }
 }

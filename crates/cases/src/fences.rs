@@ -1,7 +1,6 @@
 //! Defines cases of casters with gaps between them, both narrower than a texel.
 
 use crate::{
-    answer::{among, in_block, judge},
     case::HardCase,
     shape::{Block, Shape, seen},
 };
@@ -70,23 +69,34 @@ pub(crate) const CASES: &[HardCase] = &[
         "a fence of poles thinner than a tenth of a texel",
         seen([0.012, 0.03, 0.05], [0.008, 0.0, 0.007], LIGHT),
         || Shape::default().graded_slab(0.05, 3, 0.5).cuboids(&poles()),
-    )
-    .with_answer(|p| among(p, LIGHT, &poles(), 2e-5)),
+    ),
     HardCase::closed(
         "slats",
         "as much gap as slat, both near a texel's width",
         seen([1.7, 0.7, 1.9], [0.6, 0.0, 0.3], LIGHT),
         || Shape::default().cuboid(FLOOR).cuboids(&slats()),
-    )
-    .with_answer(|p| among(p, LIGHT, &slats(), 1e-3)),
+    ),
     HardCase::closed(
         "grid_of_holes",
         "a plate with a hole in every fourth cell: light spots of a few texels",
         seen([1.5, 0.9, 1.6], [0.8, 0.0, 0.4], LIGHT),
         || Shape::default().cuboid(FLOOR).and(plate()),
-    )
-    .with_answer(|p| {
-        let depths = cells().filter_map(|(x, z)| in_block(p, LIGHT, cell(x, z)));
-        judge(depths, 1e-3).filter(|_| p.y <= 0.5)
-    }),
+    ),
 ];
+
+#[cfg(test)]
+pub(crate) mod answers {
+    use super::*;
+    use crate::tests::Answer;
+    use crate::tests::answer::{among, in_block, judge};
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[
+        ("poles", |p| among(p, LIGHT, &poles(), 2e-5)),
+        ("slats", |p| among(p, LIGHT, &slats(), 1e-3)),
+        ("grid_of_holes", |p| {
+            let depths = cells().filter_map(|(x, z)| in_block(p, LIGHT, cell(x, z)));
+            judge(depths, 1e-3).filter(|_| p.y <= 0.5)
+        }),
+    ];
+}

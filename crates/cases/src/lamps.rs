@@ -2,8 +2,7 @@
 //! light.
 
 use crate::{
-    answer::among_at,
-    case::{HardCase, Shows},
+    case::HardCase,
     shape::{Block, Seen, Shape, seen_under},
 };
 use glam::DVec3;
@@ -67,49 +66,43 @@ pub(crate) const CASES: &[HardCase] = &[
         "bulb_in_a_yard",
         "a point light between boxes: shadows spread, and every side of it has some",
         in_the_yard(point(LAMP)),
-        (&YARD, 1e-3),
+        &YARD,
     ),
     HardCase::boxes(
         "edge_of_the_cone",
         "a spot light whose cone ends in the picture: receivers on its edge, and casters",
         in_the_yard(spot(LAMP, DVec3::new(0.2, 0.0, 0.3), 80.0)),
-        (&YARD, 1e-3),
+        &YARD,
     ),
     HardCase::closed(
         "light_inside_a_mesh",
         "a light in the midst of a closed box: it lights nothing, whichever faces are culled",
         in_the_yard(point(WITHIN)),
         || Shape::default().cuboids(&YARD).cuboid(LID),
-    )
-    .with_answer(|_| Some(false))
-    .showing(Shows::ShadowOnly),
+    ),
     HardCase::closed(
         "light_on_a_surface",
         "a light in the face of the ceiling that it hangs from: the face does not shade it",
         below_the_ceiling(point(LAMP)),
         || Shape::default().cuboids(&YARD).cuboid(CEILING),
-    )
-    .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
+    ),
     HardCase::closed(
         "spot_inside_a_mesh",
         "a spot light in the midst of a closed box, whose faces are before it and behind it",
         in_the_yard(spot(WITHIN, DVec3::new(0.2, 0.0, 0.3), 100.0)),
         || Shape::default().cuboids(&YARD).cuboid(LID),
-    )
-    .with_answer(|_| Some(false))
-    .showing(Shows::ShadowOnly),
+    ),
     HardCase::closed(
         "spot_on_a_surface",
         "a spot light in the face of the ceiling that it hangs from, across its own plane",
         below_the_ceiling(spot(LAMP, DVec3::new(0.8, 0.0, 0.1), 140.0)),
         || Shape::default().cuboids(&YARD).cuboid(CEILING),
-    )
-    .with_answer(|p| among_at(p, LAMP, &YARD, 1e-3)),
+    ),
     HardCase::boxes(
         "seam_of_faces",
         "casters and receivers where the faces of a point light's cube meet, three at a corner",
         seen_under([0.3, 3.4, 2.4], [0.0, 0.0, 0.1], point(SEAM)),
-        (&ACROSS_SEAMS, 1e-3),
+        &ACROSS_SEAMS,
     ),
     HardCase::boxes(
         "across_the_lights_plane",
@@ -119,13 +112,13 @@ pub(crate) const CASES: &[HardCase] = &[
             [0.0, 0.1, 0.0],
             spot(BEHIND, DVec3::new(1.0, 0.0, 0.0), 120.0),
         ),
-        (&BEAM, 1e-3),
+        &BEAM,
     ),
     HardCase::boxes(
         "light_at_the_floor",
         "a light a hair above the floor: every ray grazes it",
         in_the_yard(point(NEAR_FLOOR)),
-        (&YARD, 1e-2),
+        &YARD,
     )
     // The floor's own share of the light is a thousandth of what rounding leaves of it there.
     .indeterminate_up_to(0.05),
@@ -133,6 +126,21 @@ pub(crate) const CASES: &[HardCase] = &[
         "light_a_million_away",
         "a spot light a million times the scene away, as good as directional",
         in_the_yard(spot(STAR, DVec3::ZERO, 30.0)),
-        (&YARD, 1e-2),
+        &YARD,
     ),
 ];
+
+#[cfg(test)]
+pub(crate) mod answers {
+    use super::*;
+    use crate::tests::Answer;
+    use crate::tests::answer::among_at;
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[
+        ("light_inside_a_mesh", |_| Some(false)),
+        ("light_on_a_surface", |p| among_at(p, LAMP, &YARD, 1e-3)),
+        ("spot_inside_a_mesh", |_| Some(false)),
+        ("spot_on_a_surface", |p| among_at(p, LAMP, &YARD, 1e-3)),
+    ];
+}

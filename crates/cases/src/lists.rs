@@ -2,7 +2,6 @@
 //! casters that cover many texels.
 
 use crate::{
-    answer::{among, in_triangle, judge},
     case::HardCase,
     shape::{Block, Shape, seen},
 };
@@ -75,11 +74,6 @@ fn over_the_map() -> Vec<Corners> {
     [huge].into_iter().chain(small).collect()
 }
 
-fn lit_among(p: DVec3, casters: Vec<Corners>) -> Option<bool> {
-    let depths = casters.into_iter();
-    judge(depths.map(|corners| in_triangle(p, LIGHT, corners)), 1e-3)
-}
-
 pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "crowded_texel",
@@ -96,24 +90,44 @@ pub(crate) const CASES: &[HardCase] = &[
                 .graded_slab(0.5, 4, 0.5)
                 .cuboids(&shelves())
         },
-    )
-    .with_answer(|p| among(p, LIGHT, &shelves(), 1e-5)),
+    ),
     HardCase::open(
         "sheets_cut_the_floor",
         "casters through the receivers' own depth, and a hair above and below it",
         seen([1.1, 2.9, 1.9], [0.3, 0.0, 0.1], LIGHT),
         || Shape::default().floor(2.0, 0.0).triangles(cutting()),
-    )
-    .with_answer(|p| lit_among(p, cutting())),
+    ),
     HardCase::open(
         "one_triangle_over_the_map",
         "a slanted triangle over the whole map and all depths, small ones close over and under \
              it",
         seen([-4.0, 7.5, -6.5], [-0.9, 1.6, -1.3], LIGHT),
         || Shape::default().floor(4.0, 0.0).triangles(over_the_map()),
-    )
-    .with_answer(|p| lit_among(p, over_the_map())),
+    ),
 ];
+
+#[cfg(test)]
+pub(crate) mod answers {
+    use super::*;
+    use crate::tests::Answer;
+    use crate::tests::answer::{among, in_triangle, judge};
+
+    fn lit_among(p: DVec3, casters: Vec<Corners>) -> Option<bool> {
+        let depths = casters.into_iter();
+        judge(depths.map(|corners| in_triangle(p, LIGHT, corners)), 1e-3)
+    }
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[
+        ("shelves_in_two_texels", |p| {
+            among(p, LIGHT, &shelves(), 1e-5)
+        }),
+        ("sheets_cut_the_floor", |p| lit_among(p, cutting())),
+        ("one_triangle_over_the_map", |p| {
+            lit_among(p, over_the_map())
+        }),
+    ];
+}
 
 #[cfg(test)]
 mod tests {

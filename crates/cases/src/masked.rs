@@ -1,11 +1,10 @@
 //! Defines cases with alpha masks, which cut holes into triangles.
 
 use crate::{
-    answer::at_height,
     case::HardCase,
     shape::{Seen, Shape, seen},
 };
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use skiagraph_scene::{Mask, Material, Scene, Wrap};
 use std::sync::Arc;
 
@@ -68,18 +67,6 @@ pub(crate) const CASES: &[HardCase] = &[
     .changed(|scene| {
         let mask = checkers(CHECKERS, [Wrap::Clamp; 2]);
         put_mask(scene, 0.5, mask, across)
-    })
-    .with_answer(|p| {
-        let met = at_height(p, DOWN, 1.0)?;
-        let half = f64::from(HALF);
-        let texel = (met / half + 1.0) * (0.5 * f64::from(CHECKERS));
-        // The nearest edge of any texel, in texels.
-        if (texel - texel.round()).abs().min_element() < 1e-3 {
-            return None;
-        }
-        let outside = met.abs().max_element() > half;
-        let DVec2 { x, y } = texel.floor();
-        Some(outside || (x + y).rem_euclid(2.0) != 0.0)
     }),
     HardCase::open(
         "mask_wraps",
@@ -147,3 +134,25 @@ pub(crate) const CASES: &[HardCase] = &[
         put_mask(scene, 0.01, mask, |place| Vec2::new(place.z, place.y))
     }),
 ];
+
+#[cfg(test)]
+pub(crate) mod answers {
+    use super::*;
+    use crate::tests::Answer;
+    use crate::tests::answer::at_height;
+    use glam::DVec2;
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[("mask_edges", |p| {
+        let met = at_height(p, DOWN, 1.0)?;
+        let half = f64::from(HALF);
+        let texel = (met / half + 1.0) * (0.5 * f64::from(CHECKERS));
+        // The nearest edge of any texel, in texels.
+        if (texel - texel.round()).abs().min_element() < 1e-3 {
+            return None;
+        }
+        let outside = met.abs().max_element() > half;
+        let DVec2 { x, y } = texel.floor();
+        Some(outside || (x + y).rem_euclid(2.0) != 0.0)
+    })];
+}

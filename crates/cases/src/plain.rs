@@ -1,7 +1,7 @@
 //! Defines simple cases, and cases with few triangles or none.
 
 use crate::{
-    case::{HardCase, Shows},
+    case::HardCase,
     shape::{Block, Shape, seen},
 };
 use glam::DVec3;
@@ -29,22 +29,20 @@ pub(crate) const CASES: &[HardCase] = &[
         "box_on_floor",
         "contact: a closed box stands on the floor that it shades",
         seen([2.7, 1.8, 1.5], [0.9, 0.1, 0.0], DVec3::new(1.0, -1.0, 0.0)),
-        (&BOX, 1e-3),
+        &BOX,
     ),
     HardCase::closed(
         "empty_scene",
         "no triangle: no fit, no hierarchy, empty buffers",
         seen([0.0, 1.0, 3.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2)),
         Shape::default,
-    )
-    .showing(Shows::Nothing),
+    ),
     HardCase::open(
         "one_triangle",
         "its own receiver, its own caster, the whole map",
         seen([0.3, 2.0, 1.0], [0.0; 3], DVec3::new(0.3, -1.0, 0.2)),
         || Shape::default().triangle([[-1.0, 0.1, 1.0], [1.2, -0.2, 0.8], [0.1, 0.3, -1.1]]),
-    )
-    .all_lit(),
+    ),
     HardCase::open(
         "one_quad",
         "two triangles in one plane, each beside the other's receivers",
@@ -57,27 +55,36 @@ pub(crate) const CASES: &[HardCase] = &[
                 [-1.0, 1.0, -1.0],
             ])
         },
-    )
-    .all_lit(),
+    ),
     HardCase::closed(
         "everything_faces_away",
         "no pixel faces the light: no ray, and shares of nothing",
         seen([1.0, 4.0, 2.0], [0.0; 3], DVec3::new(0.1, 1.0, 0.05)),
         || Shape::default().cuboids(&BOX),
-    )
-    .showing(Shows::Nothing),
+    ),
     HardCase::boxes(
         "camera_inside",
         "the eye is inside a closed box, whose faces it does not see and whose shadow it does",
         seen([2.5, 1.9, 2.4], [-0.9, 0.0, -0.6], ROOM_LIGHT),
-        (&ROOM, 1e-3),
+        &ROOM,
     ),
     HardCase::boxes(
         "before_the_near_plane",
         "casters between the eye and the near plane, and around the eye: not drawn, and still \
              in the light",
         seen([3.5, 4.5, 3.6], [-0.4, 0.0, -0.4], NEAR_LIGHT),
-        (&NEAR, 1e-3),
+        &NEAR,
     )
     .changed(|scene| scene.views[0].near = 5.0),
 ];
+
+#[cfg(test)]
+pub(crate) mod answers {
+    use crate::tests::Answer;
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[
+        ("one_triangle", |_| Some(true)),
+        ("one_quad", |_| Some(true)),
+    ];
+}

@@ -1,7 +1,6 @@
 //! Defines cases with gaps, extents and positions at which f32 runs out of digits.
 
 use crate::{
-    answer::{among, in_sheet, judge},
     case::{Edges, HardCase},
     shape::{Block, Seen, Shape, seen},
 };
@@ -49,11 +48,6 @@ const fn lid_seen(scale: f32) -> Seen {
     )
 }
 
-fn lid_lit(p: DVec3, scale: f32, gap: f32) -> Option<bool> {
-    let lid = LID.map(|corner| corner.map(|c| c * scale));
-    judge([in_sheet(p, LIGHT, lid, gap)], 1e-4 * f64::from(scale))
-}
-
 const SHEETS: [[f32; 2]; 2] = [[-0.8, -0.7], [0.7, 0.9]];
 
 const SMALL: [Block; 2] = [
@@ -88,41 +82,35 @@ pub(crate) const CASES: &[HardCase] = &[
         "stack_gap_one_ulp",
         "closed slabs an ulp above one another: no bias fits in between",
         || Shape::default().cuboids(&stack(ULP)),
-    )
-    .with_answer(|p| among(p, LIGHT, &stack(ULP), 1e-3)),
+    ),
     stacked(
         "stack_gap_1e_6",
         "closed slabs a millionth above one another",
         || Shape::default().cuboids(&stack(1e-6)),
-    )
-    .with_answer(|p| among(p, LIGHT, &stack(1e-6), 1e-3)),
+    ),
     stacked(
         "stack_gap_1e_3",
         "closed slabs a thousandth above one another",
         || Shape::default().cuboids(&stack(1e-3)),
-    )
-    .with_answer(|p| among(p, LIGHT, &stack(1e-3), 1e-3)),
+    ),
     HardCase::open(
         "lid_gap_1e_3",
         "receivers close below a sheet, seen through its back: every bias lights them",
         lid_seen(1.0),
         || lid(1.0, 1e-3),
-    )
-    .with_answer(|p| lid_lit(p, 1.0, 1e-3)),
+    ),
     HardCase::open(
         "lid_gap_2e_5",
         "the same at ten times what f32 loses",
         lid_seen(1.0),
         || lid(1.0, 2e-5),
-    )
-    .with_answer(|p| lid_lit(p, 1.0, 2e-5)),
+    ),
     HardCase::open(
         "lid_gap_1e_6",
         "the same in a scene of a twentieth: the gap counts in extents",
         lid_seen(0.05),
         || lid(0.05, 1e-6),
-    )
-    .with_answer(|p| lid_lit(p, 0.05, 1e-6)),
+    ),
     HardCase::open(
         "sheets_an_ulp_apart",
         "casters of both windings, coplanar or an ulp apart, fight for the map",
@@ -134,13 +122,12 @@ pub(crate) const CASES: &[HardCase] = &[
             });
             Shape::default().floor(2.5, 0.0).and(sheets)
         },
-    )
-    .with_answer(|p| judge([in_sheet(p, LIGHT, SHEETS, 1.0)], 1e-3)),
+    ),
     HardCase::boxes(
         "scale_1e_4",
         "the unit is a ten-thousandth: constants in scene units are too large",
         seen([2.2e-4, 2.6e-4, 3e-4], [4e-5, 2e-5, 2e-5], LIGHT),
-        (&SMALL, 1e-7),
+        &SMALL,
     ),
     HardCase::boxes(
         "origin_offset_1e7",
@@ -150,7 +137,7 @@ pub(crate) const CASES: &[HardCase] = &[
             [10_000_300.0, 10_000_200.0, 10_000_100.0],
             LIGHT,
         ),
-        (&FAR, 20.0),
+        &FAR,
     )
     // A receiver is off by its position's five roundings of a distance of √3 offsets, and by those
     // of its weights, the more the flatter it is seen: by some 22 units, as pictures of 1024²
@@ -166,8 +153,7 @@ pub(crate) const CASES: &[HardCase] = &[
         "boxes of a hundredth on a plain of a million: all of them in one texel",
         seen([0.03, 0.04, 0.05], [0.004, 0.002, 0.003], LIGHT),
         || Shape::default().graded_slab(0.05, 12, 1e5).cuboids(&DETAIL),
-    )
-    .with_answer(|p| among(p, LIGHT, &DETAIL, 1e-5)),
+    ),
     HardCase::closed(
         "huge_beside_tiny",
         "crumbs on a floor of two triangles four hundred times their size",
@@ -177,6 +163,32 @@ pub(crate) const CASES: &[HardCase] = &[
                 .cuboid([[-10.0, -1.0, -10.0], [10.0, 0.0, 10.0]])
                 .cuboids(&CRUMBS)
         },
-    )
-    .with_answer(|p| among(p, LIGHT, &CRUMBS, 1e-3)),
+    ),
 ];
+
+#[cfg(test)]
+pub(crate) mod answers {
+    use super::*;
+    use crate::tests::Answer;
+    use crate::tests::answer::{among, in_sheet, judge};
+
+    fn lid_lit(p: DVec3, scale: f32, gap: f32) -> Option<bool> {
+        let lid = LID.map(|corner| corner.map(|c| c * scale));
+        judge([in_sheet(p, LIGHT, lid, gap)], 1e-4 * f64::from(scale))
+    }
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[
+        ("stack_gap_one_ulp", |p| among(p, LIGHT, &stack(ULP), 1e-3)),
+        ("stack_gap_1e_6", |p| among(p, LIGHT, &stack(1e-6), 1e-3)),
+        ("stack_gap_1e_3", |p| among(p, LIGHT, &stack(1e-3), 1e-3)),
+        ("lid_gap_1e_3", |p| lid_lit(p, 1.0, 1e-3)),
+        ("lid_gap_2e_5", |p| lid_lit(p, 1.0, 2e-5)),
+        ("lid_gap_1e_6", |p| lid_lit(p, 0.05, 1e-6)),
+        ("sheets_an_ulp_apart", |p| {
+            judge([in_sheet(p, LIGHT, SHEETS, 1.0)], 1e-3)
+        }),
+        ("extent_1e6_detail_1e_2", |p| among(p, LIGHT, &DETAIL, 1e-5)),
+        ("huge_beside_tiny", |p| among(p, LIGHT, &CRUMBS, 1e-3)),
+    ];
+}

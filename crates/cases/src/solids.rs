@@ -1,7 +1,6 @@
 //! Defines cases of closed surfaces, some of which touch.
 
 use crate::{
-    answer::{among, in_disc, judge},
     case::HardCase,
     shape::{Block, Seen, Shape, seen},
 };
@@ -50,27 +49,26 @@ pub(crate) const CASES: &[HardCase] = &[
         "boxes_share_a_face",
         "two boxes with one face, wound both ways, hidden between them",
         BOXES,
-        (&BY_FACE, 1e-3),
+        &BY_FACE,
     ),
     HardCase::boxes(
         "boxes_share_an_edge",
         "two boxes with one edge: four triangles around it",
         BOXES,
-        (&BY_EDGE, 1e-3),
+        &BY_EDGE,
     ),
     HardCase::boxes(
         "boxes_share_a_vertex",
         "two boxes with one corner: the surface pinches to a point",
         BOXES,
-        (&BY_VERTEX, 1e-3),
+        &BY_VERTEX,
     ),
     HardCase::open(
         "boxes_through_each_other",
         "a lit face of one inside the other: culling leaves an open surface",
         BOXES,
         || Shape::default().cuboids(&CROSSING),
-    )
-    .with_answer(|p| among(p, LIGHT, &CROSSING, 1e-3)),
+    ),
     HardCase::closed(
         "contact_points",
         "octahedra stand on their tips: shadows begin in a point",
@@ -161,16 +159,7 @@ pub(crate) const CASES: &[HardCase] = &[
             };
             Shape::default().lattice(2, 200, cone).cuboid(FLOOR)
         },
-    )
-    // The cone's own shadow lies within that of its base: it is flatter than the light.
-    .with_answer(|p| {
-        let base = in_disc(p, DVec3::new(0.3, -1.0, 0.2), [0.0, 1.0, 0.0], 0.8);
-        if p.y > 0.5 {
-            Some(true)
-        } else {
-            judge([base], 1e-3)
-        }
-    }),
+    ),
     HardCase::closed(
         "sub_texel_triangles",
         "a sphere of twelve thousand triangles, many to a texel",
@@ -179,13 +168,36 @@ pub(crate) const CASES: &[HardCase] = &[
             let fine = |row: u32, column: u32| CENTRE + sphere(row, 64, column, 96);
             Shape::default().lattice(64, 96, fine).cuboid(FLOOR)
         },
-    )
-    .with_answer(|p| {
-        let (way, to_light) = (CENTRE - p, -LIGHT.normalize());
-        // On the sphere itself, which is convex, the side that faces the light sees it.
-        let above = p.y > 1e-3;
-        above
-            .then_some(true)
-            .or_else(|| judge([1.0 - way.reject_from_normalized(to_light).length()], 0.01))
-    }),
+    ),
 ];
+
+#[cfg(test)]
+pub(crate) mod answers {
+    use super::*;
+    use crate::tests::Answer;
+    use crate::tests::answer::{among, in_disc, judge};
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[
+        ("boxes_through_each_other", |p| {
+            among(p, LIGHT, &CROSSING, 1e-3)
+        }),
+        // The cone's own shadow lies within that of its base: it is flatter than the light.
+        ("fan_of_two_hundred", |p| {
+            let base = in_disc(p, DVec3::new(0.3, -1.0, 0.2), [0.0, 1.0, 0.0], 0.8);
+            if p.y > 0.5 {
+                Some(true)
+            } else {
+                judge([base], 1e-3)
+            }
+        }),
+        ("sub_texel_triangles", |p| {
+            let (way, to_light) = (CENTRE - p, -LIGHT.normalize());
+            // On the sphere itself, which is convex, the side that faces the light sees it.
+            let above = p.y > 1e-3;
+            above
+                .then_some(true)
+                .or_else(|| judge([1.0 - way.reject_from_normalized(to_light).length()], 0.01))
+        }),
+    ];
+}

@@ -1,7 +1,6 @@
 //! Defines cases with thin triangles, and triangles without an area.
 
 use crate::{
-    answer::{among, at_height, in_block, in_sheet, judge},
     case::HardCase,
     shape::{Block, Shape, seen},
 };
@@ -43,6 +42,11 @@ const BEAM: Block = [[-0.15, 0.0, -0.15], [0.15, 4.0, 0.15]];
 
 const SHEET: [[f32; 2]; 2] = [[-0.7, -0.6], [0.6, 0.8]];
 
+/// Towards the light, nearly.
+fn lean(corner: Vec3) -> Vec3 {
+    corner - Vec3::new(0.6875, 0.0, 0.375) * corner.y
+}
+
 pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "thin_neighbours",
@@ -58,16 +62,7 @@ pub(crate) const CASES: &[HardCase] = &[
             });
             Shape::default().floor(2.0, 0.0).triangles(sheets.concat())
         },
-    )
-    .with_answer(|p| {
-        let met = at_height(p, DVec3::NEG_Y, 1.0)?;
-        let kites = kept_edges().map(|kite| {
-            let [x, z, width] = kite.map(f64::from);
-            let left = 1.0 - (met.y - z).abs() / 0.2;
-            (width * left - (met.x - x)).min(met.x - x + 0.08 * left)
-        });
-        judge(kites, 5e-4)
-    }),
+    ),
     HardCase::closed(
         "thin_chamfers",
         "closed bars whose lower edges are cut by less than a texel: the same on solids",
@@ -87,11 +82,7 @@ pub(crate) const CASES: &[HardCase] = &[
                 shape.prism(&outline, [z0, z1])
             })
         },
-    )
-    .with_answer(|p| {
-        let depths = (0..CHAMFER.len()).filter_map(|i| in_block(p, LIGHT, chamfered(i)));
-        judge(depths, 0.05)
-    }),
+    ),
     HardCase::closed(
         "long_thin_diagonals",
         "triangles a thousand times as long as wide, across the map's diagonal",
@@ -105,11 +96,7 @@ pub(crate) const CASES: &[HardCase] = &[
                     shape.moved_cuboid(block, place)
                 })
         },
-    )
-    .with_answer(|p| {
-        let turned = |v: DVec3| DVec3::new((v.x - v.z) * 0.5, v.y, (v.x + v.z) * 0.5);
-        among(turned(p), turned(LIGHT), &DIAGONAL, 1e-3)
-    }),
+    ),
     HardCase::open(
         "needles",
         "four hundred slivers down to a millionth of their length",
@@ -143,8 +130,7 @@ pub(crate) const CASES: &[HardCase] = &[
             let sheet = Shape::default().sheet(SHEET, 1.0).reversed();
             Shape::default().floor(2.5, 0.0).triangles(flat).and(sheet)
         },
-    )
-    .with_answer(|p| judge([in_sheet(p, LIGHT, SHEET, 1.0)], 1e-3)),
+    ),
     HardCase::closed(
         "depths_span_the_map",
         "a beam towards the light: each of its triangles reaches from the first depth to the \
@@ -155,15 +141,41 @@ pub(crate) const CASES: &[HardCase] = &[
                 .cuboid(FLOOR)
                 .moved_cuboid(BEAM, |corner| lean(Vec3::from(corner)).to_array())
         },
-    )
-    // Upright again, it is a box; the floor stays where it is.
-    .with_answer(|p| {
-        let upright = |v: DVec3| v + DVec3::new(0.6875, 0.0, 0.375) * v.y;
-        among(upright(p), upright(LIGHT), &[BEAM], 1e-3)
-    }),
+    ),
 ];
 
-/// Towards the light, nearly.
-fn lean(corner: Vec3) -> Vec3 {
-    corner - Vec3::new(0.6875, 0.0, 0.375) * corner.y
+#[cfg(test)]
+pub(crate) mod answers {
+    use super::*;
+    use crate::tests::Answer;
+    use crate::tests::answer::{among, at_height, in_block, in_sheet, judge};
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[
+        ("thin_neighbours", |p| {
+            let met = at_height(p, DVec3::NEG_Y, 1.0)?;
+            let kites = kept_edges().map(|kite| {
+                let [x, z, width] = kite.map(f64::from);
+                let left = 1.0 - (met.y - z).abs() / 0.2;
+                (width * left - (met.x - x)).min(met.x - x + 0.08 * left)
+            });
+            judge(kites, 5e-4)
+        }),
+        ("thin_chamfers", |p| {
+            let depths = (0..CHAMFER.len()).filter_map(|i| in_block(p, LIGHT, chamfered(i)));
+            judge(depths, 0.05)
+        }),
+        ("long_thin_diagonals", |p| {
+            let turned = |v: DVec3| DVec3::new((v.x - v.z) * 0.5, v.y, (v.x + v.z) * 0.5);
+            among(turned(p), turned(LIGHT), &DIAGONAL, 1e-3)
+        }),
+        ("zero_area_triangles", |p| {
+            judge([in_sheet(p, LIGHT, SHEET, 1.0)], 1e-3)
+        }),
+        // Upright again, it is a box; the floor stays where it is.
+        ("depths_span_the_map", |p| {
+            let upright = |v: DVec3| v + DVec3::new(0.6875, 0.0, 0.375) * v.y;
+            among(upright(p), upright(LIGHT), &[BEAM], 1e-3)
+        }),
+    ];
 }

@@ -1,7 +1,6 @@
 //! Defines cases of sheets whose triangles meet in ways that those of a solid do not.
 
 use crate::{
-    answer::{at_height, in_disc, in_sheet, judge},
     case::HardCase,
     shape::{Seen, Shape, seen},
 };
@@ -17,10 +16,6 @@ const UNDER: Seen = seen([1.3, 0.95, 2.3], [0.2, 0.0, 0.1], LIGHT);
 
 fn under_a_roof(roof: Shape) -> Shape {
     Shape::default().floor(2.0, 0.0).and(roof)
-}
-
-fn roof_lit(p: DVec3) -> Option<bool> {
-    judge([in_sheet(p, LIGHT, ROOF, 1.0)], 1e-3)
 }
 
 /// Place and height of the sheets of `open_sheets`, and whether they face up.
@@ -41,13 +36,6 @@ fn rim(step: u32, radius: f64, y: f64) -> DVec3 {
     DVec3::new(x * radius, y, -z * radius)
 }
 
-/// Inside the polygon of such a rim, from straight above; its sides are within a hundredth of the
-/// circle.
-fn rim_lit(p: DVec3, radius: f64, y: f64) -> Option<bool> {
-    let depth = in_disc(p, DVec3::NEG_Y, [0.0, y, 0.0], 0.99 * radius);
-    judge([depth], 0.0101 * radius)
-}
-
 pub(crate) const CASES: &[HardCase] = &[
     HardCase::open(
         "t_junctions",
@@ -60,8 +48,7 @@ pub(crate) const CASES: &[HardCase] = &[
             });
             under_a_roof(roof.sheet([[-0.75, -0.75], [0.0, 0.75]], 1.0).reversed())
         },
-    )
-    .with_answer(roof_lit),
+    ),
     HardCase::open(
         "cracks",
         "two sheets that meet at the ends of a seam and not in its middle",
@@ -79,15 +66,7 @@ pub(crate) const CASES: &[HardCase] = &[
                 .reversed();
             Shape::default().floor(2.0, 0.0).and(roof)
         },
-    )
-    .with_answer(|p| {
-        let crack = |met: glam::DVec2| {
-            let deep = f64::from(CRACK) * (1.0 - met.y.abs() / 0.75);
-            (-met.x).max(met.x - deep)
-        };
-        let beside = at_height(p, LIGHT, 1.0).map_or(f64::NEG_INFINITY, crack);
-        judge([in_sheet(p, LIGHT, ROOF, 1.0).min(beside)], 1e-3)
-    }),
+    ),
     HardCase::open(
         "fan_of_pages",
         "five sheets around one edge: no neighbour can be named",
@@ -119,8 +98,7 @@ pub(crate) const CASES: &[HardCase] = &[
             let fan = Shape::default().lattice(1, 2 * SIDES, fan);
             Shape::default().floor(2.0, 0.0).and(fan)
         },
-    )
-    .with_answer(|p| rim_lit(p, 0.8, 0.9).filter(|_| p.y <= 0.5)),
+    ),
     HardCase::open(
         "helicoid_in_a_texel",
         "two turns of a spiral stair around the light's direction, all of it in one texel",
@@ -137,8 +115,7 @@ pub(crate) const CASES: &[HardCase] = &[
             let helicoid = Shape::default().lattice(1, 2 * SIDES, helicoid);
             Shape::default().graded_slab(0.05, 3, 0.5).and(helicoid)
         },
-    )
-    .with_answer(|p| rim_lit(p, 0.004, 0.012).filter(|_| p.y <= 1e-3)),
+    ),
     HardCase::open(
         "moebius_strip",
         "one side only: windings cannot agree across every edge",
@@ -168,11 +145,7 @@ pub(crate) const CASES: &[HardCase] = &[
                 },
             )
         },
-    )
-    .with_answer(|p| {
-        let depths = SHEETS.map(|(sheet, y, _)| in_sheet(p, LIGHT, sheet, y));
-        judge(depths, 1e-3)
-    }),
+    ),
     HardCase::open(
         "duplicated_triangles",
         "every triangle of a roof three times: six triangles to an inner edge",
@@ -181,13 +154,54 @@ pub(crate) const CASES: &[HardCase] = &[
             let roof = Shape::default().sheet(ROOF, 1.0).reversed();
             under_a_roof(roof.clone().and(roof.clone()).and(roof))
         },
-    )
-    .with_answer(roof_lit),
+    ),
     HardCase::open(
         "opposite_wound",
         "a roof of two sheets, back to back in the same place",
         UNDER,
         || under_a_roof(Shape::default().sheet(ROOF, 1.0).and_reversed()),
-    )
-    .with_answer(roof_lit),
+    ),
 ];
+
+#[cfg(test)]
+pub(crate) mod answers {
+    use super::*;
+    use crate::tests::Answer;
+    use crate::tests::answer::{at_height, in_disc, in_sheet, judge};
+
+    fn roof_lit(p: DVec3) -> Option<bool> {
+        judge([in_sheet(p, LIGHT, ROOF, 1.0)], 1e-3)
+    }
+
+    /// Inside the polygon of such a rim, from straight above; its sides are within a hundredth of
+    /// the circle.
+    fn rim_lit(p: DVec3, radius: f64, y: f64) -> Option<bool> {
+        let depth = in_disc(p, DVec3::NEG_Y, [0.0, y, 0.0], 0.99 * radius);
+        judge([depth], 0.0101 * radius)
+    }
+
+    /// Tells from the geometry where light arrives.
+    pub(crate) const ANSWERS: &[Answer] = &[
+        ("t_junctions", roof_lit),
+        ("cracks", |p| {
+            let crack = |met: glam::DVec2| {
+                let deep = f64::from(CRACK) * (1.0 - met.y.abs() / 0.75);
+                (-met.x).max(met.x - deep)
+            };
+            let beside = at_height(p, LIGHT, 1.0).map_or(f64::NEG_INFINITY, crack);
+            judge([in_sheet(p, LIGHT, ROOF, 1.0).min(beside)], 1e-3)
+        }),
+        ("fan_winds_twice", |p| {
+            rim_lit(p, 0.8, 0.9).filter(|_| p.y <= 0.5)
+        }),
+        ("helicoid_in_a_texel", |p| {
+            rim_lit(p, 0.004, 0.012).filter(|_| p.y <= 1e-3)
+        }),
+        ("open_sheets", |p| {
+            let depths = SHEETS.map(|(sheet, y, _)| in_sheet(p, LIGHT, sheet, y));
+            judge(depths, 1e-3)
+        }),
+        ("duplicated_triangles", roof_lit),
+        ("opposite_wound", roof_lit),
+    ];
+}

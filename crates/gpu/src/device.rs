@@ -7,7 +7,8 @@
 //! for adapter in device::adapters() {
 //!     println!("{} on {}", adapter.name, adapter.backend);
 //! }
-//! let wanted = Wanted::default().with_adapter("llvmpipe");
+//! let mut wanted = Wanted::default();
+//! wanted.adapter = Some("llvmpipe");
 //! let gpu = device::open_with(&wanted)?;
 //! println!("opened {}", gpu.adapter.get_info().name);
 //! # Ok::<(), device::GpuError>(())
@@ -65,21 +66,7 @@ pub struct Wanted<'a> {
     pub features: wgpu::Features,
 }
 
-impl<'a> Wanted<'a> {
-    /// Sets [`adapter`](Self::adapter).
-    #[must_use]
-    pub fn with_adapter(mut self, adapter: &'a str) -> Self {
-        self.adapter = Some(adapter);
-        self
-    }
-
-    /// Sets [`backends`](Self::backends).
-    #[must_use]
-    pub fn with_backends(mut self, backends: wgpu::Backends) -> Self {
-        self.backends = Some(backends);
-        self
-    }
-
+impl Wanted<'_> {
     /// Sets [`features`](Self::features).
     #[must_use]
     pub fn with_features(mut self, features: wgpu::Features) -> Self {

@@ -6,7 +6,7 @@
 )]
 
 use crate::provider::ProviderError;
-use skiagraph_graph::{Diagnostics, Panicked, Plan, Provided, caught};
+use skiagraph_graph::{Diagnostics, LinkedPass, Panicked, Plan, Provided, caught};
 use std::time::Duration;
 
 /// Reasons why an [`Executor`](crate::Executor) could not create the resources or pipelines of a
@@ -348,17 +348,18 @@ pub(crate) fn submit(
 }
 
 /// Adds the name and place of a pass to an error of creating something for it.
-pub(crate) fn named(error: ExecuteError, pass: &str, place: &str) -> ExecuteError {
+pub(crate) fn named(error: ExecuteError, pass: &LinkedPass) -> ExecuteError {
+    let (pass, place) = (pass.name.value.clone(), pass.name.span.to_string());
     match error {
         ExecuteError::Resource { message, .. } => ExecuteError::Gpu {
-            pass: pass.to_owned(),
-            place: place.to_owned(),
+            pass,
+            place,
             message,
         },
-        ExecuteError::Panicked { panicked, .. } => ExecuteError::Panicked {
-            name: format!("{place}: pass `{pass}`"),
-            panicked,
-        },
+        ExecuteError::Panicked { panicked, .. } => {
+            let name = format!("{place}: pass `{pass}`");
+            ExecuteError::Panicked { name, panicked }
+        }
         other => other,
     }
 }

@@ -30,9 +30,9 @@ pub type PlanRequest<'a> = Request<&'a dyn Describe>;
 /// ```
 /// use skiagraph_graph::{NoProvider, ParamValue, PlanRequest};
 ///
-/// let request = PlanRequest::new([64, 32], &NoProvider)
-///     .with_param("map_size", ParamValue::U32(512))
-///     .with_memory_limit(1 << 30);
+/// let mut request = PlanRequest::new([64, 32], &NoProvider)
+///     .with_param("map_size", ParamValue::U32(512));
+/// request.memory_limit = Some(1 << 30);
 /// assert_eq!(request.params["map_size"], ParamValue::U32(512));
 /// ```
 #[derive(Clone, Debug)]
@@ -136,27 +136,6 @@ impl<'a> PlanRequest<'a> {
     #[must_use]
     pub fn with_import(mut self, name: impl Into<String>, import: Import) -> Self {
         self.imports.insert(name.into(), import);
-        self
-    }
-
-    /// Sets the outputs to compute ([`outputs`](Request::outputs)).
-    #[must_use]
-    pub fn with_outputs<N: Into<String>>(mut self, outputs: impl IntoIterator<Item = N>) -> Self {
-        self.outputs = Some(outputs.into_iter().map(Into::into).collect());
-        self
-    }
-
-    /// Adds a [capture](crate#terms) ([`captures`](Request::captures)).
-    #[must_use]
-    pub fn with_capture(mut self, capture: Capture) -> Self {
-        self.captures.push(capture);
-        self
-    }
-
-    /// Sets [`memory_limit`](Request::memory_limit), in bytes.
-    #[must_use]
-    pub fn with_memory_limit(mut self, bytes: u64) -> Self {
-        self.memory_limit = Some(bytes);
         self
     }
 

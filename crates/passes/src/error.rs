@@ -52,21 +52,15 @@ pub enum Error {
     )]
     LightSpaceKind(&'static str),
     /// The device refuses to build the acceleration structures, for example because it has no
-    /// memory for them.
+    /// memory for them. Holds the reason that wgpu gives.
     #[error("`scene.tlas` could not be built: {0}")]
-    Structures(
-        /// Reason that wgpu gives.
-        String,
-    ),
+    Structures(String),
     /// Embree could not build its hierarchy; the text is its reason.
     #[error("Embree could not build `scene.embree`: {0}")]
     Embree(String),
-    /// A texture of the mesh cannot be read.
+    /// A texture of the mesh cannot be read. Holds the name of the texture, and the reason.
     #[error("texture {0}")]
-    Texture(
-        /// Name of the texture, and the reason.
-        String,
-    ),
+    Texture(String),
     /// A triangle of the mesh refers to a position that the mesh does not have.
     #[error("a triangle of the mesh has the corner {index}, but it has only {corners} positions")]
     Corner {
@@ -76,11 +70,9 @@ pub enum Error {
         corners: usize,
     },
     /// A light cannot be used, for example because a number is not finite or a sun is too wide.
+    /// Holds the reason why the light cannot be used, with its name in the scene.
     #[error("{0}")]
-    Light(
-        /// Reason why the light cannot be used, with its name in the scene.
-        String,
-    ),
+    Light(String),
     /// A light of [`SceneProvider::set_lights`](crate::SceneProvider::set_lights) cannot be used,
     /// for example because a number is not finite.
     #[error("`lights[{number}]`: {why}")]
@@ -102,12 +94,10 @@ pub enum Error {
         /// Number of lights that are set.
         lights: usize,
     },
-    /// The camera has numbers that are infinite or NaN.
+    /// The camera has numbers that are infinite or NaN. Holds the camera that was set, in the
+    /// layout that shaders read.
     #[error("the camera has numbers that are infinite or none: {0:?}")]
-    Camera(
-        /// Camera that was set, in the layout that shaders read.
-        crate::uniforms::CameraUniform,
-    ),
+    Camera(crate::uniforms::CameraUniform),
     /// [`SceneProvider::deform`](crate::SceneProvider::deform) was given another number of
     /// positions or normals than the mesh has.
     #[error(
@@ -140,25 +130,19 @@ pub enum Error {
     )]
     NoParts,
     /// The mesh has no part with the given handle: the part was removed, or belongs to another
-    /// mesh.
+    /// mesh. Holds the handle that was given.
     #[error(
         "the mesh has no part {0:?}: it was removed, or is of a mesh that was replaced; \
          `SceneProvider::parts` lists those that there are"
     )]
-    NoPart(
-        /// Handle that was given.
-        PartId,
-    ),
+    NoPart(PartId),
     /// [`rewrite_part`](crate::SceneProvider::rewrite_part) was called for a part whose vertices
-    /// are in no buffer of the host.
+    /// are in no buffer of the host. Holds the handle of the part.
     #[error(
         "the vertices of part {0:?} are in no buffer of the host: only parts of `add_host_part` \
          are rewritten"
     )]
-    NoHostPart(
-        /// Handle of the part.
-        PartId,
-    ),
+    NoHostPart(PartId),
     /// The bounds of a part hold nothing: they are not finite, or a coordinate of the low corner is
     /// greater than that of the high corner.
     #[error(
@@ -198,15 +182,13 @@ pub enum Error {
         why: String,
     },
     /// The provider's resources are on another device than the one that is asked of, or a host's
-    /// mesh on another one than these.
+    /// mesh on another one than these. Holds the thing that is of another device: `the provider` or
+    /// `the host's mesh`.
     #[error(
         "{0} is of another device, or this one is lost: move the provider by \
          `SceneProvider::move_to`, and make hosts' meshes on its device"
     )]
-    OtherDevice(
-        /// Thing that is of another device: `the provider` or `the host's mesh`.
-        &'static str,
-    ),
+    OtherDevice(&'static str),
     /// The device could not read back the result of
     /// [`SceneProvider::check_bounds`](crate::SceneProvider::check_bounds).
     #[error(transparent)]

@@ -40,18 +40,13 @@ pub struct Eye {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EyeError {
-    /// A matrix has entries that are infinite or NaN.
+    /// A matrix has entries that are infinite or NaN. Holds the name of the matrix: `view` or
+    /// `projection`.
     #[error("the {0} matrix has entries that are not finite")]
-    NotFinite(
-        /// Name of the matrix: `view` or `projection`.
-        &'static str,
-    ),
-    /// A matrix cannot be inverted.
+    NotFinite(&'static str),
+    /// A matrix cannot be inverted. Holds the name of the matrix: `view` or `projection`.
     #[error("the {0} matrix is singular")]
-    Singular(
-        /// Name of the matrix: `view` or `projection`.
-        &'static str,
-    ),
+    Singular(&'static str),
     /// The frustum of the projection is empty, or its numbers do not fit f32. An orthographic
     /// camera is represented by a pyramid that holds its box.
     #[error("the frustum of the projection is none that f32 can hold: near {near}, far {far}")]

@@ -3,6 +3,7 @@
 use skiagraph_gpu::DeviceIdentity;
 use skiagraph_scene::{Indexed, IndexedError, Mesh};
 use std::{error::Error, sync::mpsc};
+use wgpu::util::DownloadBuffer;
 
 /// Triangle mesh in the vertex and index buffers of a host program, which [`GpuMesh::read`] copies
 /// back to the CPU.
@@ -34,27 +35,21 @@ pub struct GpuMesh<'a> {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuMeshError {
-    /// A buffer lacks the usage `COPY_SRC`.
+    /// A buffer lacks the usage `COPY_SRC`. Holds the content of the buffer: `vertices` or
+    /// `indices`.
     #[error("the buffer of {0} cannot be read: it needs the usage COPY_SRC")]
-    Usage(
-        /// Content of the buffer: `vertices` or `indices`.
-        &'static str,
-    ),
-    /// A buffer is of another device, or the device is lost.
+    Usage(&'static str),
+    /// A buffer is of another device, or the device is lost. Holds the content of the buffer:
+    /// `vertices` or `indices`.
     #[error(
         "the buffer of {0} is of another device than the one that is to read it, or that is lost"
     )]
-    OtherDevice(
-        /// Content of the buffer: `vertices` or `indices`.
-        &'static str,
-    ),
+    OtherDevice(&'static str),
     /// A slice cannot be copied: its offset is not divisible by 4, or its size is not and the
-    /// buffer ends before the next multiple.
+    /// buffer ends before the next multiple. Holds the content of the buffer: `vertices` or
+    /// `indices`.
     #[error("the {0} lie at an offset, or in a buffer, that is not divisible by 4")]
-    Alignment(
-        /// Content of the buffer: `vertices` or `indices`.
-        &'static str,
-    ),
+    Alignment(&'static str),
     /// A position or normal reaches beyond the end of its vertex.
     #[error("{what} at byte {at} does not fit a vertex of {stride} bytes")]
     Vertex {
@@ -137,25 +132,15 @@ pub(crate) fn read(
     if !is_aligned || offset + copied > buffer.size() {
         return Err(GpuMeshError::Alignment(what));
     }
-    let staging = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(what),
-        size: copied,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(buffer, offset, &staging, 0, copied);
-    queue.submit([encoder.finish()]);
     let (sender, receiver) = mpsc::channel();
-    staging.map_async(wgpu::MapMode::Read, .., move |done| {
+    let slice = buffer.slice(offset..offset + copied);
+    DownloadBuffer::read_buffer(device, queue, &slice, move |done| {
         let _ = sender.send(done); // after an error below the receiver is gone
     });
     let failed = |why| GpuMeshError::Device { what, why };
     let waited = device.poll(wgpu::PollType::wait_indefinitely());
     waited.map_err(|error| failed(error.into()))?;
     let done = receiver.recv().map_err(|error| failed(error.into()))?;
-    done.map_err(|error| failed(error.into()))?;
-    let mapped = staging.slice(..size).get_mapped_range();
-    let mapped = mapped.map_err(|error| failed(error.into()))?;
-    Ok(mapped.to_vec())
+    let bytes = done.map_err(|error| failed(error.into()))?;
+    Ok(bytes[..size as usize].to_vec())
 }

@@ -1,7 +1,7 @@
 //! Boxes and outlines of a mesh's pieces, around which lights are laid: of pieces that stand still
 //! they are those of the last time.
 
-use crate::uniforms::LightUniform;
+use crate::{part::box_corners, uniforms::LightUniform};
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{DirectionalLight, LightKind, Outline, outline::border};
 
@@ -71,7 +71,7 @@ impl Outlines {
             let own = &mut direction.boxes;
             let loose = |piece: usize| {
                 let ends = boxes[piece].made.into_iter();
-                let outline = || sun.outline(ends.flat_map(corners_of));
+                let outline = || sun.outline(ends.flat_map(box_corners));
                 own[piece].get_or_insert_with(outline).clone()
             };
             let exact = |piece: usize| {
@@ -153,11 +153,4 @@ fn take(directions: &mut Vec<Direction>, direction: DVec3) -> Direction {
         boxes: Vec::new(),
         moved: Vec::new(),
     }
-}
-
-/// The corners of a box.
-fn corners_of(ends: [Vec3; 2]) -> impl Iterator<Item = Vec3> {
-    (0..8).map(move |corner: usize| {
-        Vec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]))
-    })
 }

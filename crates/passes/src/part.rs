@@ -56,7 +56,7 @@ impl HostPart {
 ///
 /// # Errors
 /// A map that is not finite or singular, or moves them beyond f32, of part 0.
-pub(crate) fn placed([low, high]: [Vec3; 2], map: &DAffine3) -> Result<[Vec3; 2], MoveError> {
+pub(crate) fn placed(ends: [Vec3; 2], map: &DAffine3) -> Result<[Vec3; 2], MoveError> {
     let part = 0;
     if !map.is_finite() {
         return Err(MoveError::NotFinite { part, map: *map });
@@ -66,9 +66,7 @@ pub(crate) fn placed([low, high]: [Vec3; 2], map: &DAffine3) -> Result<[Vec3; 2]
         return Err(MoveError::Singular { part });
     }
     let mut bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-    for corner in 0..8 {
-        let ends = [low, high];
-        let from = Vec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]));
+    for from in box_corners(ends) {
         let to = map.transform_point3(from.as_dvec3());
         let place = to.as_vec3();
         if !place.is_finite() {
@@ -77,6 +75,13 @@ pub(crate) fn placed([low, high]: [Vec3; 2], map: &DAffine3) -> Result<[Vec3; 2]
         bounds = [bounds[0].min(place), bounds[1].max(place)];
     }
     Ok(bounds)
+}
+
+/// The corners of a box.
+pub(crate) fn box_corners(ends: [Vec3; 2]) -> impl Iterator<Item = Vec3> {
+    (0..8).map(move |corner: usize| {
+        Vec3::from_array([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]))
+    })
 }
 
 impl Part {

@@ -1,7 +1,6 @@
 //! Parts of a mesh as a host knows them, and the room for more of them.
 
 use skiagraph_scene::{Mesh, Movable};
-use std::ops::Range;
 
 /// Handle of a part of a provider's mesh, as [`SceneProvider::add_part`] and
 /// [`SceneProvider::parts`] return it. It names the same part after other parts were added or
@@ -80,40 +79,5 @@ impl Room {
             normals: copies.saturating_mul(rest.normals.len()),
             triangles: copies.saturating_mul(rest.triangles.len()),
         }
-    }
-}
-
-/// Ranges of a list that no part has, in ascending order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Free(Vec<Range<usize>>);
-
-impl Free {
-    /// Takes a range; `None` if no free one is so long.
-    pub fn take(&mut self, count: usize) -> Option<usize> {
-        if count == 0 {
-            return Some(0);
-        }
-        let free = self.0.iter_mut().find(|free| free.len() >= count)?;
-        let first = free.start;
-        free.start += count;
-        Some(first)
-    }
-
-    pub fn give_back(&mut self, range: Range<usize>) {
-        self.0.push(range);
-        self.0.retain(|free| !free.is_empty());
-        self.0.sort_unstable_by_key(|free| free.start);
-        self.0.dedup_by(|next, free| {
-            let are_one = free.end == next.start;
-            if are_one {
-                free.end = next.end;
-            }
-            are_one
-        });
-    }
-
-    /// The most items that one range has.
-    pub fn longest(&self) -> usize {
-        self.0.iter().map(Range::len).max().unwrap_or_default()
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     names::next_version,
-    part::{HostPart, Part},
+    part::{HostPart, Part, box_corners},
 };
 use glam::Vec3;
 use skiagraph_scene::{Mesh, Movable, TwoLevelBvh};
@@ -125,9 +125,7 @@ impl Piece {
     pub fn corners(&self, mesh: &Mesh) -> Vec<Vec3> {
         let at = |corner: usize| mesh.positions[corner];
         if let Some(host) = self.host() {
-            let ends = host.placed;
-            let corner = |corner: usize| [0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]);
-            return (0..8).map(|index| corner(index).into()).collect();
+            return box_corners(host.placed).collect();
         }
         match &self.content {
             Content::Part(part) => {

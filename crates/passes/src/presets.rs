@@ -86,7 +86,7 @@ pub fn presets() -> Vec<Preset> {
 /// the share of the light that arrives at each pixel, 0 in shadow to 1 in full light, and has as
 /// many layers as `visibility`. Pixels that show no geometry or face away from the light have any
 /// share: the host's shading decides there. The graph's other output is `visibility`; the
-/// document's other materials are [captures](skiagraph_graph::PlanRequest::with_capture) under the
+/// document's other materials are [captures](skiagraph_graph::Request::captures) under the
 /// [full names](skiagraph_graph#terms) that [`Plan::resources`](skiagraph_graph::Plan::resources)
 /// lists, where an output of the document such as `status` keeps its name. The document's params
 /// and inputs stay; its [claims](skiagraph_graph::Claim) do not, nor its `proven_on`, so that

@@ -4,10 +4,10 @@ use crate::{
     buffers::check_size,
     error::Error,
     names::{BVH_NODES, INDICES, NORMALS, POSITIONS},
-    parts::{Free, Room},
+    parts::Room,
 };
 use glam::Vec3;
-use skiagraph_scene::{BvhNode, Mesh, PartPlace};
+use skiagraph_scene::{BvhNode, Mesh, PartPlace, free::Free};
 use std::ops::Range;
 
 /// Buffers that grow with a [`Room`], each with the bytes of one of its

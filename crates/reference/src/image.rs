@@ -272,6 +272,12 @@ pub(crate) fn error(shown: f32, share: f32) -> f64 {
     }
 }
 
+/// Returns the colour at a place, from 0 to the number of the last one, among several colours.
+pub fn between(colours: &[[u8; 3]], place: f64) -> [u8; 3] {
+    let stop = (place as usize).min(colours.len() - 2);
+    mixed(colours[stop], colours[stop + 1], place - stop as f64)
+}
+
 fn mixed(from: Colour, to: Colour, share: f64) -> Colour {
     std::array::from_fn(|channel| {
         let [from, to] = [from, to].map(|colour| f64::from(colour[channel]));
@@ -281,10 +287,8 @@ fn mixed(from: Colour, to: Colour, share: f64) -> Colour {
 
 /// The colour of so many texels.
 fn heat(texels: f64) -> Colour {
-    let last = TEXELS.len() - 1;
-    let place = (texels.log2() / 2.0 + 3.0).clamp(0.0, last as f64);
-    let stop = (place as usize).min(last - 1);
-    mixed(TEXELS[stop], TEXELS[stop + 1], place - stop as f64)
+    let place = texels.log2() / 2.0 + 3.0;
+    between(&TEXELS, place.clamp(0.0, (TEXELS.len() - 1) as f64))
 }
 
 /// Linear light 0..1 as a channel of sRGB (gamma 2.2 is near enough for a picture).

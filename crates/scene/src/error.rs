@@ -253,12 +253,9 @@ pub enum FaceProblem {
          `concave: Fan`"
     )]
     CannotBeCut,
-    /// A corner is not written as `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    /// A corner is not written as `v`, `v/vt`, `v//vn` or `v/vt/vn`. Holds the corner as written.
     #[error("has the corner {:?}; expected v, v/vt, v//vn or v/vt/vn", beginning(.0))]
-    NotACorner(
-        /// The corner as written.
-        String,
-    ),
+    NotACorner(String),
     /// A corner lies at NaN or infinity.
     #[error("has its corner {corner} at {position}, which is not finite")]
     NotFinite {

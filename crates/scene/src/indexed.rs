@@ -24,12 +24,9 @@ pub struct Indexed<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IndexedError {
-    /// The number of indices is not divisible by 3.
+    /// The number of indices is not divisible by 3. Holds the number of indices.
     #[error("{0} indices do not form triangles: they are not divisible by 3")]
-    Corners(
-        /// Number of indices.
-        usize,
-    ),
+    Corners(usize),
     /// The number of normals is neither 0 nor the number of positions.
     #[error("there are {normals} normals for {positions} positions: give one each, or none")]
     Normals {

@@ -35,6 +35,7 @@ mod builder;
 pub mod bvh;
 pub mod camera;
 pub mod error;
+pub mod free;
 #[cfg(feature = "files")]
 pub mod generate;
 #[cfg(feature = "files")]

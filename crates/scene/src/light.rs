@@ -47,11 +47,6 @@ impl DirectionalLight {
         }
     }
 
-    /// Returns true if the light has an extent, so that its shadows have a penumbra.
-    pub fn has_extent(&self) -> bool {
-        self.angle_degrees > 0.0
-    }
-
     /// Returns the unit vector, world space, from any point to the light: the reverse of
     /// `direction`.
     pub fn to_light(&self) -> DVec3 {

@@ -12,20 +12,12 @@ pub struct ImportReport {
     /// Number of faces (triangles and larger polygons) read, without those of groups that were left
     /// out.
     pub faces: usize,
-    /// Number of faces in groups that were left out by name.
-    pub faces_left_out: usize,
     /// Number of points, which are not part of the mesh: of an OBJ file, `p` records and faces of
     /// one corner.
     pub points: usize,
     /// Number of lines, which are not part of the mesh: of an OBJ file, `l` records and faces of
     /// two corners.
     pub lines: usize,
-    /// Number of vertices of an OBJ file that were merged with another one at the same position.
-    /// Not counted for glTF: 0.
-    pub vertices_welded: usize,
-    /// Number of faces without a normal at every corner. Each of their triangles got its geometric
-    /// normal at all three corners.
-    pub faces_without_normals: usize,
     /// Number of corners whose normal had no direction (zero or not finite) and was replaced by the
     /// geometric normal.
     pub normals_replaced: usize,
@@ -97,14 +89,7 @@ impl ImportReport {
     /// Returns true if the file held anything that a user may want to mend: a degenerate triangle,
     /// a replaced normal, a point or line, a missing colour, or a remark.
     pub fn has_warnings(&self) -> bool {
-        self.dropped.triangles
-            + self.zero_area.triangles
-            + self.normals_replaced
-            + self.points
-            + self.lines
-            + self.colours_missing.len()
-            + self.remarks.len()
-            > 0
+        !self.to_string().is_empty()
     }
 }
 

@@ -1,6 +1,8 @@
 //! Colours of a heat map: from dark purple over green to yellow, in even steps of perceived
 //! brightness.
 
+use skiagraph_reference::image::between;
+
 /// Nine colours of viridis (Smith, van der Walt 2015), evenly spaced.
 const VIRIDIS: [[u8; 3]; 9] = [
     [68, 1, 84],
@@ -17,13 +19,7 @@ const VIRIDIS: [[u8; 3]; 9] = [
 /// Returns the sRGB colour of a value from 0 (dark purple) to 1 (yellow); values outside are
 /// clamped.
 pub fn colour(share: f64) -> [u8; 3] {
-    let place = share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
-    let from = (place as usize).min(VIRIDIS.len() - 2);
-    let part = place - from as f64;
-    std::array::from_fn(|channel| {
-        let [low, high] = [from, from + 1].map(|at| f64::from(VIRIDIS[at][channel]));
-        (low + (high - low) * part).round() as u8
-    })
+    between(&VIRIDIS, share.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64)
 }
 
 #[cfg(test)]

@@ -45,7 +45,7 @@ impl GpuPass {
         device: &wgpu::Device,
     ) -> Result<Self, ExecuteError> {
         let pass = plan.pass(plan.schedule().passes[at]);
-        let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
+        let refused = |error| named(error, pass);
         let (mut made, mut params) = (Vec::new(), Vec::new());
         for (index, step) in pass.steps.iter().enumerate() {
             let before = old.and_then(|(linked, made)| {
@@ -111,7 +111,7 @@ impl GpuPass {
             memory,
             ping_pong,
         };
-        let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
+        let refused = |error| named(error, pass);
         let steps = scoped(device, &pass.name, || {
             let steps = pass.steps.iter().zip(&self.pipelines).zip(&self.params);
             steps
@@ -161,7 +161,7 @@ impl GpuPass {
         pass: &LinkedPass,
         device: &wgpu::Device,
     ) -> Result<Vec<Option<wgpu::Buffer>>, ExecuteError> {
-        let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
+        let refused = |error| named(error, pass);
         let params = pass.steps.iter().map(|step| {
             scoped(device, &pass.name, || upload(device, &pass.name, step)).map_err(refused)?
         });

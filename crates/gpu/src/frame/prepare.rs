@@ -12,12 +12,14 @@ use std::sync::Arc;
 /// Creates the pipelines of an [`Executor`](super::Executor)'s next plan. It can be sent to another
 /// thread, so that the executor goes on drawing. [`Executor::preparer`](super::Executor::preparer)
 /// returns one.
+#[derive(Debug)]
 pub struct Preparer {
     pub(super) pipelines: Pipelines,
 }
 
 /// A plan and its finished pipelines: the result of [`Preparer::prepare`], to be passed to
 /// [`Executor::replace`](super::Executor::replace).
+#[derive(Debug)]
 pub struct Prepared {
     pub(super) plan: Plan,
     /// Kept in use until the plan is put in.
@@ -37,25 +39,11 @@ impl Preparer {
         for pass in plan.live() {
             for step in &pass.steps {
                 let made = self.pipelines.get_or_make(&pass.name, step);
-                let refused = |error| named(error, &pass.name, &pass.name.span.to_string());
+                let refused = |error| named(error, pass);
                 let made = made.map_err(|error| with_table(refused(error), &plan));
                 pipelines.extend(made?);
             }
         }
         Ok(Prepared { plan, pipelines })
-    }
-}
-
-impl std::fmt::Debug for Preparer {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Preparer").finish_non_exhaustive()
-    }
-}
-
-impl std::fmt::Debug for Prepared {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Prepared")
-            .field("plan", &self.plan)
-            .finish_non_exhaustive()
     }
 }

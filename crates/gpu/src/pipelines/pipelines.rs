@@ -11,6 +11,7 @@ use std::{
 };
 
 /// The pipeline of a draw or dispatch, with the layouts of its bind groups.
+#[derive(Debug)]
 pub(crate) struct Pipeline {
     pub kind: PipelineKind,
     pub layouts: Vec<Option<wgpu::BindGroupLayout>>,

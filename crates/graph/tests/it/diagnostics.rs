@@ -6,6 +6,7 @@
 //! anew; read what changed.
 
 use crate::broken::{all, documents, folder, root};
+use crate::remedies::REMEDIES;
 use skiagraph_graph::{Code, Diagnostic, Sources, diagnostics};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -108,12 +109,14 @@ fn chapter(code: Code, of_code: &[(String, Vec<Diagnostic>)]) -> String {
         .iter()
         .min_by_key(|(name, mistakes)| (mistakes.len(), text(name).len()));
     let (example, mistakes) = plainest.expect("another test says that there is one");
+    let remedy = REMEDIES.iter().find(|(of_code, _)| *of_code == code);
+    let (_, remedy) = remedy.unwrap_or_else(|| panic!("remedies.rs has none for {code:?}"));
     let mut chapter = format!(
         "\n## {}\n\n{} **Way out:** {}\n\n```ron\n{}\n```\n\n```text\n{}\n```\n\n| document | says \
          |\n|---|---|\n",
         code.as_str(),
         code.description(),
-        code.remedy(),
+        remedy,
         text(example),
         diagnostics::render(mistakes, false).trim_end(),
     );

@@ -30,6 +30,7 @@ mod names;
 mod origin;
 mod plan;
 mod reached;
+mod remedies;
 mod robustness;
 mod sources;
 mod uniforms;

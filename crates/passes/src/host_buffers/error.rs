@@ -11,15 +11,13 @@ pub enum HostMeshError {
     /// The buffer lacks the usage `STORAGE`.
     #[error("the buffer of the vertices cannot be bound: it needs the usage STORAGE")]
     Usage,
-    /// The buffer or decoder of the vertices is of another device, or the device is lost.
+    /// The buffer or decoder of the vertices is of another device, or the device is lost. Holds the
+    /// thing that is of another device: `buffer` or `decoder`.
     #[error(
         "the {0} of the vertices is of another device than the one that was given, or that is \
          lost: make it on the device that the scene is drawn on"
     )]
-    OtherDevice(
-        /// Thing that is of another device: `buffer` or `decoder`.
-        &'static str,
-    ),
+    OtherDevice(&'static str),
     /// Vertices in another buffer are fewer or more than those of the mesh, or lack its normals.
     #[error(
         "the mesh has {} vertices with normals: {}, but given were {} with normals: {}; give as \
@@ -64,12 +62,9 @@ pub enum HostMeshError {
         /// Reason that wgpu gives, with the line.
         why: String,
     },
-    /// The device could not decode the vertices at rest.
+    /// The device could not decode the vertices at rest. Holds the reason that wgpu gives.
     #[error("the vertices at rest could not be decoded by the host's module: {0}")]
-    Decoding(
-        /// Reason that wgpu gives.
-        String,
-    ),
+    Decoding(String),
     /// An attribute reaches beyond the end of its vertex.
     #[error("the {name}, {format:?} at byte {at}, does not fit a vertex of {stride} bytes")]
     Attribute {

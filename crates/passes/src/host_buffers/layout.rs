@@ -1,6 +1,7 @@
 //! Vertices as they lie in a host's buffer, and how they are read.
 
 use super::{decoder::HostDecoder, error::HostMeshError};
+use half::f16;
 use wgpu::VertexFormat;
 
 /// Formats of attributes, in the order of their numbers in place.wgsl.
@@ -186,7 +187,7 @@ impl Attribute {
         let words = |at: usize| u16::from_le_bytes([bytes[2 * at], bytes[2 * at + 1]]);
         let [x, y, z] = [0, 1, 2];
         match self.format {
-            VertexFormat::Float16x4 => [x, y, z].map(|at| from_half(words(at))),
+            VertexFormat::Float16x4 => [x, y, z].map(|at| f16::from_bits(words(at)).to_f32()),
             VertexFormat::Snorm16x4 => [x, y, z].map(|at| share(words(at).cast_signed(), 32767)),
             VertexFormat::Unorm16x4 => [x, y, z].map(|at| f32::from(words(at)) / 65535.0),
             VertexFormat::Sint16x4 => [x, y, z].map(|at| f32::from(words(at).cast_signed())),
@@ -202,16 +203,4 @@ impl Attribute {
 
 fn share(integer: impl Into<f32>, most: i16) -> f32 {
     (integer.into() / f32::from(most)).max(-1.0)
-}
-
-fn from_half(bits: u16) -> f32 {
-    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
-    let mantissa = f32::from(bits & 0x3ff);
-    let size = match i32::from(bits >> 10 & 31) {
-        0 => mantissa * 2f32.powi(-24),
-        31 if mantissa == 0.0 => f32::INFINITY,
-        31 => f32::NAN,
-        exponent => (1024.0 + mantissa) * 2f32.powi(exponent - 25),
-    };
-    sign * size
 }

@@ -7,6 +7,7 @@ mod uploads;
 use crate::{
     buffers::{On, binding_limit},
     built::{Built, Work},
+    changes::Change,
     error::Error,
     eye::Eye,
     geometry::Geometry,
@@ -344,12 +345,8 @@ impl SceneProvider {
     /// is not the number of parts, or a map is singular, not finite, or moves a position beyond
     /// f32; the error names the part of such a map. The mesh then stays as it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
-        let change = self
-            .uploads
-            .geometry
-            .set_transforms(maps, &mut self.uploads.scene)?;
-        self.uploads.note_change(change);
-        Ok(())
+        self.uploads
+            .change(|geometry, scene| geometry.set_transforms(maps, scene))
     }
 
     /// Moves one part, as [`set_transforms`](Self::set_transforms) moves all.
@@ -358,12 +355,8 @@ impl SceneProvider {
     /// [`Error::NoPart`] for a part that the mesh does not have; [`Error::Move`] for a map that is
     /// singular, not finite, or moves a position beyond f32. The mesh then stays as it was.
     pub fn set_transform(&mut self, part: PartId, map: &DAffine3) -> Result<(), Error> {
-        let change = self
-            .uploads
-            .geometry
-            .set_transform(part, map, &mut self.uploads.scene)?;
-        self.uploads.note_change(change);
-        Ok(())
+        self.uploads
+            .change(|geometry, scene| geometry.set_transform(part, map, scene))
     }
 
     /// Returns the handles of the mesh's parts, in the order in which
@@ -421,14 +414,11 @@ impl SceneProvider {
     /// [`reserve`](Self::reserve) was given. The mesh then stays as it was. If `reserve` was not
     /// called, a mesh that the device cannot bind is an error of the next refresh instead.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
-        let (part, change) = self
-            .uploads
-            .geometry
-            .add(mesh, map, &mut self.uploads.scene)?;
-        self.uploads
-            .put_sheets(mesh, self.uploads.geometry.part(part)?.at.triangle);
-        self.uploads.note_change(change);
-        Ok(part)
+        let Uploads {
+            geometry, scene, ..
+        } = &mut self.uploads;
+        let added = geometry.add(mesh, map, scene)?;
+        self.note_added(mesh, added)
     }
 
     /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
@@ -450,14 +440,20 @@ impl SceneProvider {
     /// than the provider's resources.
     pub fn add_host_part(&mut self, mesh: &HostMesh, map: &DAffine3) -> Result<PartId, Error> {
         self.check_mesh(mesh)?;
-        let (part, change) = self
-            .uploads
-            .geometry
-            .add_host(mesh, map, &mut self.uploads.scene)?;
-        self.uploads.put_sheets(
-            &mesh.movable().rest,
-            self.uploads.geometry.part(part)?.at.triangle,
-        );
+        let Uploads {
+            geometry, scene, ..
+        } = &mut self.uploads;
+        let added = geometry.add_host(mesh, map, scene)?;
+        self.note_added(&mesh.movable().rest, added)
+    }
+
+    fn note_added(
+        &mut self,
+        rest: &Mesh,
+        (part, change): (PartId, Change),
+    ) -> Result<PartId, Error> {
+        let first = self.uploads.geometry.part(part)?.at.triangle;
+        self.uploads.put_sheets(rest, first);
         self.uploads.note_change(change);
         Ok(part)
     }
@@ -500,9 +496,8 @@ impl SceneProvider {
     /// not, [`Error::Bounds`] for bounds that hold nothing, [`Error::Move`] for bounds that the
     /// part's map moves beyond f32.
     pub fn rewrite_part(&mut self, part: PartId, bounds: [Vec3; 2]) -> Result<(), Error> {
-        let change = self.uploads.geometry.rewrite(part, bounds)?;
-        self.uploads.note_change(change);
-        Ok(())
+        self.uploads
+            .change(|geometry, _| geometry.rewrite(part, bounds))
     }
 
     /// Checks that all vertices of parts of hosts' buffers, as they are after all that was
@@ -539,11 +534,7 @@ impl SceneProvider {
     /// # Errors
     /// [`Error::NoPart`] for a part that the mesh does not have.
     pub fn remove_part(&mut self, part: PartId) -> Result<(), Error> {
-        let change = self
-            .uploads
-            .geometry
-            .remove(part, &mut self.uploads.scene)?;
-        self.uploads.note_change(change);
-        Ok(())
+        self.uploads
+            .change(|geometry, scene| geometry.remove(part, scene))
     }
 }

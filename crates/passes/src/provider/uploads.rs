@@ -411,6 +411,16 @@ impl Uploads {
         Arc::make_mut(&mut self.sheets).put(part, first, total);
     }
 
+    /// Changes the geometry, and notes what changed.
+    pub fn change(
+        &mut self,
+        change: impl FnOnce(&mut Geometry, &mut Arc<Scene>) -> Result<Change, Error>,
+    ) -> Result<(), Error> {
+        let change = change(&mut self.geometry, &mut self.scene)?;
+        self.note_change(change);
+        Ok(())
+    }
+
     pub fn note_change(&mut self, change: Change) {
         if change.is_grown {
             self.versions.change_mesh();

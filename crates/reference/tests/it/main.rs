@@ -5,7 +5,6 @@ mod common;
 mod analytic;
 mod area;
 mod blockers;
-mod hard_cases;
 mod indeterminate;
 mod lamps;
 mod shimmer;

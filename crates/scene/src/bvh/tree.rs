@@ -42,26 +42,24 @@ impl Bvh {
     /// always gives the same tree. Boxes contain their triangles exactly (f32 minima and maxima of
     /// f32 corners).
     pub fn build(mesh: &Mesh) -> Self {
-        let triangles: Vec<Triangle> = mesh
-            .triangles
-            .iter()
-            .map(|indices| {
-                let [v0, v1, v2] = indices.map(|index| mesh.positions[index as usize].into());
-                Triangle { v0, v1, v2 }
-            })
-            .collect();
-        Self::within(&triangles, MAX_DEPTH)
+        Self::over(mesh, 0..mesh.triangles.len() as u32, MAX_DEPTH)
     }
 
-    /// Builds the hierarchy of a list of triangles, whose places in it are the primitive ids. It is
-    /// no deeper than `depth` unless the logarithm of their number is.
-    pub(super) fn within(triangles: &[Triangle], depth: u32) -> Self {
+    /// Builds the hierarchy of some triangles of a mesh, whose places in the list are the primitive
+    /// ids. It is no deeper than `depth` unless the logarithm of their number is.
+    pub(super) fn over(mesh: &Mesh, ids: impl IntoIterator<Item = u32>, depth: u32) -> Self {
+        let triangle = |id: u32| {
+            let corners = mesh.triangles[id as usize];
+            let [v0, v1, v2] = corners.map(|index| mesh.positions[index as usize].into());
+            Triangle { v0, v1, v2 }
+        };
+        let triangles: Vec<Triangle> = ids.into_iter().map(triangle).collect();
         if triangles.is_empty() {
             return Self::default();
         }
-        let tree = Self::by_ploc(triangles).filter(|tree| tree.depth <= depth);
+        let tree = Self::by_ploc(&triangles).filter(|tree| tree.depth <= depth);
         tree.unwrap_or_else(|| {
-            let (nodes, primitives) = in_halves(triangles);
+            let (nodes, primitives) = in_halves(&triangles);
             Self::new(nodes, primitives)
         })
     }

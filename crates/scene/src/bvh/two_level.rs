@@ -7,9 +7,8 @@ use super::{
     top::{Split, over_boxes},
     tree::{Bvh, cost_of, fitted_box},
 };
-use crate::mesh::Mesh;
+use crate::{free::Free, mesh::Mesh};
 use glam::Vec3;
-use obvhs::triangle::Triangle;
 use std::{collections::BTreeMap, ops::Range, sync::Arc};
 
 /// A piece is built anew when a deformation has made its rays this many times as dear as they were.
@@ -59,7 +58,7 @@ pub struct TwoLevelBvh {
     /// Room of the top level's nodes but the root.
     top: Range<usize>,
     /// Ranges of nodes that no tree has, in ascending order.
-    free: Vec<Range<usize>>,
+    free: Free,
     /// True if there are other pieces than those that the top level was built over.
     is_stale: bool,
 }
@@ -111,8 +110,8 @@ impl TwoLevelBvh {
         // One after the other: a thread of a pool that waits for one tree takes up the next on the
         // same stack, which thousands of pieces overflow.
         let trees = (0..pieces.len()).filter(is_first).map(|piece| {
-            let triangles = triangles(at_rest, pieces[piece].triangles);
-            (piece, Bvh::within(&triangles, depth))
+            let ids = pieces[piece].triangles.iter().copied();
+            (piece, Bvh::over(at_rest, ids, depth))
         });
         let trees: BTreeMap<usize, Bvh> = trees.collect();
         let mut trees = merged(trees, pieces, most);
@@ -197,7 +196,7 @@ impl TwoLevelBvh {
         let filled = self.filled();
         self.reserve_top(filled + pieces);
         let end = self.nodes.len() + 2 * triangles;
-        self.give_back(self.nodes.len()..end);
+        self.free.give_back(self.nodes.len()..end);
         self.nodes.resize(end, BvhNode::default());
     }
 
@@ -210,7 +209,7 @@ impl TwoLevelBvh {
         }
         if self.top.len() < needed {
             let before = std::mem::take(&mut self.top);
-            self.give_back(before);
+            self.free.give_back(before);
             self.top = self.take(needed);
             self.is_stale = true;
         }
@@ -218,27 +217,12 @@ impl TwoLevelBvh {
 
     /// Takes a range of nodes that is free, or new ones.
     fn take(&mut self, count: usize) -> Range<usize> {
-        if let Some(free) = self.free.iter_mut().find(|free| free.len() >= count) {
-            let taken = free.start..free.start + count;
-            free.start += count;
-            return taken;
-        }
-        let taken = self.nodes.len()..self.nodes.len() + count;
-        self.nodes.resize(taken.end, BvhNode::default());
-        taken
-    }
-
-    fn give_back(&mut self, range: Range<usize>) {
-        self.free.push(range);
-        self.free.sort_unstable_by_key(|free| free.start);
-        self.free.dedup_by(|next, free| {
-            let are_one = free.end == next.start;
-            if are_one {
-                free.end = next.end;
-            }
-            are_one
+        let first = self.free.take(count).unwrap_or_else(|| {
+            let end = self.nodes.len();
+            self.nodes.resize(end + count, BvhNode::default());
+            end
         });
-        self.free.retain(|free| !free.is_empty());
+        first..first + count
     }
 
     /// Number of pieces that have triangles.
@@ -257,9 +241,8 @@ impl TwoLevelBvh {
     /// If `piece` is the number of a piece that has triangles, or greater than the number of
     /// pieces.
     pub fn add(&mut self, piece: usize, at_rest: &Mesh, first: u32) {
-        let ids: Vec<u32> = (0..at_rest.triangles.len() as u32).collect();
-        let depth = depth_left(self.filled() + 1);
-        let tree = Bvh::within(&triangles(at_rest, &ids), depth);
+        let ids = 0..at_rest.triangles.len() as u32;
+        let tree = Bvh::over(at_rest, ids, depth_left(self.filled() + 1));
         self.add_built(piece, &tree, tree.order().into(), first);
     }
 
@@ -370,7 +353,7 @@ impl TwoLevelBvh {
         let gone = &mut self.pieces[piece];
         (gone.order, gone.depth) = (Arc::default(), 0);
         let nodes = std::mem::take(&mut gone.nodes);
-        self.give_back(nodes);
+        self.free.give_back(nodes);
         self.is_stale = true;
     }
 
@@ -455,7 +438,7 @@ impl TwoLevelBvh {
         let mut ids = self.primitives[slots.clone()].to_vec();
         ids.sort_unstable();
         let depth = depth_left(self.filled());
-        let tree = Bvh::within(&triangles(mesh, &ids), depth).merged(most);
+        let tree = Bvh::over(mesh, ids.iter().copied(), depth).merged(most);
         let order = tree.order().into();
         self.put(piece, &tree, order, &ids);
         self.pieces[piece].cost = self.cost(piece);
@@ -610,15 +593,6 @@ fn merged(trees: BTreeMap<usize, Bvh>, pieces: &[Piece<'_>], most: usize) -> BTr
 fn depth_left(pieces: usize) -> u32 {
     let above = usize::BITS - pieces.saturating_sub(1).leading_zeros();
     MAX_DEPTH.saturating_sub(above).max(1)
-}
-
-fn triangles(mesh: &Mesh, ids: &[u32]) -> Vec<Triangle> {
-    let triangle = |&id: &u32| {
-        let corners = mesh.triangles[id as usize];
-        let [v0, v1, v2] = corners.map(|index| mesh.positions[index as usize].into());
-        Triangle { v0, v1, v2 }
-    };
-    ids.iter().map(triangle).collect()
 }
 
 /// The depth of a top level together with the trees that are its leaves.

@@ -7,6 +7,7 @@ use crate::{
     text::{file_in, line_text},
 };
 use base64::{Engine, engine::general_purpose::STANDARD};
+use percent_encoding::percent_decode_str;
 use std::{
     collections::HashMap,
     path::{Path, PathBuf},
@@ -40,15 +41,7 @@ pub(super) fn data_uri(uri: &str) -> Option<Result<Vec<u8>, String>> {
 /// The file that a URI names, whose odd characters are written as `%20`. Its bytes may be in any
 /// encoding.
 pub(super) fn path_of(folder: &Path, uri: &str) -> PathBuf {
-    let bytes = uri.as_bytes();
-    let mut decoded = Vec::with_capacity(bytes.len());
-    let mut at = 0;
-    while at < bytes.len() {
-        let hex = uri.get(at + 1..at + 3).filter(|_| bytes[at] == b'%');
-        let byte = hex.and_then(|hex| u8::from_str_radix(hex, 16).ok());
-        decoded.push(byte.unwrap_or(bytes[at]));
-        at += if byte.is_some() { 3 } else { 1 };
-    }
+    let decoded: Vec<u8> = percent_decode_str(uri).collect();
     file_in(folder, &line_text(&decoded))
 }
 

@@ -325,9 +325,6 @@ impl<'a> Import<'a> {
             return Err("the transform of an instance is not finite".to_owned());
         }
         self.builder.report.faces += triangles.len();
-        if arrays.vertices.normals.is_none() {
-            self.builder.report.faces_without_normals += triangles.len();
-        }
         let linear = DMat3::from_mat4(transform);
         let mirrored = linear.determinant() < 0.0;
         // A flattened one leaves no normal; the triangle's own stands in.

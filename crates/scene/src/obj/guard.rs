@@ -60,8 +60,6 @@ pub(super) struct Guard<'a> {
     /// Faces handed on, in order.
     pub faces: Vec<FaceRecord>,
     pub faults: Faults,
-    /// Faces of groups left out.
-    pub faces_left_out: usize,
     /// Points met.
     pub points: usize,
     /// Lines met.
@@ -320,7 +318,6 @@ impl<'a> Guard<'a> {
     fn take_face(&mut self, corners: &str, ended: bool) -> Result<(), String> {
         self.number += 1;
         if self.group_left_out {
-            self.faces_left_out += 1;
             return Ok(());
         }
         let mut parsed = Vec::with_capacity(4);

@@ -38,7 +38,6 @@ pub(super) fn import(
     import.builder.report = ImportReport {
         file: Some(path.to_owned()),
         faces: guard.faces.len(),
-        faces_left_out: guard.faces_left_out,
         points: guard.points,
         lines: guard.lines,
         colours_missing: std::mem::take(&mut import.found.colours_missing),
@@ -108,7 +107,6 @@ impl Import<'_> {
             });
         }
         self.check_finite(models)?;
-        let mut read = 0;
         let mut records = self.guard.faces.iter();
         let mut polygon = Vec::new();
         for model in models {
@@ -120,7 +118,6 @@ impl Import<'_> {
             let welded: Vec<u32> = points
                 .map(|point| self.builder.positions.index(point))
                 .collect();
-            read += welded.len();
             for (range, record) in faces(mesh).zip(&mut records) {
                 polygon.clear();
                 let first = range.start;
@@ -141,8 +138,6 @@ impl Import<'_> {
                 self.add_face(record, &polygon);
             }
         }
-        let builder = &mut self.builder;
-        builder.report.vertices_welded = read - builder.positions.values.len();
         Ok(())
     }
 
@@ -172,9 +167,6 @@ impl Import<'_> {
 
     fn add_face(&mut self, record: &FaceRecord, polygon: &[Corner]) {
         let (guard, builder) = (self.guard, &mut self.builder);
-        if !record.has_normals {
-            builder.report.faces_without_normals += 1;
-        }
         let points: Vec<DVec3> = polygon
             .iter()
             .map(|corner| builder.point(corner.position))

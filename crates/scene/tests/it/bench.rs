@@ -13,10 +13,7 @@ fn bench_has_the_dissertations_triangles_and_few_closed_parts() {
     let (scene, report) = SceneLibrary::from_environment().load("bench").unwrap();
     // The dissertation's 55,026 triangles are about its 55,020 indices.
     assert_eq!(3 * scene.mesh.triangles.len(), 55_020);
-    assert_eq!(
-        (report.points, report.lines, report.faces_without_normals),
-        (0, 0, 0)
-    );
+    assert_eq!((report.points, report.lines), (0, 0));
     assert_eq!(report.dropped.triangles, 0);
     let parts = Parts::new(&scene.mesh);
     let closed = parts.open.iter().filter(|&&open| !open).count();

@@ -21,10 +21,7 @@ fn sponza_has_the_dissertations_triangles() {
             .iter()
             .all(|group| group.name != "sponza_04")
     );
-    assert_eq!(
-        (report.points, report.lines, report.faces_without_normals),
-        (0, 0, 0)
-    );
+    assert_eq!((report.points, report.lines), (0, 0));
     assert_eq!(
         (report.dropped.triangles, report.zero_area.triangles),
         (0, 125)

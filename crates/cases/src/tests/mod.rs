@@ -1,13 +1,85 @@
 //! The oracle on the catalogue of hard cases: no more is indeterminate than the case's cap, and
 //! where geometry alone knows the answer, it says the same.
 
-use crate::common::scenes::render;
+pub(crate) mod answer;
+
+use crate::{
+    case::{Geometry, HardCase},
+    catalogue::cases,
+    fences, lamps, light, lists, map, masked, plain, rounding, solids, thin, topology,
+};
+use answer::{among, among_at};
 use glam::DVec3;
-use skiagraph_cases::{HardCase, Shows, cases};
 use skiagraph_reference::{Class, GroundTruthPixels, Oracle, OracleMode, Progress};
-use skiagraph_scene::{Camera, Mesh, Scene};
+use skiagraph_scene::{Camera, LightKind, Mesh, Scene};
 
 const VIEWPORTS: [[u32; 2]; 2] = [[96, 96], [61, 43]];
+
+/// The name of a case, and whether light reaches a point (world space) of a surface that faces the
+/// light, computed from the geometry without tracing rays: `None` for a point so close to a
+/// shadow's edge that rounding may decide.
+pub(crate) type Answer = (&'static str, fn(DVec3) -> Option<bool>);
+
+const ANSWERS: [&[Answer]; 11] = [
+    plain::answers::ANSWERS,
+    rounding::answers::ANSWERS,
+    light::answers::ANSWERS,
+    lamps::answers::ANSWERS,
+    map::answers::ANSWERS,
+    lists::answers::ANSWERS,
+    fences::answers::ANSWERS,
+    thin::answers::ANSWERS,
+    solids::answers::ANSWERS,
+    topology::answers::ANSWERS,
+    masked::answers::ANSWERS,
+];
+
+/// Margins (scene units) around the edges of shadows within which boxes have no answer, where it is
+/// not a thousandth.
+const MARGINS: [(&str, f64); 10] = [
+    ("scale_1e_4", 1e-7),
+    ("origin_offset_1e7", 20.0),
+    ("grazing_light", 1e-2),
+    ("light_at_the_floor", 1e-2),
+    ("light_a_million_away", 1e-2),
+    ("on_texel_corners", 1e-2),
+    ("two_occluders", 1e-4),
+    ("three_occluders", 1e-4),
+    ("contact", 1e-4),
+    ("near_and_far", 1e-4),
+];
+
+/// The case's answer for a point, as of an [`Answer`], or by its boxes.
+fn lit(case: &HardCase, point: DVec3) -> Option<bool> {
+    let mut answers = ANSWERS.iter().copied().flatten();
+    if let Some((_, lit)) = answers.find(|(name, _)| *name == case.name) {
+        return lit(point);
+    }
+    let Geometry::Boxes(blocks) = case.geometry else {
+        return None;
+    };
+    let margin = MARGINS.iter().find(|(name, _)| *name == case.name);
+    let margin = margin.map_or(1e-3, |(_, margin)| *margin);
+    match case.seen.light {
+        LightKind::Directional(light) => among(point, light.direction, blocks, margin),
+        light => among_at(point, light.position()?, blocks, margin),
+    }
+}
+
+/// True if the case tells from its geometry which points are lit.
+fn is_analytic(case: &HardCase) -> bool {
+    let mut answers = ANSWERS.iter().copied().flatten();
+    matches!(case.geometry, Geometry::Boxes(_)) || answers.any(|(name, _)| *name == case.name)
+}
+
+/// Primary and shadow rays of the oracle alone.
+fn render(mesh: &Mesh, camera: &Camera, light: LightKind) -> GroundTruthPixels {
+    let (oracle, mode) = (Oracle::new(mesh), OracleMode::Exact);
+    let primitives = oracle.primary(camera, Progress::default());
+    let primitives = primitives.expect("nobody interrupts");
+    let shaded = oracle.shade(camera, light, &primitives, mode, Progress::default());
+    shaded.expect("its own primitives")
+}
 
 /// Where the ray through a pixel's centre meets the plane of a triangle.
 fn point(mesh: &Mesh, primitive: u32, camera: &Camera, pixel: usize) -> DVec3 {
@@ -28,7 +100,7 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
     let primitives = oracle
         .primary(&camera, Progress::default())
         .expect("nobody interrupts");
-    let truth = render(&mesh, &camera, light, OracleMode::Exact);
+    let truth = render(&mesh, &camera, light);
     let count =
         |wanted: &dyn Fn(usize) -> bool| (0..primitives.len()).filter(|&i| wanted(i)).count();
     let facing = |i: usize| truth.classes[i].faces_light();
@@ -43,8 +115,8 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
         ));
     }
     complaints.extend(unexpected(case, &truth));
-    if case.is_analytic() {
-        let answer = |i: usize| case.lit(point(&mesh, primitives[i], &camera, i));
+    if is_analytic(case) {
+        let answer = |i: usize| lit(case, point(&mesh, primitives[i], &camera, i));
         let answered = count(&|i| facing(i) && answer(i).is_some());
         if answered * 2 < facing_light {
             complaints.push(format!("{answered} of {facing_light} answered"));
@@ -79,20 +151,25 @@ fn unexpected(case: &HardCase, truth: &GroundTruthPixels) -> Option<String> {
         count(Class::Shadow),
         truth.classes.len() / 50,
     );
-    let right = match case.shows {
-        Shows::Both => lit >= enough && shadow >= enough,
+    let right = match case.name {
         // An indeterminate shadow may be none.
-        Shows::LitOnly => {
+        "facing_by_an_ulp"
+        | "light_nearly_along_a_wall"
+        | "no_depth_at_all"
+        | "edge_on_triangles"
+        | "one_triangle"
+        | "one_quad" => {
             let certain = |i: usize| truth.classes[i] == Class::Shadow && !truth.indeterminate[i];
             lit >= enough && !(0..truth.classes.len()).any(certain)
         }
-        Shows::ShadowOnly => {
+        "light_inside_a_mesh" | "spot_inside_a_mesh" => {
             let certain = |i: usize| truth.classes[i] == Class::Lit && !truth.indeterminate[i];
             shadow >= enough && !(0..truth.classes.len()).any(certain)
         }
-        Shows::Nothing => lit + shadow == 0,
+        "empty_scene" | "everything_faces_away" => lit + shadow == 0,
+        _ => lit >= enough && shadow >= enough,
     };
-    (!right).then(|| format!("{lit} lit, {shadow} in shadow, not {:?}", case.shows))
+    (!right).then(|| format!("{lit} lit, {shadow} in shadow"))
 }
 
 #[test]
@@ -116,7 +193,7 @@ fn the_oracle_agrees_with_geometry_and_little_is_indeterminate() {
 fn indeterminate(case: &HardCase, side: u32) -> (u64, u64, f64) {
     let scene = case.scene();
     let camera = scene.views[0].camera([side; 2]);
-    let truth = render(&scene.mesh, &camera, scene.light(), OracleMode::Exact);
+    let truth = render(&scene.mesh, &camera, scene.light());
     let pixels = truth.classes.iter().zip(&truth.indeterminate);
     let facing: Vec<bool> = pixels
         .filter(|(class, _)| class.faces_light())
@@ -129,7 +206,7 @@ fn indeterminate(case: &HardCase, side: u32) -> (u64, u64, f64) {
 
 #[test]
 fn the_cap_far_from_the_origin_holds_at_every_size_and_is_no_looser_than_chance() {
-    let case = skiagraph_cases::case("origin_offset_1e7").unwrap();
+    let case = crate::case("origin_offset_1e7").unwrap();
     for side in (16..=256).step_by(8) {
         let (facing, band, cap) = indeterminate(&case, side);
         let share = band as f64 / facing as f64;
@@ -141,7 +218,7 @@ fn the_cap_far_from_the_origin_holds_at_every_size_and_is_no_looser_than_chance(
         let loose = 0.009 + 2.0 / f64::from(side).powf(1.5);
         assert!(cap < loose, "{cap} over {loose} at {side}");
     }
-    let plain = skiagraph_cases::case("stack_gap_1e_3").unwrap();
+    let plain = crate::case("stack_gap_1e_3").unwrap();
     assert_eq!(plain.indeterminate_cap(48, 1000), 0.01);
 }
 
@@ -149,7 +226,7 @@ fn the_cap_far_from_the_origin_holds_at_every_size_and_is_no_looser_than_chance(
 #[test]
 fn many_cases_have_an_answer_of_their_own() {
     let catalogue = cases();
-    let analytic = catalogue.iter().filter(|case| case.is_analytic()).count();
+    let analytic = catalogue.iter().filter(|case| is_analytic(case)).count();
     assert!(
         catalogue.len() >= 62 && analytic >= 52,
         "{analytic} of {}",

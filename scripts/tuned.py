@@ -22,11 +22,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = ROOT / "target/debug/skiagraph"
 LEVELS = ["sponza", "bench", "park", "level", "avenue", "lamps", "room", "hedge"]
-# The params of each method that have an effect with its others.
+# The params of each method that are searched and have an effect with its others.
 PARAMS = {
     "nsm": ["cull", "fit", "slope_bias", "bias"],
     "pssm": ["cull", "slope_bias", "bias", "split_lambda", "fit_to_receivers", "normal_offset"],
-    "pcf": ["cull", "fit", "radius", "slope_bias", "bias"],
+    "pcf": ["cull", "fit", "slope_bias", "bias"],
 }
 # Most settings that one command compares: each keeps its resources, for frames in turns.
 AT_ONCE = 200

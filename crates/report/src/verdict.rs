@@ -328,9 +328,16 @@ fn sentence(
     methods: &[Contender],
 ) -> String {
     let names = level.iter().map(|method| method.name()).join(" or ");
+    let have_turns = |method: &&Contender| best.row.ratio(method.row, best.when).is_some();
     let (apart, subject) = match level {
         [_] => ("", "It is"),
-        _ => (": their times cannot be told apart", "They are"),
+        [_, level @ ..] if level.iter().all(have_turns) => {
+            (": their times cannot be told apart", "They are")
+        }
+        _ => (
+            ": they did not take turns, so their times cannot be told apart",
+            "They are",
+        ),
     };
     let mut text = format!("Take {names}{apart} ({})", best.per_frame());
     let right = best.right();
@@ -676,6 +683,11 @@ mod tests {
                  frame). All are exact here."
             ]
         );
+        let mut later = run("b", 0, 30.0, 30.0);
+        later.session = "2026-11-20T04:50:00Z".into();
+        let (_, sentences) = outcome(&[run("a", 0, 10.0, 10.0), later]);
+        let why = "Take `a` or `b`: they did not take turns, so their times cannot be told apart";
+        assert!(sentences[0].starts_with(why), "{sentences:?}");
         let (_, sentences) = outcome(&[run("rt", 0, 10.0, 4.0)]);
         assert_eq!(
             sentences,

@@ -74,15 +74,15 @@ fn light_face(position: vec3<f32>) -> u32 {
     }
     let from_light = -light_way(position);
     let size = abs(from_light);
-    let face = select(select(4u, 2u, size.y >= size.z), 0u, size.x >= max(size.y, size.z));
-    return face + select(0u, 1u, from_light[face / 2u] < 0.0);
+    let cube_face = select(select(4u, 2u, size.y >= size.z), 0u, size.x >= max(size.y, size.z));
+    return cube_face + select(0u, 1u, from_light[cube_face / 2u] < 0.0);
 }
 
 // A position as a face of the light's map sees it: x and y, of which w is the half width of the
 // map, and w; z, not to be divided by w, is the share of `range`, in 0..1 before the light. For a
 // spot light w is the distance along the axis, for a point light along the face's. Behind the light
 // w is negative.
-fn light_homogeneous(position: vec3<f32>, face: u32) -> vec4<f32> {
+fn light_homogeneous(position: vec3<f32>, cube_face: u32) -> vec4<f32> {
     if light_kind == LIGHT_DIRECTIONAL {
         return light.clip_from_relative * vec4(position - light.centre.xyz, 1.0);
     }
@@ -92,16 +92,16 @@ fn light_homogeneous(position: vec3<f32>, face: u32) -> vec4<f32> {
     }
     // As cube textures have it, y up.
     let v = from_light;
-    var turned = vec3(-v.x, v.y, -v.z);
-    switch face {
-        case 0u: { turned = vec3(-v.z, v.y, v.x); }
-        case 1u: { turned = vec3(v.z, v.y, -v.x); }
-        case 2u: { turned = vec3(v.x, -v.z, v.y); }
-        case 3u: { turned = vec3(v.x, v.z, -v.y); }
-        case 4u: { turned = vec3(v.x, v.y, v.z); }
+    var rotated = vec3(-v.x, v.y, -v.z);
+    switch cube_face {
+        case 0u: { rotated = vec3(-v.z, v.y, v.x); }
+        case 1u: { rotated = vec3(v.z, v.y, -v.x); }
+        case 2u: { rotated = vec3(v.x, -v.z, v.y); }
+        case 3u: { rotated = vec3(v.x, v.z, -v.y); }
+        case 4u: { rotated = vec3(v.x, v.y, v.z); }
         default: {}
     }
-    return vec4(turned.xy, turned.z / light.range, turned.z);
+    return vec4(rotated.xy, rotated.z / light.range, rotated.z);
 }
 
 // Maps a place in the world into the map's face that it lies in: x and y in -1..1 over the map, y

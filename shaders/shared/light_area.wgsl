@@ -43,6 +43,6 @@ fn axes_across(to_light: vec3<f32>) -> AxesAcross {
 const UNANSWERED_SAMPLE: u32 = 0x80000000u;
 
 // A light without extent looks the same from each of its points: one sample does.
-fn samples_needed(samples: u32) -> u32 {
-    return select(samples, 1u, light_area.radius == 0.0);
+fn samples_needed(wanted: u32) -> u32 {
+    return select(wanted, 1u, light_area.radius == 0.0);
 }

@@ -53,6 +53,7 @@ mod moving;
 mod moving_rays;
 mod one_submission;
 mod oracle;
+mod other_compilers;
 mod predicates;
 mod presets;
 mod provider;

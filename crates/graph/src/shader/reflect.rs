@@ -24,7 +24,7 @@ use naga::{
     valid::{GlobalUse, ModuleInfo},
 };
 use std::{
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeMap, BTreeSet, HashMap},
     hash::{DefaultHasher, Hash, Hasher},
     sync::{Arc, Mutex, PoisonError},
 };
@@ -207,6 +207,25 @@ impl Shader {
     /// Returns the naga module, in which every resource global has a binding number.
     pub fn module(&self) -> &naga::Module {
         &self.module
+    }
+
+    /// Returns the text with imports in place and with the binding numbers of
+    /// [`module`](Self::module) written in, for compilers that read WGSL, such as a browser's.
+    pub fn wgsl(&self) -> String {
+        let mut text = self.source.text.clone();
+        let own = naga::front::wgsl::parse_str(&text).ok();
+        let own = own.iter().flat_map(|own| own.global_variables.iter());
+        let without = own.filter(|(_, global)| global.binding.is_none());
+        let places = without.filter_map(|(handle, _)| {
+            let variables = &self.module.global_variables;
+            let place = variables.get_span(handle).to_range()?;
+            Some((place.start, variables[handle].binding?))
+        });
+        let places: BTreeMap<usize, naga::ResourceBinding> = places.collect();
+        for (at, naga::ResourceBinding { group, binding }) in places.into_iter().rev() {
+            text.insert_str(at, &format!("@group({group}) @binding({binding}) "));
+        }
+        text
     }
 
     /// Returns the path in the store ([`Sources`](crate::Sources)) of the shader's own file, not of

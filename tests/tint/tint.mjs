@@ -1,0 +1,49 @@
+// Has Tint, Chromium's compiler of WGSL, read the shaders of all presets and make their compute
+// pipelines: `node tint.mjs PROGRAMS`, exit 0 if it takes all, 1 if not. The test
+// `other_compilers::` writes PROGRAMS where SKIAGRAPH_PROGRAMS names the file. Needs `npm ci` here,
+// and no GPU: Dawn's null backend checks as others do.
+import fs from 'node:fs';
+import { create, globals } from 'webgpu';
+
+Object.assign(globalThis, globals);
+const lines = fs.readFileSync(process.argv[2], 'utf8').trim().split('\n');
+const programs = lines.map((line) => JSON.parse(line));
+const adapter = await create(['backend=null']).requestAdapter();
+const { limits } = adapter;
+const names = ['maxStorageBuffersPerShaderStage', 'maxStorageBufferBindingSize',
+    'maxComputeWorkgroupStorageSize', 'maxComputeInvocationsPerWorkgroup', 'maxComputeWorkgroupSizeX'];
+const requiredLimits = Object.fromEntries(names.map((name) => [name, limits[name]]));
+const device = await adapter.requestDevice({ requiredLimits });
+
+const modules = new Map();
+let refused = 0;
+let pipelines = 0;
+function refuse(file, text) {
+    refused += 1;
+    console.error(`${file}: ${text}`);
+}
+for (const { file, wgsl, entries, constants } of programs) {
+    if (!modules.has(wgsl)) {
+        device.pushErrorScope('validation');
+        const module = device.createShaderModule({ code: wgsl });
+        const { messages } = await module.getCompilationInfo();
+        await device.popErrorScope();
+        const errors = messages.filter((message) => message.type === 'error');
+        for (const { lineNum, message } of errors) {
+            refuse(file, `${message}\n    ${wgsl.split('\n')[lineNum - 1]}`);
+        }
+        modules.set(wgsl, errors.length ? null : module);
+    }
+    const module = modules.get(wgsl);
+    const entry = entries.find(({ stage }) => stage === 'Compute');
+    if (!module || !entry) continue;
+    const compute = { module, entryPoint: entry.name, constants: Object.fromEntries(constants) };
+    try {
+        await device.createComputePipelineAsync({ layout: 'auto', compute });
+        pipelines += 1;
+    } catch (error) {
+        refuse(file, `${entry.name}: ${error.message}`);
+    }
+}
+console.log(`tint: ${modules.size} modules, ${pipelines} compute pipelines, ${refused} refused`);
+process.exit(refused ? 1 : 0);

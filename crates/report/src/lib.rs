@@ -29,6 +29,7 @@ pub mod profile_csv;
 pub mod profile_text;
 pub mod raster;
 pub mod results_table;
+mod single_verdict;
 pub mod stress_matrix;
 pub mod summary;
 pub mod summary_table;

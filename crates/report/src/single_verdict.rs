@@ -2,11 +2,10 @@
 
 use crate::contender::Contender;
 use crate::summary::Row;
-use crate::verdict::{condition, lower};
 use itertools::Itertools;
 use skiagraph_compare::measuring::date::is_another_hour;
 use skiagraph_compare::records::budgets::Budgets;
-use skiagraph_compare::records::regimes::When;
+use skiagraph_compare::records::regimes::{Regime, When};
 use skiagraph_compare::records::turns::LEAST_TURNS;
 use skiagraph_compare::wording::{bytes, ms, or_nothing, plural};
 use std::collections::BTreeMap;
@@ -91,6 +90,38 @@ impl<'a> Single<'a> {
         };
         vec![format!("Within {budgets}: {counted}.")]
     }
+}
+
+/// The frames of verdicts in words, as a sentence begins: `While the camera or the light moves`.
+pub fn condition(group: &[&Single]) -> String {
+    let has = |when: When| group.iter().any(|single| single.when == when);
+    let meshes = match [Regime::SomeMeshes, Regime::AllMeshes].map(|regime| has(Some(regime))) {
+        [true, true] => Some("meshes"),
+        [true, false] => Some("some meshes"),
+        [false, true] => Some("all meshes"),
+        [false, false] => None,
+    };
+    let single = [
+        (Regime::Nothing, "nothing"),
+        (Regime::Camera, "the camera"),
+        (Regime::Light, "the light"),
+    ];
+    let single = single.into_iter().filter(|(regime, _)| has(Some(*regime)));
+    let subjects: Vec<&str> = single.map(|(_, subject)| subject).chain(meshes).collect();
+    let verb = if meshes.is_some() { "move" } else { "moves" };
+    let moving = format!("hile {} {verb}", subjects.join(" or "));
+    match (has(None), subjects.is_empty()) {
+        (true, true) => "Along the path".into(),
+        (true, false) => format!("Along the path and w{moving}"),
+        _ => format!("W{moving}"),
+    }
+}
+
+/// A sentence's beginning as it stands within one.
+pub fn lower(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|letter| letter.to_ascii_lowercase());
+    first.into_iter().chain(letters).collect()
 }
 
 /// The contenders without those that are beaten by another setting of the same method: of a method

@@ -1,6 +1,6 @@
 //! The verdict of a comparison: which method to take, in one or two sentences.
 
-use crate::single_verdict::Single;
+use crate::single_verdict::{Single, condition, lower};
 use crate::summary::Row;
 use crate::tuning;
 use skiagraph_compare::records::budgets::Budgets;
@@ -128,38 +128,6 @@ fn grouped<'s, 'a>(verdicts: &'s [Single<'a>]) -> Vec<Vec<&'s Single<'a>>> {
     }
     groups.iter_mut().for_each(|group| group.reverse());
     groups
-}
-
-/// The frames of verdicts in words, as a sentence begins: `While the camera or the light moves`.
-pub fn condition(group: &[&Single]) -> String {
-    let has = |when: When| group.iter().any(|single| single.when == when);
-    let meshes = match [Regime::SomeMeshes, Regime::AllMeshes].map(|regime| has(Some(regime))) {
-        [true, true] => Some("meshes"),
-        [true, false] => Some("some meshes"),
-        [false, true] => Some("all meshes"),
-        [false, false] => None,
-    };
-    let single = [
-        (Regime::Nothing, "nothing"),
-        (Regime::Camera, "the camera"),
-        (Regime::Light, "the light"),
-    ];
-    let single = single.into_iter().filter(|(regime, _)| has(Some(*regime)));
-    let subjects: Vec<&str> = single.map(|(_, subject)| subject).chain(meshes).collect();
-    let verb = if meshes.is_some() { "move" } else { "moves" };
-    let moving = format!("hile {} {verb}", subjects.join(" or "));
-    match (has(None), subjects.is_empty()) {
-        (true, true) => "Along the path".into(),
-        (true, false) => format!("Along the path and w{moving}"),
-        _ => format!("W{moving}"),
-    }
-}
-
-/// A sentence's beginning as it stands within one.
-pub fn lower(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(|letter| letter.to_ascii_lowercase());
-    first.into_iter().chain(letters).collect()
 }
 
 #[cfg(test)]

@@ -156,13 +156,6 @@ impl Series {
             samples,
         })
     }
-
-    /// Returns the first and third quartile of the samples, each interpolated linearly between the
-    /// two nearest samples.
-    pub fn quartiles(&self) -> [f64; 2] {
-        let spread = Spread::new(self.samples.iter().copied()).unwrap_or_default();
-        [spread.q1, spread.q3]
-    }
 }
 
 #[cfg(test)]
@@ -212,7 +205,10 @@ pub(crate) mod tests {
 
     #[test]
     fn quartiles_lie_between_the_samples_beside_them() {
-        let quartiles = |samples: &[f64]| series(samples).quartiles();
+        let quartiles = |samples: &[f64]| {
+            let spread = Spread::new(samples.iter().copied()).unwrap();
+            [spread.q1, spread.q3]
+        };
         assert_eq!(quartiles(&[5.0, 1.0, 2.0, 4.0, 3.0]), [2.0, 4.0]);
         assert_eq!(quartiles(&[1.0, 2.0]), [1.25, 1.75]);
         assert_eq!(quartiles(&[7.0]), [7.0, 7.0]);

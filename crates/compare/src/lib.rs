@@ -27,11 +27,11 @@
 //! which it is seen, and a [`Protocol`](comparison::Protocol). [`run`](measuring::series::run)
 //! returns [`Results`](records::results::Results): for each run its times, and the pixels that are
 //! wrong against an exact reference. A [`Sink`](sink::Sink) receives the progress of the work and
-//! may end it early. What waits for the GPU is `async`, so that a host that cannot wait drives it as
-//! well; [`block_on`](skiagraph_gpu::block_on) waits on its thread. To write results into a folder,
-//! and to continue from earlier ones in it, use a [`Series`](measuring::series::Series) step by
-//! step. In this way an engine's own tests can find out which methods are right on a scene of that
-//! engine (`crates/compare/tests/it/engine.rs` in the repository).
+//! may end it early. What waits for the GPU is `async`, so that a host that cannot wait drives it
+//! as well; [`block_on`](skiagraph_gpu::block_on) waits on its thread. To write results into a
+//! folder, and to continue from earlier ones in it, use a [`Series`](measuring::series::Series)
+//! step by step. In this way an engine's own tests can find out which methods are right on a scene
+//! of that engine (`crates/compare/tests/it/engine.rs` in the repository).
 //!
 //! - [`graphs`]: turns names into methods that can run.
 //! - [`measuring`]: runs methods, times them and judges their pictures.

@@ -211,7 +211,7 @@ pub struct Pass {
 }
 
 /// File names of a run's pictures, in the folder of the results.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Images {
     /// Index of the frame of a camera path that the pictures show, from 0: the worst frame. The
     /// file names contain it. Absent for a still view.

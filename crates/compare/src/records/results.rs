@@ -22,7 +22,7 @@ use crate::records::assignments::assignments;
 use crate::records::budgets::Budgets;
 pub use crate::records::measured::{Answer, GBUFFER, Images, Measured, Part, Pass, step};
 use crate::records::tuned::Tuned;
-use crate::wording::{or_nothing, size, thousands};
+use crate::wording::{or_nothing, plural, size, thousands};
 use itertools::Itertools;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{AreaVisibility, GroundTruthPixels, PixelCounts};
@@ -155,14 +155,7 @@ impl Machine {
     /// True if `self` and `other` have the same host name, processor and number of cores; their
     /// loads may differ.
     pub fn is_same(&self, other: &Self) -> bool {
-        let key = |machine: &Self| {
-            (
-                machine.host.clone(),
-                machine.processor.clone(),
-                machine.cores,
-            )
-        };
-        key(self) == key(other)
+        (&self.host, &self.processor, self.cores) == (&other.host, &other.processor, other.cores)
     }
 }
 
@@ -219,9 +212,9 @@ impl fmt::Display for Adapter {
 
 impl fmt::Display for Machine {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let s = if self.cores == 1 { "" } else { "s" };
         let host = self.host.as_deref().unwrap_or("a host without a name");
-        write!(f, "{host}, {}, {} core{s}", self.processor, self.cores)
+        let cores = plural(self.cores as usize, "core");
+        write!(f, "{host}, {}, {cores}", self.processor)
     }
 }
 

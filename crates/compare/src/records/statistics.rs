@@ -124,6 +124,12 @@ impl Spread {
     }
 }
 
+/// The middle of some values, of an even number the greater one of two; 0 of none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// Returns the milliseconds of a time, exact to the nanosecond.
 pub fn ms(time: Duration) -> f64 {
     time.as_nanos() as f64 / 1e6

@@ -27,7 +27,6 @@ use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{GroundTruth, Statistics};
-use std::cell::RefCell;
 
 /// Data that all methods share when they are measured on one view or path in one viewport.
 pub struct MeasureContext<'a> {
@@ -49,9 +48,6 @@ pub struct MeasureContext<'a> {
     pub protocol: Protocol,
     /// True to look for a setting that makes most of a method's wrong pixels right ([`Hint`]).
     pub hints: bool,
-    /// Pictures and data files of the run that was judged last, not written yet; `None` to make
-    /// none.
-    pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
 /// A method that was judged on a view or path. Its times are not those of its turns yet.
@@ -140,9 +136,8 @@ impl MeasureContext<'_> {
             diagnose(session, method, truth_view, (&outputs, layer), provider).await?;
         let place = is_path.then_some(index);
         let shown = (&outputs, &judgement, &diagnostics);
-        let mut images = self.draw(method, place, &truth_view.ground_truth, shown)?;
-        let pictures = self.pictures.as_ref();
-        let mut pictures = pictures.map(RefCell::take).unwrap_or_default();
+        let (mut images, mut pictures) =
+            self.draw(method, place, &truth_view.ground_truth, shown)?;
         if let Some(images) = &mut images {
             file_second(&mut pictures, std::mem::take(&mut account.second), images);
         }
@@ -201,7 +196,6 @@ impl MeasureContext<'_> {
         for _ in 0..if remembered { 0 } else { warmup } {
             takes.take(Turn::new(Kind::EveryPass, 0, false)).await?;
         }
-        let has_pictures = self.pictures.is_some() && self.protocol.pictures;
         let mut second = WorstSecond::new(frames.second());
         takes.read(&names);
         for (frame, truth_view) in self.path.truth_views.iter().enumerate() {
@@ -214,7 +208,7 @@ impl MeasureContext<'_> {
             account.add(self.path, frame, outputs, judgement)?;
             let judged = &mut account.frames[frame];
             judged.remade = made.iter().map(remade).collect();
-            if let Some(shown) = account.shown.as_ref().filter(|_| has_pictures) {
+            if let Some(shown) = account.shown.as_ref().filter(|_| self.protocol.pictures) {
                 let place = self.place(method, Some(frame), viewport);
                 let changed = judged.shimmer.map_or(0, |shimmer| shimmer.changed);
                 second.add(changed, place.shaded(shown, &truth.pixels)?);
@@ -320,10 +314,7 @@ impl MeasureContext<'_> {
     pub fn run(&self, method: &Method, planned: &Run, outcome: Result<Measured, String>) -> Run {
         let ground_truth = &self.truth_view.ground_truth;
         let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
-        let (measured, unavailable) = match outcome {
-            Ok(measured) => (Some(measured), None),
-            Err(reason) => (None, Some(reason)),
-        };
+        let unavailable = outcome.as_ref().err().cloned();
         Run {
             date: date::today(),
             promise: guarantee::promise(method),
@@ -331,7 +322,7 @@ impl MeasureContext<'_> {
             band: self.own.band,
             wrong_surface: self.path.wrong_surfaces(),
             area: area.map(|area| AreaReference::new(area, truth)),
-            measured,
+            measured: outcome.ok(),
             unavailable,
             ..planned.clone()
         }
@@ -343,8 +334,8 @@ impl MeasureContext<'_> {
     }
 
     /// Makes the pictures and data files that the protocol asks for, of a view or of the frame with
-    /// the index `frame` of a path, and puts them into [`pictures`](Self::pictures). Returns the
-    /// names of the pictures; `None` without pictures.
+    /// the index `frame` of a path. Returns the names of the pictures, `None` without pictures, and
+    /// the files.
     ///
     /// # Errors
     /// Outputs of another size than the reference.
@@ -354,10 +345,7 @@ impl MeasureContext<'_> {
         frame: Option<usize>,
         ground_truth: &GroundTruth,
         (outputs, judgement, diagnostics): (&Outputs, &Judgement, &Diagnostics),
-    ) -> Result<Option<Images>, CompareError> {
-        let Some(pictures) = &self.pictures else {
-            return Ok(None);
-        };
+    ) -> Result<(Option<Images>, Vec<PictureFile>), CompareError> {
         let place = self.place(method, frame, ground_truth.pixels.viewport);
         let (mut images, mut files) = (None, Vec::new());
         if self.protocol.pictures {
@@ -369,8 +357,7 @@ impl MeasureContext<'_> {
         if let Some(format) = self.protocol.data {
             files.extend(data_files(&place, ground_truth, outputs, format)?);
         }
-        pictures.replace(files);
-        Ok(images)
+        Ok((images, files))
     }
 }
 

@@ -16,6 +16,7 @@ use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Turn};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
+use crate::records::hint::Hint;
 use crate::records::regimes::RegimeTimes;
 use crate::records::results::{AreaReference, Images, Measured, Run};
 use crate::records::samples::TimedFrame;
@@ -123,15 +124,7 @@ impl MeasureContext<'_> {
         self.path.frames.show(index, viewport, provider)?;
         let is_path = matches!(self.view, ViewOrPath::Path(_));
         let counts = &account.counts;
-        let wrong = counts.wrong.total.saturating_sub(counts.wrong.in_band);
-        let explained = account.blockers.filter(|_| self.hints && !is_path);
-        let hint = match explained {
-            Some(blockers) => {
-                let seen = (self.truth_view, layer);
-                hint::find(session, method, seen, (wrong, blockers), provider).await?
-            }
-            None => None,
-        };
+        let hint = self.hint((method, layer), &account, provider).await?;
         let diagnostics =
             diagnose(session, method, truth_view, (&outputs, layer), provider).await?;
         let place = is_path.then_some(index);
@@ -173,6 +166,23 @@ impl MeasureContext<'_> {
             measured,
             pictures,
         })
+    }
+
+    /// Looks for a setting that makes most of the wrong pixels of a still view right.
+    async fn hint(
+        &self,
+        (method, layer): (&Method, usize),
+        account: &Account,
+        provider: &mut SceneProvider,
+    ) -> Result<Option<Hint>, CompareError> {
+        let is_still = matches!(self.view, ViewOrPath::Still(_));
+        let Some(blockers) = account.blockers.filter(|_| self.hints && is_still) else {
+            return Ok(None);
+        };
+        let wrong = account.counts.wrong;
+        let wrong = (wrong.total.saturating_sub(wrong.in_band), blockers);
+        let seen = (self.truth_view, layer);
+        hint::find(self.session, method, seen, wrong, provider).await
     }
 
     /// Runs a method over a camera path and judges each frame; passes whose inputs have not changed

@@ -238,8 +238,10 @@ fn grey_level(value: f32, (low, high): (f32, f32)) -> u8 {
     (share.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
+type NonFinite = (fn(f32) -> bool, [u8; 3], &'static str);
+
 /// Kinds of values that are no numbers to draw: a test, the colour, and the words of the legend.
-const NON_FINITE: [(fn(f32) -> bool, [u8; 3], &str); 3] = [
+const NON_FINITE: [NonFinite; 3] = [
     (f32::is_nan, INVALID, "magenta NaN"),
     (|it| it == f32::INFINITY, POSITIVE_INFINITY, "orange +∞"),
     (

@@ -76,17 +76,15 @@ fn png(bytes: &[u8]) -> Result<Raster, String> {
         reader
     };
     let refused = |why: image::ImageError| format!("it cannot be decoded: {why}; save it anew");
-    let [width, height] = guarded("image", || {
-        let (width, height) = reader().into_dimensions().map_err(refused)?;
-        Ok([width, height])
-    })?;
-    checked([width.into(), height.into()], 1)?;
+    let size = guarded("image", || reader().into_dimensions().map_err(refused))?;
+    let size = <[u32; 2]>::from(size).map(u64::from);
+    checked(size, 1)?;
     let picture = guarded("image", || reader().decode().map_err(refused))?;
     let colour = picture.color();
     let channels = usize::from(colour.channel_count());
     let bits = u32::from(colour.bits_per_pixel()) / channels as u32;
     Ok(Raster {
-        size: checked([width.into(), height.into()], channels as u64)?,
+        size: checked(size, channels as u64)?,
         channels,
         has_alpha: colour.has_alpha(),
         values: samples(&picture, bits),

@@ -269,10 +269,8 @@ impl<'a> Series<'a> {
     /// If an index is out of range.
     pub async fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
         let places = self.places(view, viewport);
-        let (view, viewport) = (
-            &self.comparison.views[view],
-            self.comparison.viewports[viewport],
-        );
+        let view = &self.comparison.views[view];
+        let viewport = self.comparison.viewports[viewport];
         let (scene, protocol) = (&self.comparison.scene, self.comparison.protocol);
         let frames = FrameSequence::new(view, scene, protocol.jitter, None)?;
         let frames = frames.with_moving(self.comparison.moving.as_ref());
@@ -408,10 +406,8 @@ impl<'a> Series<'a> {
                 return Ok(Err(run));
             }
         };
-        let (names, device) = (
-            method.preset.diagnostics(),
-            Capabilities::new(self.session.gpu),
-        );
+        let names = method.preset.diagnostics();
+        let device = Capabilities::new(self.session.gpu);
         let diagnostics = method.plan_of(&names, planned.viewport, device, &self.provider);
         let wrong = diagnostics.err().filter(|faults| is_mistake(faults.iter()));
         let wrong = wrong.map(|faults| format!("`{}`: {}", planned.preset, reasons(faults.iter())));

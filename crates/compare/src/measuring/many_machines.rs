@@ -9,11 +9,11 @@
 //! use std::path::Path;
 //!
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
-//! # fn third_of_ten(comparison: &Comparison, session: Session) -> Done {
+//! # async fn third_of_ten(comparison: &Comparison, session: Session<'_>) -> Done {
 //! let scenes = [SceneCells { comparison, folder: None }];
 //! let plan = plan(&scenes, session, vec!["compare".into()])?;
 //! let share = Share { plan: &plan, shard: "3/10".parse()?, out: Path::new("out") };
-//! let shard = measure(&share, &scenes, session)?;
+//! let shard = measure(&share, &scenes, session).await?;
 //! println!("{} of {} cells were there", shard.kept, shard.cells);
 //! # Ok(())
 //! # }

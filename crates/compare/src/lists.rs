@@ -21,8 +21,12 @@ pub fn unique<T: PartialEq>(list: impl IntoIterator<Item = T>) -> Vec<T> {
 /// added at the end.
 pub fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
     let index = list.iter().position(|listed| *listed == item);
+    index_or_push(list, index, || item)
+}
+
+fn index_or_push<T>(list: &mut Vec<T>, index: Option<usize>, new: impl FnOnce() -> T) -> usize {
     index.unwrap_or_else(|| {
-        list.push(item);
+        list.push(new());
         list.len() - 1
     })
 }
@@ -33,10 +37,8 @@ pub fn find_or_push<T>(
     is: impl FnMut(&T) -> bool,
     new: impl FnOnce() -> T,
 ) -> &mut T {
-    let place = list.iter().position(is).unwrap_or_else(|| {
-        list.push(new());
-        list.len() - 1
-    });
+    let index = list.iter().position(is);
+    let place = index_or_push(list, index, new);
     &mut list[place]
 }
 
@@ -44,9 +46,6 @@ pub fn find_or_push<T>(
 /// the end with the default value.
 pub fn entry<K: PartialEq, V: Default>(list: &mut Vec<(K, V)>, key: K) -> &mut V {
     let index = list.iter().position(|(listed, _)| *listed == key);
-    let place = index.unwrap_or_else(|| {
-        list.push((key, V::default()));
-        list.len() - 1
-    });
+    let place = index_or_push(list, index, || (key, V::default()));
     &mut list[place].1
 }

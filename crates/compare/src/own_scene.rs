@@ -233,9 +233,9 @@ impl OwnScene {
             Some(name) => match self.scene.view(name) {
                 Some(view) => Ok(vec![view.clone()]),
                 None => {
-                    let names: Vec<&str> = views.iter().map(|view| view.name.as_str()).collect();
+                    let names = views.iter().map(|view| &view.name);
                     let what = format!("the scene `{scene}` has no view `{name}`");
-                    let text = unknown(&what, name, "views", &names) + ", or all of them: all";
+                    let text = unknown(&what, name, "views", names) + ", or all of them: all";
                     Err(CompareError::Input(text))
                 }
             },

@@ -150,6 +150,7 @@ fn why(place: Place) -> String {
 
 /// A ground that was added, or that is missing.
 fn floor(options: &MeshSceneOptions, chosen: &Chosen) -> Option<String> {
+    let is_outside = chosen.places.iter().all(|it| *it != Place::Inside);
     match &chosen.ground {
         Some(ground) => Some(format!(
             "a ground was added, a square of {} units at the height {}, just below the lowest \
@@ -162,15 +163,11 @@ fn floor(options: &MeshSceneOptions, chosen: &Chosen) -> Option<String> {
              its lowest point"
                 .into(),
         ),
-        None if !options.ground && chosen.view && !chosen.has_floor && is_outside(chosen) => {
+        None if !options.ground && chosen.view && !chosen.has_floor && is_outside => {
             Some("it has no floor for its shadow to fall on; --ground adds one".into())
         }
         None => None,
     }
-}
-
-fn is_outside(chosen: &Chosen) -> bool {
-    chosen.places.iter().all(|place| *place != Place::Inside)
 }
 
 /// Returns a warning if `sun`, the direction in which the light of the user's own sun travels,

@@ -16,15 +16,11 @@ use glam::DVec3;
 /// Text with the value that was expected.
 pub fn vector(text: &str) -> Result<DVec3, String> {
     let expected = "expected three numbers x,y,z, for example 0.3,-1,0.2";
-    let numbers = text
-        .split(',')
-        .map(|number| {
-            number
-                .trim()
-                .parse::<f64>()
-                .map_err(|_| format!("`{number}` is not a number; {expected}"))
-        })
-        .collect::<Result<Vec<_>, _>>()?;
+    let numbers = text.split(',').map(|number| {
+        let value = number.trim().parse::<f64>();
+        value.map_err(|_| format!("`{number}` is not a number; {expected}"))
+    });
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
     let [x, y, z] = numbers[..] else {
         return Err(format!("{} numbers; {expected}", numbers.len()));
     };

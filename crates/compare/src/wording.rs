@@ -59,14 +59,8 @@ pub fn or_nothing<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String
 /// Returns a number with commas between thousands: `1,234,567`.
 pub fn thousands(number: u64) -> String {
     let digits = number.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
+    let groups = digits.as_bytes().rchunks(3).rev();
+    groups.map(String::from_utf8_lossy).join(",")
 }
 
 /// Returns a length, which is not negative, with three significant digits, and as a whole number
@@ -113,9 +107,16 @@ pub fn did_you_mean<'a>(wanted: &str, names: impl Iterator<Item = &'a str>) -> S
 
 /// Returns a message about the unknown name `wanted`: the text `what`, the name in `names` that is
 /// closest to it, and a line with `nouns` (such as `views`) and all of `names`.
-pub fn unknown(what: &str, wanted: &str, nouns: &str, names: &[&str]) -> String {
-    let hint = did_you_mean(wanted, names.iter().copied());
-    format!("{what}{hint}\n  {nouns}: {}", names.join(", "))
+pub fn unknown<S: AsRef<str>>(
+    what: &str,
+    wanted: &str,
+    nouns: &str,
+    names: impl IntoIterator<Item = S>,
+) -> String {
+    let names: Vec<S> = names.into_iter().collect();
+    let names = || names.iter().map(AsRef::as_ref);
+    let hint = did_you_mean(wanted, names());
+    format!("{what}{hint}\n  {nouns}: {}", names().join(", "))
 }
 
 /// Returns the command line of this process as it can be typed again, with `skiagraph` instead of

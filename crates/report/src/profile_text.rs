@@ -4,10 +4,11 @@ use crate::notes::untimed;
 use crate::table::{or_dash, terminal};
 use skiagraph_compare::graphs::variants::MAP_SIZE;
 use skiagraph_compare::lists::unique;
-use skiagraph_compare::records::baseline::{Comparison, Difference, MIN_FRAMES, Ratio, Verdict};
+use skiagraph_compare::records::baseline::{Comparison, Difference, Ratio, Verdict};
 use skiagraph_compare::records::profile::{Conditions, Line, Material, PassProfile, Profile};
 use skiagraph_compare::records::statistics::Series;
 use skiagraph_compare::records::table::Table;
+use skiagraph_compare::records::turns::LEAST_TURNS;
 use skiagraph_compare::wording::{bytes, frames, ms, or_nothing, size};
 
 /// Returns a profile as text for a terminal, with the comparison with an older profile if it has
@@ -185,7 +186,7 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
     let cpu = lines.map(|(name, _, cpu)| ratio_row("CPU", name, Some(cpu)));
     let wall = ratio_row("wall", WHOLE, Some(frame.wall));
     let rows = gpu.chain(cpu).chain([wall]);
-    let heads = "pass|clock|then|now|now / then|its spread|".split('|');
+    let heads = "pass|clock|then|now|now / then|its interval|".split('|');
     text += &format!("{}\n", terminal(&Table::new(heads, 2, rows)));
     if baseline.frame.gpu.is_none() {
         let side = new.frame.gpu_ms.as_ref().map_or("new", |_| "older");
@@ -196,9 +197,11 @@ fn comparison(baseline: &Comparison, new: &Profile) -> String {
         text += &format!("Only {side}: {}\n", names.join(", "));
     }
     text += &format!(
-        "Medians, ms; the spread goes from Q1(now) / Q3(then) to Q3(now) / Q1(then). Faster or \
-         slower: the middle halves of both\n\
-         samples do not overlap; with fewer than {MIN_FRAMES} frames there is no verdict.\n",
+        "Medians, ms; now / then is the median ratio of every frame now to every frame then, its \
+         interval one of 99.9 % (Mann and\n\
+         Whitney). Faster or slower: the interval lies on one side of 1, and the ratio is off 1 by \
+         3 % or more. With fewer than\n\
+         {LEAST_TURNS} frames there is no ratio.\n",
     );
     text
 }
@@ -219,8 +222,10 @@ fn ratio_row(clock: &str, name: &str, ratio: Option<Ratio>) -> Vec<String> {
         clock.to_owned(),
         ms(ratio.old_ms),
         ms(ratio.new_ms),
-        format!("{:.3}", ratio.ratio),
-        format!("{:.3} … {:.3}", ratio.low, ratio.high),
+        or_dash(ratio.ratio, |ratio| format!("{ratio:.3}")),
+        or_dash(ratio.low.zip(ratio.high), |(low, high)| {
+            format!("{low:.3} … {high:.3}")
+        }),
         verdict.to_owned(),
     ]
 }
@@ -242,7 +247,7 @@ mod tests {
         let (mut old, mut new) = (sample(), sample());
         for (profile, ms) in [(&mut old, 1.0), (&mut new, 3.0)] {
             profile.passes[0].gpu_ms =
-                Series::new(vec![ms, ms + 0.25, ms + 0.5, ms + 0.75, ms + 1.0]);
+                Series::new((0..8).map(|frame| ms + 0.125 * f64::from(frame)).collect());
         }
         old.conditions.params.insert("map_size".into(), 512.into());
         old.conditions.adapter.name = "Another GPU".into();

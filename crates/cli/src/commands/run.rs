@@ -63,10 +63,10 @@ pub async fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         check_encodings(&plan, saves)?;
         let place = format!("{}, view {}, {}", scene.name, view.name, method.size);
         print(&format!("{} on {place}\n{}", preset.name, summary(&plan)))?;
-        let poisoned = match args.poison {
-            true => Some(poison::check(session, &plan, &mut provider, preset).await?),
-            false => None,
-        };
+        let mut poisoned = None;
+        if args.poison {
+            poisoned = Some(poison::check(session, &plan, &mut provider, preset).await?);
+        }
         let still = ViewOrPath::Still(view.clone());
         let still = FrameSequence::new(&still, &scene, None, None)?;
         let frames = (sequence.as_ref().unwrap_or(&still), is_sequence);

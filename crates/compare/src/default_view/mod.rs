@@ -200,6 +200,10 @@ impl Found {
             light: self.light,
         }
     }
+
+    fn is_plenty(&self) -> bool {
+        self.rank >= 2.5
+    }
 }
 
 /// The search for views of a mesh.
@@ -219,13 +223,17 @@ impl Search<'_> {
         given.map_or_else(|| around.collect(), |direction| vec![direction])
     }
 
+    /// Pictures of few pixels of the views that have one.
+    fn few(&self, views: impl Iterator<Item = View>) -> Vec<Picture> {
+        let pictures = views.filter_map(|view| self.room.picture(view, FEW));
+        pictures.collect()
+    }
+
     fn pictures(&self, eyes: &[DVec3], slope: f64) -> Vec<Picture> {
         let directions = self.directions(slope);
         let views = eyes.iter().cartesian_product(&directions);
         let views = views.map(|(eye, way)| self.room.view(*eye, *way, self.request.fov_y_degrees));
-        views
-            .filter_map(|view| self.room.picture(view, FEW))
-            .collect()
+        self.few(views)
     }
 
     /// A sun from a height, turned around the scene from the place of the first one.
@@ -397,9 +405,7 @@ impl Search<'_> {
         let fov = self.request.fov_y_degrees;
         let ways = self.directions(slope);
         let framed = ways.iter().map(|way| self.room.framing(*way, fov));
-        let framed = framed
-            .filter_map(|view| self.room.picture(view, FEW))
-            .collect_vec();
+        let framed = self.few(framed);
         let nearer = NEARER.iter().map(|share| self.nearer(&framed, *share));
         let (mut best, mut filled) = (None::<Found>, 0);
         for group in std::iter::once(framed.clone()).chain(nearer) {
@@ -431,14 +437,6 @@ impl Search<'_> {
                 .view(seen - way * distance, direction, fov_y_degrees)
         });
         let views = views.filter(|view| !self.room.is_buried(view.eye));
-        views
-            .filter_map(|view| self.room.picture(view, FEW))
-            .collect()
-    }
-}
-
-impl Found {
-    fn is_plenty(&self) -> bool {
-        self.rank >= 2.5
+        self.few(views)
     }
 }

@@ -1,5 +1,6 @@
 //! Looks around in a mesh: rays, pictures of few pixels, and their worth.
 
+use crate::records::statistics::median;
 use glam::{DVec2, DVec3};
 use itertools::Itertools;
 use skiagraph_reference::{
@@ -337,8 +338,7 @@ impl<'a> Room<'a> {
         });
         let places = places.collect_vec();
         let distances = places.iter().map(|(_, place)| place.distance(view.eye));
-        let distances = distances.sorted_by(f64::total_cmp).collect_vec();
-        let median = distances.get(distances.len() / 2).copied().unwrap_or(0.0);
+        let median = median(distances.collect());
         let subject = places
             .iter()
             .filter(|(primitive, _)| (*primitive as usize) < self.subject);

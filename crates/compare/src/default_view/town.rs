@@ -1,6 +1,7 @@
 //! Finds places in the streets of a town: a wide mesh on which many things stand apart.
 
 use super::room::Room;
+use crate::records::statistics::median;
 use glam::{DVec2, DVec3};
 use itertools::Itertools;
 use skiagraph_reference::sight::sights;
@@ -43,9 +44,9 @@ const EYES: usize = 8;
 
 /// A town seen from above.
 struct Roofs {
-    /// Height of the floor and of what is seen from above, column by column.
+    /// Height of the floor, column by column, and by how much what is seen from above is higher.
     floors: Vec<f64>,
-    tops: Vec<f64>,
+    rises: Vec<f64>,
     is_roof: Vec<bool>,
     /// Distance from column to column along both axes.
     steps: [f64; 2],
@@ -62,7 +63,7 @@ pub(super) fn street_eyes(room: &Room<'_>) -> Option<(Vec<DVec3>, f64)> {
     let step = numbers.len().div_ceil(PLACES).max(1);
     let places = numbers.iter().step_by(step).map(|number| {
         let [x, z] = [number % COLUMNS, number / COLUMNS];
-        roofs.column(room, x, z) + room.up * (roofs.floors[*number] + height)
+        column(room, roofs.steps, x, z) + room.up * (roofs.floors[*number] + height)
     });
     let open = |place: DVec3| {
         let seen = room.all_around(place, 16, &[0.05]);
@@ -100,13 +101,8 @@ pub(super) fn raised(mesh: &Mesh, place: DVec3, up: DVec3, (height, error): (f64
         is_in.then(|| -at.sum::<DVec3>().dot(up) / sum)
     });
     let floors = heights.filter(|below| (below - height).abs() <= 1.5 * error);
-    let highest = floors.fold(f64::INFINITY, f64::min);
-    let change = if highest.is_finite() {
-        height - highest
-    } else {
-        0.0
-    };
-    place + up * change
+    let highest = floors.reduce(f64::min);
+    place + up * highest.map_or(0.0, |highest| height - highest)
 }
 
 impl Roofs {
@@ -114,58 +110,41 @@ impl Roofs {
     fn new(room: &Room<'_>) -> Option<Self> {
         let [right, back] = room.across;
         let steps = [right, back].map(|axis| 2.0 * room.reach(axis) / COLUMNS as f64);
-        let mut roofs = Self {
-            floors: Vec::new(),
-            tops: Vec::new(),
-            is_roof: Vec::new(),
-            steps,
-        };
         let numbers = (0..COLUMNS).cartesian_product(0..COLUMNS);
         let above = room.reach(room.up) * 1.01;
-        let rays = numbers.map(|(z, x)| (roofs.column(room, x, z) + room.up * above, -room.up));
+        let rays = numbers.map(|(z, x)| (column(room, steps, x, z) + room.up * above, -room.up));
         let seen = sights(&room.oracle, &rays.collect_vec());
         let lowest = -room.reach(room.up);
         let height = |distance: f64| (above - distance).max(lowest);
-        let tops = seen
-            .iter()
-            .map(|it| it.map_or(lowest, |it| height(it.distance)));
-        roofs.tops = tops.collect();
-        let lower = extremes(&roofs.tops, f64::min);
-        roofs.floors = extremes(&lower, f64::max);
-        let rises = roofs.rises();
-        let highest = *rises
-            .iter()
-            .sorted_by(|a, b| a.total_cmp(b))
-            .nth(rises.len() * 98 / 100)?;
-        roofs.is_roof = rises.iter().map(|rise| *rise > ROOF * highest).collect();
+        let tops = seen.iter();
+        let tops = tops.map(|it| it.map_or(lowest, |it| height(it.distance)));
+        let tops = tops.collect_vec();
+        let floors = extremes(&extremes(&tops, f64::min), f64::max);
+        let rises = tops.iter().zip(&floors).map(|(top, floor)| top - floor);
+        let rises = rises.collect_vec();
+        let mut sorted = rises.iter().copied().sorted_by(f64::total_cmp);
+        let highest = sorted.nth(rises.len() * 98 / 100)?;
+        let roofs = Self {
+            is_roof: rises.iter().map(|rise| *rise > ROOF * highest).collect(),
+            floors,
+            rises,
+            steps,
+        };
         let built = roofs.is_roof.iter().filter(|is_roof| **is_roof).count() as f64;
         let width = steps[0].min(steps[1]) * COLUMNS as f64;
         let is_town = highest > 1e-6 * width
-            && built <= MOST_BUILT * rises.len() as f64
+            && built <= MOST_BUILT * roofs.rises.len() as f64
             && roofs.houses() >= HOUSES
             && roofs.steep(ROOF * highest) <= STEEP
             && width >= WIDE * roofs.median_rise();
         is_town.then_some(roofs)
     }
 
-    fn rises(&self) -> Vec<f64> {
-        self.tops
-            .iter()
-            .zip(&self.floors)
-            .map(|(top, floor)| top - floor)
-            .collect()
-    }
-
-    /// Place in the middle of a column, at the height of the room's middle.
-    fn column(&self, room: &Room<'_>, x: usize, z: usize) -> DVec3 {
-        let aside = |number: usize| number as f64 + 0.5 - COLUMNS as f64 * 0.5;
-        let [right, back] = room.across;
-        room.middle + right * (aside(x) * self.steps[0]) + back * (aside(z) * self.steps[1])
-    }
-
     fn median_rise(&self) -> f64 {
-        let rises = self.rises().into_iter().zip(&self.is_roof);
-        let rises = rises.filter(|(_, is_roof)| **is_roof).map(|(rise, _)| rise);
+        let rises = self.rises.iter().zip(&self.is_roof);
+        let rises = rises
+            .filter(|(_, is_roof)| **is_roof)
+            .map(|(rise, _)| *rise);
         median(rises.collect())
     }
 
@@ -205,16 +184,11 @@ impl Roofs {
     /// The height of an eye in the unit that houses and streets suggest.
     fn eye_height(&self) -> Option<f64> {
         let [mut roofs, mut streets] = [Vec::new(), Vec::new()];
-        for (axis, step) in self.steps.iter().enumerate() {
+        let axes = [[COLUMNS, 1], [1, COLUMNS]].into_iter().zip(self.steps);
+        for ([to_row, to_next], step) in axes {
             for row in 0..COLUMNS {
-                let number = |at: usize| {
-                    if axis == 0 {
-                        row * COLUMNS + at
-                    } else {
-                        at * COLUMNS + row
-                    }
-                };
-                let is_roof = (0..COLUMNS).map(|at| self.is_roof[number(at)]);
+                let numbers = (0..COLUMNS).map(|at| row * to_row + at * to_next);
+                let is_roof = numbers.map(|number| self.is_roof[number]);
                 let runs = is_roof.chunk_by(|it| *it);
                 let runs = runs
                     .into_iter()
@@ -246,6 +220,13 @@ impl Roofs {
     }
 }
 
+/// Place in the middle of a column, at the height of the room's middle.
+fn column(room: &Room<'_>, steps: [f64; 2], x: usize, z: usize) -> DVec3 {
+    let aside = |number: usize| number as f64 + 0.5 - COLUMNS as f64 * 0.5;
+    let [right, back] = room.across;
+    room.middle + right * (aside(x) * steps[0]) + back * (aside(z) * steps[1])
+}
+
 fn neighbours(number: usize) -> impl Iterator<Item = usize> {
     skiagraph_reference::pixels::neighbours(number, [COLUMNS; 2])
 }
@@ -264,9 +245,4 @@ fn extremes(values: &[f64], extreme: fn(f64, f64) -> f64) -> Vec<f64> {
         column.reduce(extreme).unwrap_or_default()
     });
     columns.collect()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

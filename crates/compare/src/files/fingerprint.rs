@@ -17,7 +17,7 @@
 //! ```
 
 use skiagraph_graph::{Picture, Sources};
-use skiagraph_scene::{Light, Mesh, View, packed_masks::mask_words};
+use skiagraph_scene::{Light, Mesh, packed_masks::mask_words};
 use std::{
     collections::BTreeMap,
     fmt,
@@ -33,18 +33,10 @@ impl Fingerprint {
     /// The hash of an empty input, to which the `with_…` functions add.
     pub const EMPTY: Self = Self(0xcbf2_9ce4_8422_2325);
 
-    /// With more bytes.
-    fn with(self, bytes: impl IntoIterator<Item = u8>) -> Self {
-        let mut hash = self.0;
-        for byte in bytes {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-        Self(hash)
-    }
-
     /// Returns the hash extended by bytes, without their number.
     pub(crate) fn with_bytes(self, bytes: &[u8]) -> Self {
-        self.with(bytes.iter().copied())
+        let with = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        Self(bytes.iter().fold(self.0, with))
     }
 
     /// Returns the hash as bytes, the least significant one first.
@@ -56,39 +48,27 @@ impl Fingerprint {
     /// one text to the next changes the hash.
     pub fn with_text(self, text: &str) -> Self {
         let length = (text.len() as u64).to_le_bytes();
-        self.with(length).with(text.bytes())
+        self.with_bytes(&length).with_bytes(text.as_bytes())
     }
 
     /// Returns the hash extended by another hash.
     pub fn with_all(self, other: Self) -> Self {
-        self.with(other.0.to_le_bytes())
+        self.with_bytes(&other.bytes())
     }
 
     /// Returns the hash extended by a mesh (positions, triangles, normals, masks) and lights.
     pub fn with_scene(self, mesh: &Mesh, lights: &[Light]) -> Self {
-        let floats = |list: &[glam::Vec3]| -> Self {
-            let numbers = list.iter().flat_map(|v| v.to_array());
-            Self::EMPTY.with(numbers.flat_map(f32::to_le_bytes))
-        };
-        let indices = |list: &[[u32; 3]]| -> Self {
-            let numbers = list.iter().flatten();
-            Self::EMPTY.with(numbers.flat_map(|index| index.to_le_bytes()))
-        };
+        let list = |bytes: &[u8]| Self::EMPTY.with_bytes(bytes);
         let masks = match mask_words(mesh) {
             words if words.is_empty() => self,
-            words => self.with_all(Self::EMPTY.with(words.iter().flat_map(|it| it.to_le_bytes()))),
+            words => self.with_all(list(bytemuck::cast_slice(&words))),
         };
         masks
-            .with_all(floats(&mesh.positions))
-            .with_all(indices(&mesh.triangles))
-            .with_all(floats(&mesh.normals))
-            .with_all(indices(&mesh.normal_indices))
+            .with_all(list(bytemuck::cast_slice(&mesh.positions)))
+            .with_all(list(bytemuck::cast_slice(&mesh.triangles)))
+            .with_all(list(bytemuck::cast_slice(&mesh.normals)))
+            .with_all(list(bytemuck::cast_slice(&mesh.normal_indices)))
             .with_text(&format!("{lights:?}"))
-    }
-
-    /// Returns the hash extended by all fields of a view.
-    pub fn with_view(self, view: &View) -> Self {
-        self.with_text(&format!("{view:?}"))
     }
 }
 
@@ -143,13 +123,9 @@ impl Sources for RecordedSources<'_> {
     fn picture(&self, path: &str) -> Result<Option<Picture>, String> {
         let picture = self.sources.picture(path)?;
         if let Some(Picture { size, texels }) = &picture {
-            let texels = texels
-                .iter()
-                .flatten()
-                .flat_map(|value| value.to_le_bytes());
             let content = Fingerprint::EMPTY
                 .with_text(&format!("{size:?}"))
-                .with(texels);
+                .with_bytes(bytemuck::cast_slice(texels));
             self.record(path, content);
         }
         Ok(picture)
@@ -174,7 +150,10 @@ mod tests {
             ("a", "af63dc4c8601ec8c"),
             ("foobar", "85944171f73967e8"),
         ] {
-            assert_eq!(Fingerprint::EMPTY.with(text.bytes()).to_string(), hash);
+            assert_eq!(
+                Fingerprint::EMPTY.with_bytes(text.as_bytes()).to_string(),
+                hash
+            );
         }
     }
 

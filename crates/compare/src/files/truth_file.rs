@@ -36,26 +36,19 @@ impl Truth {
     /// Returns the content of the file, the same bytes for the same answers: a fixed head, the
     /// answers of all pixels, and a hash of all before it. Numbers are little-endian.
     pub fn bytes(&self) -> Vec<u8> {
-        let GroundTruthPixels {
-            viewport,
-            classes,
-            indeterminate,
-            n_dot_l,
-            base_colors,
-        } = &self.ground_truth.pixels;
+        let pixels = &self.ground_truth.pixels;
         let area = self.ground_truth.area.as_ref();
         let mut bytes = MAGIC.to_vec();
         let samples = area.map_or(0, |area| area.samples);
-        let has_colors = u32::from(!base_colors.is_empty());
-        for number in [viewport[0], viewport[1], samples, has_colors] {
-            bytes.extend(number.to_le_bytes());
-        }
-        bytes.extend(self.wrong_surfaces.to_le_bytes());
-        bytes.extend(classes.iter().map(|class| byte_of(*class)));
-        bytes.extend(indeterminate.iter().map(|flag| u8::from(*flag)));
-        let mut floats = |list: &[f32]| bytes.extend(list.iter().flat_map(|it| it.to_le_bytes()));
-        floats(n_dot_l);
-        floats(base_colors.as_flattened());
+        let has_colors = u32::from(!pixels.base_colors.is_empty());
+        let [width, height] = pixels.viewport;
+        bytes.extend(bytemuck::bytes_of(&[width, height, samples, has_colors]));
+        bytes.extend(bytemuck::bytes_of(&self.wrong_surfaces));
+        bytes.extend(pixels.status());
+        bytes.extend(bytemuck::cast_slice::<bool, u8>(&pixels.indeterminate));
+        let mut floats = |list: &[f32]| bytes.extend(bytemuck::cast_slice::<f32, u8>(list));
+        floats(&pixels.n_dot_l);
+        floats(pixels.base_colors.as_flattened());
         if let Some(area) = area {
             floats(&area.shares);
             floats(&area.standard_errors);
@@ -75,23 +68,26 @@ impl Truth {
         if !content.starts_with(MAGIC) || hash(content) != *end {
             return Err(torn());
         }
-        let mut left = Left(&content[MAGIC.len()..]);
+        let left = &mut &content[MAGIC.len()..];
         let mut read = || {
-            let [width, height, samples, has_colors] = left.numbers::<4>()?;
+            let [width, height, samples, has_colors] = take(left, 4)?[..] else {
+                return None;
+            };
             let pixels = usize::try_from(u64::from(width) * u64::from(height)).ok()?;
-            let wrong_surfaces = u64::from_le_bytes(*left.chunk::<8>()?);
-            let classes = left.take(pixels)?.iter().map(|byte| class_of(*byte));
+            let wrong_surfaces = take(left, 1)?[0];
+            let classes = take(left, pixels)?.into_iter().map(class_of);
             let classes = classes.collect::<Option<_>>()?;
-            let indeterminate = left.take(pixels)?.iter().map(|byte| *byte != 0).collect();
-            let n_dot_l = left.floats(pixels)?;
-            let colors = left.floats(if has_colors == 0 { 0 } else { 3 * pixels })?;
+            let indeterminate = take::<u8>(left, pixels)?;
+            let indeterminate = indeterminate.iter().map(|byte| *byte != 0).collect();
+            let n_dot_l = take(left, pixels)?;
+            let base_colors = take(left, if has_colors == 0 { 0 } else { pixels })?;
             let area = if samples == 0 {
                 None
             } else {
                 Some(AreaVisibility {
                     samples,
-                    shares: left.floats(pixels)?,
-                    standard_errors: left.floats(pixels)?,
+                    shares: take(left, pixels)?,
+                    standard_errors: take(left, pixels)?,
                 })
             };
             let pixels = GroundTruthPixels {
@@ -99,10 +95,10 @@ impl Truth {
                 classes,
                 indeterminate,
                 n_dot_l,
-                base_colors: colors.as_chunks().0.to_vec(),
+                base_colors,
             };
             let ground_truth = GroundTruth { pixels, area };
-            left.0.is_empty().then_some(Self {
+            left.is_empty().then_some(Self {
                 ground_truth,
                 wrong_surfaces,
             })
@@ -111,46 +107,17 @@ impl Truth {
     }
 }
 
-/// Bytes that are not read yet.
-struct Left<'a>(&'a [u8]);
-
-impl<'a> Left<'a> {
-    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, left) = self.0.split_at_checked(count)?;
-        self.0 = left;
-        Some(taken)
-    }
-
-    fn chunk<const N: usize>(&mut self) -> Option<&'a [u8; N]> {
-        self.take(N)?.try_into().ok()
-    }
-
-    fn numbers<const N: usize>(&mut self) -> Option<[u32; N]> {
-        let mut numbers = [0; N];
-        for number in &mut numbers {
-            *number = u32::from_le_bytes(*self.chunk()?);
-        }
-        Some(numbers)
-    }
-
-    fn floats(&mut self, count: usize) -> Option<Vec<f32>> {
-        let bytes = self.take(count.checked_mul(4)?)?;
-        let each = bytes.as_chunks::<4>().0.iter();
-        Some(each.map(|bytes| f32::from_le_bytes(*bytes)).collect())
-    }
+/// Takes some numbers from the bytes that are left.
+fn take<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(
+    left: &mut &[u8],
+    count: usize,
+) -> Option<Vec<T>> {
+    let taken = left.split_off(..count.checked_mul(size_of::<T>())?)?;
+    Some(bytemuck::pod_collect_to_vec(taken))
 }
 
 fn hash(bytes: &[u8]) -> [u8; 8] {
     Fingerprint::EMPTY.with_bytes(bytes).bytes()
-}
-
-fn byte_of(class: Class) -> u8 {
-    match class {
-        Class::Background => 0,
-        Class::FacingAway => 1,
-        Class::Lit => 2,
-        Class::Shadow => 3,
-    }
 }
 
 fn class_of(byte: u8) -> Option<Class> {

@@ -84,9 +84,8 @@ pub fn folders<'a>(arguments: impl Iterator<Item = &'a str>) -> BTreeSet<PathBuf
 /// True if documents name files in such a folder: not in one of a build or of git.
 fn holds_shaders(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    entries
-        .map(|entry| entry.path())
-        .any(|path| is_source(&path))
+    let mut paths = entries.map(|entry| entry.path());
+    paths.any(|path| is_source(&path))
 }
 
 fn is_source(path: &Path) -> bool {

@@ -147,11 +147,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
 /// # Errors
 /// The file cannot be written.
 pub fn write_durable(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
-    let write = || -> io::Result<()> {
-        durable(path, bytes)?.persist(path)?;
-        Ok(())
-    };
-    write().map_err(|error| CompareError::write(path, error))
+    let written = durable(path, bytes).and_then(|file| Ok(file.persist(path)?));
+    written.map_err(|error| CompareError::write(path, error))?;
+    Ok(())
 }
 
 /// Writes a file as [`write_durable`] does, unless a file of that name exists. Returns true if the
@@ -160,14 +158,15 @@ pub fn write_durable(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
 /// # Errors
 /// The file cannot be written.
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<bool, CompareError> {
-    let write = || -> io::Result<bool> {
-        match durable(path, bytes)?.persist_noclobber(path) {
-            Ok(_) => Ok(true),
-            Err(kept) if kept.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
-            Err(kept) => Err(kept.error),
-        }
-    };
-    write().map_err(|error| CompareError::write(path, error))
+    let failed = |error| CompareError::write(path, error);
+    match durable(path, bytes)
+        .map_err(failed)?
+        .persist_noclobber(path)
+    {
+        Ok(_) => Ok(true),
+        Err(kept) if kept.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+        Err(kept) => Err(failed(kept.error)),
+    }
 }
 
 /// A file beside `path` that is on the disk, and has no name of its own yet.

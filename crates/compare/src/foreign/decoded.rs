@@ -13,19 +13,59 @@ pub(crate) const MOST_NUMBERS: u64 = 1 << 27;
 pub(crate) const HALF: f64 = 1.0 / 2048.0;
 pub(crate) const FLOAT: f64 = 1.0 / 16_777_216.0;
 
-/// Numbers of a picture as its decoder finds them, with all colour channels.
-pub(crate) struct Decoded {
-    pub(crate) size: [u32; 2],
-    /// Numbers of each pixel, alpha included.
-    pub(crate) channels: usize,
-    /// True if the last channel is alpha.
+/// Numbers of a picture file, one or three for each pixel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Raster {
+    /// Path of the file, as it was given.
+    pub file: String,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Numbers per pixel: 1, or 3 if red, green and blue differ somewhere.
+    pub channels: usize,
+    /// Numbers as the file holds them, pixel after pixel, row by row from the top left. A pixel has
+    /// `channels` numbers.
+    pub values: Vec<f64>,
+    /// Number that stands for 1 in a format of integers, such as 255; `None` for floats, in which 1
+    /// stands for 1.
+    pub whole: Option<f64>,
+    /// Greatest error of a number by rounding: for integers one step as a share of `whole`, such as
+    /// 1/255; for floats relative to the number.
+    pub precision: f64,
+    /// Description of the format: `PNG, 8 bits, grey`.
+    pub format: String,
+    /// Warnings about what was left out, such as alpha.
+    pub warnings: Vec<String>,
+    /// True if the last channel of the file is alpha.
     pub(crate) has_alpha: bool,
-    pub(crate) values: Vec<f64>,
-    pub(crate) whole: Option<f64>,
-    /// Greatest relative error of a number by rounding.
-    pub(crate) precision: f64,
-    /// The format and its type of numbers: `PNG, 8 bits`.
-    pub(crate) format: String,
+}
+
+impl Raster {
+    /// Leaves out alpha, and channels that repeat the first one.
+    pub(super) fn without_alpha(mut self) -> Self {
+        let (stored, has_alpha) = (self.channels, self.has_alpha);
+        let colours = stored - usize::from(has_alpha);
+        let opaque = self.whole.unwrap_or(1.0);
+        let is_seen_through = |pixel: &&[f64]| has_alpha && pixel[stored - 1] != opaque;
+        let pixels = || self.values.chunks_exact(stored);
+        let seen_through = pixels().filter(is_seen_through).count();
+        let is_grey = pixels().all(|pixel| {
+            pixel[1..colours]
+                .iter()
+                .all(|it| it.to_bits() == pixel[0].to_bits())
+        });
+        let channels = if is_grey { 1 } else { colours };
+        let kept = pixels().flat_map(|pixel| &pixel[..channels]);
+        (self.values, self.channels) = (kept.copied().collect(), channels);
+        if seen_through > 0 {
+            self.warnings.push(format!(
+                "alpha is not read, and {} pixels are not opaque: write what they show over \
+                 nothing else, without alpha",
+                thousands(seen_through as u64)
+            ));
+        }
+        self.format += if is_grey { ", grey" } else { ", colours" };
+        self
+    }
 }
 
 /// Checks the size of a picture before room is made for it. `channels` includes alpha.

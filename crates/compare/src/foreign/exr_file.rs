@@ -1,8 +1,9 @@
 //! Decodes OpenEXR pictures.
 
-use crate::foreign::decoded::{Decoded, FLOAT, HALF, checked, guarded};
+use crate::foreign::decoded::{FLOAT, HALF, Raster, checked, guarded};
 use exr::meta::{MetaData, header::Header};
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, Vec2};
+use itertools::Itertools;
 use std::io::Cursor;
 
 /// Decodes the only layer of a picture: its channel Y, its channels R, G and B, or its only one;
@@ -10,7 +11,7 @@ use std::io::Cursor;
 ///
 /// # Errors
 /// The reason, as the rest of a message that begins with the file.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
+pub(crate) fn decode(bytes: &[u8]) -> Result<Raster, String> {
     let refused = |why: exr::error::Error| format!("it cannot be decoded: {why}; save it anew");
     let meta = guarded("exr", || {
         MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(refused)
@@ -19,15 +20,10 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
         return Err(format!("it has {} layers; save one", meta.headers.len()));
     };
     let size = header.layer_size;
-    let count = header.channels.list.len() as u64;
-    let size = checked([size.x() as u64, size.y() as u64], count)?;
+    let list = &header.channels.list;
+    let size = checked([size.x() as u64, size.y() as u64], list.len() as u64)?;
     check_window(header)?;
-    let names = header
-        .channels
-        .list
-        .iter()
-        .map(|channel| channel.name.to_string());
-    let names: Vec<String> = names.collect();
+    let names: Vec<String> = list.iter().map(|it| it.name.to_string()).collect();
     let chosen = channels(&names)?;
     let picture = guarded("exr", || {
         let reader = exr::prelude::read().no_deep_data();
@@ -55,14 +51,14 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
         Some(FlatSamples::U32(_)) => "uint",
         _ => "float",
     };
-    Ok(Decoded {
+    Ok(Raster {
         size,
         channels: planes.len(),
         has_alpha: chosen.last().is_some_and(|name| last_part(name) == "A") && planes.len() > 1,
         values,
-        whole: None,
         precision: if kind == "half" { HALF } else { FLOAT },
         format: format!("EXR, {kind}"),
+        ..Raster::default()
     })
 }
 
@@ -105,23 +101,20 @@ fn last_part(name: &str) -> &str {
 /// The channels that are read, of these.
 fn channels(names: &[String]) -> Result<Vec<&String>, String> {
     let unique = |wanted: &str| {
-        let mut matches = names.iter().filter(|name| last_part(name) == wanted);
-        matches.next().filter(|_| matches.next().is_none())
+        let matches = names.iter().filter(|name| last_part(name) == wanted);
+        matches.exactly_one().ok()
     };
     let group = |wanted: &[&str]| {
-        wanted
-            .iter()
-            .map(|name| unique(name))
-            .collect::<Option<Vec<_>>>()
+        let names = wanted.iter().map(|name| unique(name));
+        names.collect::<Option<Vec<_>>>()
     };
-    let alone = || <[&String; 1]>::try_from(names.iter().collect::<Vec<_>>()).ok();
     let colours = group(&["Y"])
         .or_else(|| group(&["R", "G", "B"]))
         .or_else(|| group(&["R"]));
-    let mut chosen = match (colours, alone()) {
+    let mut chosen = match (colours, names) {
         (Some(chosen), _) => chosen,
-        (None, Some([only])) => return Ok(vec![only]),
-        (None, None) => {
+        (None, [only]) => return Ok(vec![only]),
+        (None, _) => {
             return Err(format!(
                 "its channels are {}; expected one channel, Y, or R, G and B once: save one layer",
                 names.join(", ")

@@ -15,7 +15,7 @@
 //! ```
 
 use crate::error::CompareError;
-use crate::foreign::raster::{Raster, check_size};
+use crate::foreign::raster::{self, Raster, check_size};
 use std::{path::Path, str::FromStr};
 
 /// Conventions of a picture of the light factor that differ from the default: first row at the top,
@@ -79,14 +79,14 @@ impl Factor {
     /// above 1 is 1; where the picture without shadows is black it is 0.
     ///
     /// # Errors
-    /// The errors of [`Raster::read`]; a picture in colours without `unshadowed`; pictures of
+    /// The errors of [`raster::read`]; a picture in colours without `unshadowed`; pictures of
     /// different sizes or without a finite number.
     pub fn read(
         path: &Path,
         unshadowed: Option<&Raster>,
         reading: Reading,
     ) -> Result<Self, CompareError> {
-        let raster = Raster::read(path)?;
+        let raster = raster::read(path)?;
         let mut light = light(&raster, reading)?;
         let mut is_black = Vec::new();
         match unshadowed {
@@ -188,7 +188,7 @@ mod tests {
         let shadowed = Values::F32(vec![0.0, 0.25, 0.5, 0.0, 0.7, f32::NAN]);
         let shadowed = raster(&folder, "a.npy", shadowed, [3, 2]);
         let whole = Values::F32(vec![0.5, 0.5, 0.5, 0.0, 0.6, 0.5]);
-        let whole = Raster::read(&raster(&folder, "b.npy", whole, [3, 2])).unwrap();
+        let whole = raster::read(&raster(&folder, "b.npy", whole, [3, 2])).unwrap();
         let factor = Factor::read(&shadowed, Some(&whole), Reading::default()).unwrap();
         assert_eq!(factor.shares[..5], [0.0, 0.5, 1.0, 0.0, 1.0]);
         assert!(factor.shares[5].is_nan());

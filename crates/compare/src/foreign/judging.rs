@@ -25,14 +25,14 @@ use crate::files::json::to_text;
 use crate::files::write::{check_folder, write_whole};
 use crate::foreign::elsewhere::elsewhere;
 use crate::foreign::factor::{Factor, Reading};
-use crate::foreign::raster::{Raster, check_size};
+use crate::foreign::raster::{self, Raster, check_size};
 use crate::foreign::surfaces::{by_depth, ids};
 use crate::foreign::suspicions::{Agreement, Suspect, Suspicions};
 use crate::graphs::ground_truth::Judgement;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::device::{self, GpuRequest};
 use crate::measuring::ground_truth::{
-    GroundTruthView, PrimaryVisibility, REFERENCE_SAMPLES, heard, own_counts,
+    GroundTruthView, PrimaryVisibility, REFERENCE_SAMPLES, by_rows, own_counts,
 };
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::pictures::run_pictures::{
@@ -44,9 +44,9 @@ use crate::sink::{Session, Sink, Step};
 use crate::wording::{percent, plural, size, thousands};
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use skiagraph_reference::{
-    Candidate, Class, GroundTruth, Oracle, OracleMode, Statistics, candidates, unattributable,
+    Class, GroundTruth, Oracle, OracleMode, Statistics, candidates, unattributable,
 };
-use skiagraph_scene::{LightKind, Scene, View};
+use skiagraph_scene::{Scene, View};
 use std::{
     borrow::Cow,
     collections::BTreeSet,
@@ -57,7 +57,7 @@ use std::{
 
 /// Source of the surface that each pixel shows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Surfaces {
+pub enum Surfaces<F = PathBuf> {
     /// Skiagraph rasterises the scene. The other renderer may show another surface that lies within
     /// a sixteenth of a pixel of the pixel's centre: a pixel whose right answer depends on this
     /// choice is [unattributable](JudgedPictures::unattributable).
@@ -65,11 +65,11 @@ pub enum Surfaces {
     Rasterised,
     /// A file with the id of each pixel's triangle, the first row at the top, in the form that
     /// [`ids`] reads. The surface is then known, and no GPU is needed.
-    Ids(PathBuf),
+    Ids(F),
     /// A file with the depth of each pixel, the first row at the top, in one of the forms of
     /// [`DepthForm`](crate::foreign::surfaces::DepthForm). The form is found by itself: it is the
     /// one in which the most pixels have the depth of a surface of the scene ([`by_depth`]).
-    Depth(PathBuf),
+    Depth(F),
 }
 
 /// Pictures of one view, and how they are judged.
@@ -175,18 +175,15 @@ pub async fn judge(
         return Err(CompareError::Request("no picture to judge".into()));
     };
     let named = match &judging.surfaces {
-        Surfaces::Rasterised => None,
-        Surfaces::Ids(file) | Surfaces::Depth(file) => Some(Raster::read(file)?),
+        Surfaces::Rasterised => Surfaces::Rasterised,
+        Surfaces::Ids(file) => Surfaces::Ids(raster::read(file)?),
+        Surfaces::Depth(file) => Surfaces::Depth(raster::read(file)?),
     };
-    if let Some(named) = &named {
+    if let Surfaces::Ids(named) | Surfaces::Depth(named) = &named {
         check_size((&factors[0].file, viewport), (&named.file, named.size))?;
     }
     let scene = Arc::new(scene);
     let how = (judging.oracle, judging.reference_samples);
-    let named = named.map(|raster| match &judging.surfaces {
-        Surfaces::Ids(_) => Named::Ids(raster),
-        _ => Named::Depth(raster),
-    });
     let truth = truth((&scene, view, viewport), named, how, gpu, sink).await?;
     let ground_truth = &truth.view.ground_truth;
     // Pixels that are not judged are kept apart as those of the band are.
@@ -229,11 +226,8 @@ pub async fn judge(
             }
         }
         record.pictures.push(picture);
-        files.extend(
-            drawn
-                .into_iter()
-                .filter(|file| taken.insert(file.name.to_lowercase())),
-        );
+        let drawn = drawn.into_iter();
+        files.extend(drawn.filter(|file| taken.insert(file.name.to_lowercase())));
     }
     rank(&mut record);
     Ok(Judged { record, files })
@@ -241,17 +235,11 @@ pub async fn judge(
 
 /// Reads the pictures, which are of one size.
 fn factors(judging: &Judging) -> Result<Vec<Factor>, CompareError> {
-    let unshadowed = judging
-        .unshadowed
-        .as_deref()
-        .map(Raster::read)
-        .transpose()?;
+    let unshadowed = judging.unshadowed.as_deref().map(raster::read);
+    let unshadowed = unshadowed.transpose()?;
     let read = |path: &PathBuf| Factor::read(path, unshadowed.as_ref(), judging.reading);
-    let factors: Vec<Factor> = judging
-        .pictures
-        .iter()
-        .map(read)
-        .collect::<Result<_, _>>()?;
+    let factors: Result<Vec<Factor>, _> = judging.pictures.iter().map(read).collect();
+    let factors = factors?;
     for other in &factors {
         let first = (&*factors[0].file, factors[0].size);
         check_size(first, (&other.file, other.size))?;
@@ -259,16 +247,10 @@ fn factors(judging: &Judging) -> Result<Vec<Factor>, CompareError> {
     Ok(factors)
 }
 
-/// Surfaces as another renderer names them.
-pub(crate) enum Named {
-    Ids(Raster),
-    Depth(Raster),
-}
-
 /// Finds the truth of a view, and the pixels at which it is not unique.
 pub(crate) async fn truth<'a>(
     (scene, view, viewport): (&'a Arc<Scene>, &View, [u32; 2]),
-    named: Option<Named>,
+    named: Surfaces<Raster>,
     how: (OracleMode, u32),
     gpu: &GpuRequest,
     sink: &dyn Sink,
@@ -282,7 +264,7 @@ pub(crate) async fn truth<'a>(
         let heard = (&*what, sink);
         GroundTruthView::new(oracle.clone(), camera, light, primitives, how, heard)
     };
-    if let Some(Named::Ids(raster)) = &named {
+    if let Surfaces::Ids(raster) = &named {
         let primitives = ids(raster, scene.mesh.triangles.len())?;
         let unattributable = vec![false; primitives.len()];
         let view = traced(primitives)?;
@@ -294,14 +276,12 @@ pub(crate) async fn truth<'a>(
         });
     }
     let rasterised = rasterised(scene, view, viewport, gpu, sink).await?;
-    let rows = u64::from(viewport[1]);
-    let step = Step::begin(sink, &format!("surfaces, {what}"), rows, "rows");
-    let rows_done = |rows| step.set_done(rows);
-    let candidates = candidates(&oracle, &camera, heard(sink, &rows_done));
-    let mut candidates = candidates.map_err(|_| CompareError::interrupted())?;
-    step.end();
+    let rows = viewport[1];
+    let mut candidates = by_rows(sink, &format!("surfaces, {what}"), rows, |progress| {
+        candidates(&oracle, &camera, progress).map_err(|_| CompareError::interrupted())
+    })?;
     let (primitives, surfaces) = match &named {
-        Some(Named::Depth(raster)) => {
+        Surfaces::Depth(raster) => {
             let matched = by_depth(raster, &camera, &mut candidates, &rasterised)?;
             let depths = format!("{}: read as {}", raster.file, matched.form.text());
             sink.note(&if matched.astray > 0 {
@@ -315,43 +295,17 @@ pub(crate) async fn truth<'a>(
         _ => (rasterised, RASTERISED),
     };
     let view = traced(primitives)?;
-    let unattributable = open_pixels(
-        &oracle,
-        (&camera, &light),
-        &candidates,
-        &view,
-        how,
-        (&what, sink),
-    )?;
+    let name = format!("unattributable pixels, {what}");
+    let unattributable = by_rows(sink, &name, rows, |progress| {
+        let (seen, truth) = ((&camera, &light), &view.ground_truth);
+        let open = unattributable(&oracle, seen, &candidates, truth, how, progress);
+        open.map_err(|_| CompareError::interrupted())
+    })?;
     Ok(Truth {
         view,
         unattributable,
         surfaces,
     })
-}
-
-/// The pixels at which the truth is not unique.
-fn open_pixels(
-    oracle: &Oracle,
-    (camera, light): (&skiagraph_scene::Camera, &LightKind),
-    candidates: &[Vec<Candidate>],
-    view: &GroundTruthView,
-    how: (OracleMode, u32),
-    (what, sink): (&str, &dyn Sink),
-) -> Result<Vec<bool>, CompareError> {
-    let rows = u64::from(camera.viewport[1]);
-    let step = Step::begin(
-        sink,
-        &format!("unattributable pixels, {what}"),
-        rows,
-        "rows",
-    );
-    let rows_done = |rows| step.set_done(rows);
-    let (seen, progress) = ((camera, light), heard(sink, &rows_done));
-    let open = unattributable(oracle, seen, candidates, &view.ground_truth, how, progress);
-    let open = open.map_err(|_| CompareError::interrupted())?;
-    step.end();
-    Ok(open)
 }
 
 /// The surfaces that every method's G-buffer shows.
@@ -434,7 +388,7 @@ fn one(
     let Suspicions { texts, agreement } = suspect.suspicions();
     warnings.extend(texts);
     let has_blockers = judgement.is_hard && wrong.certain > 0;
-    let blockers = has_blockers.then(|| truth.view.blockers_of(&outputs, pixels));
+    let blockers = has_blockers.then(|| truth.view.blockers(&outputs, pixels));
     let (images, files) = if judging.draws {
         let (images, files) = draw(factor, &answered_truth, (&outputs, &judgement))?;
         (Some(images), files)
@@ -458,7 +412,7 @@ fn one(
         wrong_unattributable: apart.saturating_sub(wrong.in_band),
         wrong,
         graded: judgement.graded,
-        edges: truth.view.edges_of(&outputs, pixels)?,
+        edges: truth.view.edges(&outputs, pixels)?,
         wrong_blockers: blockers.transpose()?,
         warnings,
         images,
@@ -494,11 +448,8 @@ fn draw(
 
 /// That pixels which face the light are black without shadows, too: they have no quotient.
 fn black(factor: &Factor, is_judged: &[bool]) -> Option<String> {
-    let mut pixels = factor.is_black.iter().zip(is_judged);
-    let count = pixels
-        .by_ref()
-        .filter(|(black, judged)| **black && **judged)
-        .count();
+    let pixels = factor.is_black.iter().zip(is_judged);
+    let count = pixels.filter(|(black, judged)| **black && **judged).count();
     (count > 0).then(|| {
         format!(
             "{} facing the light, black in the picture without shadows, too: no quotient there, \

@@ -1,6 +1,6 @@
 //! Decodes arrays of NumPy, `.npy`, of the versions 1 to 3 of the format.
 
-use crate::foreign::decoded::{Decoded, FLOAT, HALF, checked};
+use crate::foreign::decoded::{FLOAT, HALF, Raster, checked};
 use exr::prelude::f16;
 use itertools::Itertools;
 
@@ -28,7 +28,7 @@ const KINDS: [Kind; 10] = [
 ///
 /// # Errors
 /// The reason, as the rest of a message that begins with the file.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
+pub(crate) fn decode(bytes: &[u8]) -> Result<Raster, String> {
     let damaged = || "its header is cut off or damaged; write it anew with numpy.save".to_owned();
     let (length, begin) = match bytes.get(6..12) {
         Some(&[1, _, a, b, ..]) => (usize::from(u16::from_le_bytes([a, b])), 10),
@@ -96,7 +96,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
         _ => None,
     };
     let is_of_greatest = values.iter().any(|value| *value > 1.0);
-    Ok(Decoded {
+    Ok(Raster {
         size,
         channels: channels as usize,
         has_alpha: matches!(channels, 2 | 4),
@@ -108,6 +108,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Decoded, String> {
         },
         values,
         format: format!("NPY, {}", name.trim_start_matches(['<', '|'])),
+        ..Raster::default()
     })
 }
 

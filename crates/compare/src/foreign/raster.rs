@@ -1,22 +1,23 @@
 //! Reads the numbers of a picture that another program wrote: PNG, OpenEXR or an array of NumPy.
 //!
 //! ```
-//! use skiagraph_compare::foreign::raster::Raster;
+//! use skiagraph_compare::foreign::raster;
 //! use skiagraph_compare::pictures::data::{Array, DataFormat, Values};
 //!
 //! let folder = tempfile::tempdir()?;
 //! let file = folder.path().join("factor.npy");
 //! let array = Array::of_pixels([2, 1], Values::F32(vec![0.25, 1.0]));
 //! std::fs::write(&file, array.encode(DataFormat::Npy)?)?;
-//! let raster = Raster::read(&file)?;
+//! let raster = raster::read(&file)?;
 //! assert_eq!((raster.size, raster.values), ([2, 1], vec![0.25, 1.0]));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use crate::error::CompareError;
-use crate::foreign::decoded::{Decoded, MOST_NUMBERS, checked, guarded};
+pub use crate::foreign::decoded::Raster;
+use crate::foreign::decoded::{MOST_NUMBERS, checked, guarded};
 use crate::foreign::{exr_file, npy_file};
-use crate::wording::{size, thousands};
+use crate::wording::size;
 use image::{DynamicImage, ImageFormat, ImageReader, Limits};
 use skiagraph_scene::Limit;
 use std::{io::Cursor, path::Path};
@@ -28,97 +29,29 @@ const PICTURE_FILE: Limit = Limit {
     way_out: "render it in fewer pixels, or save one channel",
 };
 
-/// Numbers of a picture file, one or three for each pixel.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Raster {
-    /// Path of the file, as it was given.
-    pub file: String,
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// Numbers per pixel: 1, or 3 if red, green and blue differ somewhere.
-    pub channels: usize,
-    /// Numbers as the file holds them, pixel after pixel, row by row from the top left. A pixel has
-    /// `channels` numbers.
-    pub values: Vec<f64>,
-    /// Number that stands for 1 in a format of integers, such as 255; `None` for floats, in which 1
-    /// stands for 1.
-    pub whole: Option<f64>,
-    /// Greatest error of a number by rounding: for integers one step as a share of `whole`, such as
-    /// 1/255; for floats relative to the number.
-    pub precision: f64,
-    /// Description of the format: `PNG, 8 bits, grey`.
-    pub format: String,
-    /// Warnings about what was left out, such as alpha.
-    pub warnings: Vec<String>,
-}
-
-impl Raster {
-    /// Reads a file of at most 1 GiB and 16,384 pixels along an edge. Its first bytes tell the
-    /// format.
-    ///
-    /// # Errors
-    /// [`CompareError::Input`] with the path: a file that cannot be read, is too large or in
-    /// another format, is damaged, or has other channels than grey or red, green and blue (with or
-    /// without alpha).
-    pub fn read(path: &Path) -> Result<Self, CompareError> {
-        let file = path.display().to_string();
-        let named = |why: String| CompareError::Input(format!("{file}: {why}"));
-        let bytes = PICTURE_FILE
-            .read(path)
-            .map_err(|error| named(error.to_string()))?;
-        let decoded = match &bytes[..] {
-            [0x89, b'P', b'N', b'G', ..] => png(&bytes),
-            [0x76, 0x2f, 0x31, 0x01, ..] => exr_file::decode(&bytes),
-            [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => npy_file::decode(&bytes),
-            _ => Err(unknown(&bytes)),
-        };
-        Ok(Self::new(file.clone(), decoded.map_err(named)?))
-    }
-
-    /// Leaves out alpha, and channels that repeat the first one.
-    fn new(file: String, decoded: Decoded) -> Self {
-        let Decoded {
-            size,
-            channels: stored,
-            has_alpha,
-            values,
-            whole,
-            precision,
-            mut format,
-        } = decoded;
-        let colours = stored - usize::from(has_alpha);
-        let mut warnings = Vec::new();
-        let opaque = whole.unwrap_or(1.0);
-        let is_seen_through = |pixel: &&[f64]| has_alpha && pixel[stored - 1] != opaque;
-        let seen_through = values.chunks_exact(stored).filter(is_seen_through).count();
-        if seen_through > 0 {
-            warnings.push(format!(
-                "alpha is not read, and {} pixels are not opaque: write what they show over \
-                 nothing else, without alpha",
-                thousands(seen_through as u64)
-            ));
-        }
-        let is_grey = values.chunks_exact(stored).all(|pixel| {
-            pixel[1..colours]
-                .iter()
-                .all(|it| it.to_bits() == pixel[0].to_bits())
-        });
-        let channels = if is_grey { 1 } else { colours };
-        let kept = values
-            .chunks_exact(stored)
-            .flat_map(|pixel| &pixel[..channels]);
-        format += if is_grey { ", grey" } else { ", colours" };
-        Self {
-            file,
-            size,
-            channels,
-            values: kept.copied().collect(),
-            whole,
-            precision,
-            format,
-            warnings,
-        }
-    }
+/// Reads a file of at most 1 GiB and 16,384 pixels along an edge. Its first bytes tell the
+/// format.
+///
+/// # Errors
+/// [`CompareError::Input`] with the path: a file that cannot be read, is too large or in
+/// another format, is damaged, or has other channels than grey or red, green and blue (with or
+/// without alpha).
+pub fn read(path: &Path) -> Result<Raster, CompareError> {
+    let file = path.display().to_string();
+    let named = |why: String| CompareError::Input(format!("{file}: {why}"));
+    let bytes = PICTURE_FILE
+        .read(path)
+        .map_err(|error| named(error.to_string()))?;
+    let decoded = match &bytes[..] {
+        [0x89, b'P', b'N', b'G', ..] => png(&bytes),
+        [0x76, 0x2f, 0x31, 0x01, ..] => exr_file::decode(&bytes),
+        [0x93, b'N', b'U', b'M', b'P', b'Y', ..] => npy_file::decode(&bytes),
+        _ => Err(unknown(&bytes)),
+    };
+    Ok(Raster {
+        file: file.clone(),
+        ..decoded.map_err(named)?.without_alpha()
+    })
 }
 
 fn unknown(bytes: &[u8]) -> String {
@@ -134,7 +67,7 @@ fn unknown(bytes: &[u8]) -> String {
     }
 }
 
-fn png(bytes: &[u8]) -> Result<Decoded, String> {
+fn png(bytes: &[u8]) -> Result<Raster, String> {
     let reader = || {
         let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
         let mut limits = Limits::default();
@@ -143,23 +76,22 @@ fn png(bytes: &[u8]) -> Result<Decoded, String> {
         reader
     };
     let refused = |why: image::ImageError| format!("it cannot be decoded: {why}; save it anew");
-    let [width, height] = guarded("image", || {
-        let (width, height) = reader().into_dimensions().map_err(refused)?;
-        Ok([width, height])
-    })?;
-    checked([width.into(), height.into()], 1)?;
+    let size = guarded("image", || reader().into_dimensions().map_err(refused))?;
+    let size = <[u32; 2]>::from(size).map(u64::from);
+    checked(size, 1)?;
     let picture = guarded("image", || reader().decode().map_err(refused))?;
     let colour = picture.color();
     let channels = usize::from(colour.channel_count());
     let bits = u32::from(colour.bits_per_pixel()) / channels as u32;
-    Ok(Decoded {
-        size: checked([width.into(), height.into()], channels as u64)?,
+    Ok(Raster {
+        size: checked(size, channels as u64)?,
         channels,
         has_alpha: colour.has_alpha(),
         values: samples(&picture, bits),
         whole: Some(f64::from((1u32 << bits) - 1)),
         precision: 1.0 / f64::from((1u32 << bits) - 1),
         format: format!("PNG, {bits} bits"),
+        ..Raster::default()
     })
 }
 

@@ -2,14 +2,14 @@
 //! by ids or depths that the other renderer gives.
 //!
 //! ```
-//! use skiagraph_compare::foreign::{raster::Raster, surfaces::ids};
+//! use skiagraph_compare::foreign::{raster, surfaces::ids};
 //! use skiagraph_compare::pictures::data::{Array, DataFormat, Values};
 //!
 //! let folder = tempfile::tempdir()?;
 //! let file = folder.path().join("ids.npy");
 //! let array = Array::of_pixels([2, 1], Values::I32(vec![7, -1]));
 //! std::fs::write(&file, array.encode(DataFormat::Npy)?)?;
-//! assert_eq!(ids(&Raster::read(&file)?, 8)?, [7, skiagraph_reference::BACKGROUND]);
+//! assert_eq!(ids(&raster::read(&file)?, 8)?, [7, skiagraph_reference::BACKGROUND]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -179,10 +179,8 @@ pub fn by_depth(
     let best = |values: &[f64]| {
         let each = DepthForm::ALL.map(|form| (count_in(values, form), form));
         // The first of equals.
-        let better = |one: (usize, DepthForm), other: (usize, DepthForm)| {
-            if other.0 > one.0 { other } else { one }
-        };
-        each.into_iter().fold((0, DepthForm::Linear), better)
+        let best = each.into_iter().rev().max_by_key(|(count, _)| *count);
+        best.unwrap_or((0, DepthForm::Linear))
     };
     let (count, form) = best(&raster.values);
     let pixels = candidates.len();
@@ -272,10 +270,8 @@ mod tests {
             size: [4, 3],
             channels: 1,
             values,
-            whole: None,
             precision: 1e-7,
-            format: String::new(),
-            warnings: Vec::new(),
+            ..Raster::default()
         }
     }
 

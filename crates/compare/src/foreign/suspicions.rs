@@ -71,11 +71,7 @@ impl Suspect<'_> {
     /// Returns a text for each suspicion, with the way out.
     pub(crate) fn suspicions(&self) -> Suspicions {
         let right = self.truth.shares();
-        let facing = self
-            .is_judged
-            .iter()
-            .filter(|is_judged| **is_judged)
-            .count();
+        let facing = self.is_judged.iter().filter(|it| **it).count();
         let has_answer = |at: &usize| self.is_judged[*at] && self.shares[*at].is_finite();
         let judged: Vec<usize> = (0..right.len()).filter(has_answer).collect();
         if ((facing - judged.len()) as f64) > MOST_WITHOUT_ANSWER * facing as f64 {
@@ -96,15 +92,12 @@ impl Suspect<'_> {
         let own = error(self.shares);
         let mut texts: Vec<String> = self.out_of_range().into_iter().collect();
         let is_better = |other: f64| own > LEAST && other < own * MUCH_BETTER;
-        let mut readings: Vec<(f64, &str)> = self
-            .readings()
-            .into_iter()
-            .map(|(shares, text)| (error(&shares), text))
-            .filter(|(other, _)| is_better(*other))
-            .collect();
-        readings.sort_by(|(one, _), (other, _)| one.total_cmp(other));
-        let is_explained = !readings.is_empty();
-        texts.extend(readings.first().map(|(_, text)| (*text).to_owned()));
+        let readings = self.readings().into_iter();
+        let readings = readings.map(|(shares, text)| (error(&shares), text));
+        let better = readings.filter(|(other, _)| is_better(*other));
+        let better = better.min_by(|(one, _), (other, _)| one.total_cmp(other));
+        let is_explained = better.is_some();
+        texts.extend(better.map(|(_, text)| text.to_owned()));
         let acne = self
             .acne(&judged, &right)
             .filter(|_| !is_explained && own > LEAST);
@@ -275,12 +268,8 @@ impl Suspect<'_> {
 
     /// Tells that numbers are not shares at all, such as bytes that are held as floats.
     fn out_of_range(&self) -> Option<String> {
-        let finite = self
-            .shares
-            .iter()
-            .copied()
-            .filter(|share| share.is_finite());
-        let greatest = finite.fold(0.0, f32::max);
+        let finite = self.shares.iter().filter(|it| it.is_finite());
+        let greatest = finite.copied().fold(0.0, f32::max);
         (greatest >= 2.0).then(|| {
             format!(
                 "its numbers reach {greatest}, and shares of light are 0 to 1: divide them by the \

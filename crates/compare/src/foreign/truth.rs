@@ -21,11 +21,11 @@ use crate::error::CompareError;
 use crate::files::json::to_text;
 use crate::files::write::{check_folder, write_whole};
 use crate::foreign::conventions::CameraRecord;
-use crate::foreign::judging::truth;
+use crate::foreign::judging::{Surfaces, truth};
 use crate::measuring::device::GpuRequest;
-use crate::measuring::ground_truth::{REFERENCE_SAMPLES, heard};
+use crate::measuring::ground_truth::{REFERENCE_SAMPLES, by_rows};
 use crate::pictures::data::{Array, DataFormat, Values};
-use crate::sink::{Sink, Step};
+use crate::sink::Sink;
 use skiagraph_reference::{OracleMode, Receiver, shimmer::Seen};
 use skiagraph_scene::{LightKind, Scene, View};
 use std::{path::Path, sync::Arc};
@@ -77,15 +77,21 @@ pub async fn write_truth(
     check_folder(folder)?;
     let (viewport, scene) = (request.viewport, Arc::new(scene));
     let how = (request.oracle, request.reference_samples);
-    let truth = truth((&scene, view, viewport), None, how, gpu, sink).await?;
+    let truth = truth(
+        (&scene, view, viewport),
+        Surfaces::Rasterised,
+        how,
+        gpu,
+        sink,
+    )
+    .await?;
     let (ground_truth, seen) = (&truth.view.ground_truth, truth.view.seen());
     let pixels = &ground_truth.pixels;
     let light = scene.light_of(view);
-    let rows = viewport[1].into();
-    let step = Step::begin(sink, &format!("blockers, {}", view.name), rows, "rows");
-    let rows_done = |rows| step.set_done(rows);
-    let blockers = truth.view.nearest_blockers(heard(sink, &rows_done))?;
-    step.end();
+    let name = format!("blockers, {}", view.name);
+    let blockers = by_rows(sink, &name, viewport[1], |progress| {
+        truth.view.nearest_blockers(progress)
+    })?;
     let mut arrays = vec![
         (
             "visibility",

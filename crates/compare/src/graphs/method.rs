@@ -13,8 +13,7 @@
 
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
-use crate::graphs::argument::Assignment;
-use crate::graphs::argument::MethodArgument;
+use crate::graphs::argument::{Assignment, MethodArgument};
 use crate::graphs::contract;
 use crate::graphs::openings;
 use crate::graphs::planning::Capabilities;
@@ -259,10 +258,12 @@ fn methods(
         if sizes.is_empty() || preset.param(MAP_SIZE).is_none() {
             sizes = vec![None];
         }
+        // The preset's name says then what stands in an open include of it.
+        let is_over_another = !MethodArgument::new(&preset.name).own.is_empty();
         for Setting { label, set } in variants::settings(preset, argument, params)? {
             let name = match label.as_str() {
                 "" => preset.name.clone(),
-                label if is_over_another(&preset.name) => format!("{},{label}", preset.name),
+                label if is_over_another => format!("{},{label}", preset.name),
                 label => format!("{}@{label}", preset.name),
             };
 
@@ -274,11 +275,6 @@ fn methods(
         }
     }
     Ok(methods)
-}
-
-/// True if a preset's name says what stands in an open include of it.
-fn is_over_another(name: &str) -> bool {
-    !MethodArgument::new(name).own.is_empty()
 }
 
 /// Loads the one graph that `word` names, such as `crsm@n=1`. Returns the preset, and the values of

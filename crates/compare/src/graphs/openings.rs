@@ -20,8 +20,7 @@
 //! ```
 
 use crate::error::CompareError;
-use crate::graphs::argument::Assignment;
-use crate::graphs::argument::MethodArgument;
+use crate::graphs::argument::{Assignment, MethodArgument};
 use crate::graphs::preset;
 use crate::lists::unique;
 use itertools::Itertools;

@@ -14,8 +14,7 @@
 use crate::error::CompareError;
 use crate::files::fingerprint::{Fingerprint, RecordedSources};
 use crate::files::picture_sources::PictureSources;
-use crate::graphs::argument::Assignment;
-use crate::graphs::argument::MethodArgument;
+use crate::graphs::argument::{Assignment, MethodArgument};
 use crate::graphs::faults::{GraphFaults, warn};
 use crate::graphs::planning::of_every_host;
 use crate::sink::Sink;
@@ -338,10 +337,8 @@ pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareEr
             format!("`{argument}` is not a .ron file; a graph is given as a path that ends in .ron")
         }
         Ok(None) => {
-            let presets = names(sources);
-            let presets: Vec<&str> = presets.iter().map(String::as_str).collect();
             let what = format!("unknown preset `{argument}`");
-            unknown(&what, argument, "presets", &presets)
+            unknown(&what, argument, "presets", names(sources))
                 + "\n  a graph of your own is given as a path that ends in .ron"
         }
     };

@@ -207,51 +207,35 @@ impl Outputs {
     /// Decodes the outputs that were read back from a frame, for one light. `layer` is the index of
     /// the layer that is read of outputs with several
     /// ([`layer_of`](crate::graphs::contract::layer_of)); an output of one layer holds for every
-    /// light. `truth` is the reference of the same view, for methods without the output `status`.
-    ///
-    /// # Errors
-    /// The errors of [`decode`](Self::decode).
-    pub fn from_contents(
-        contents: BTreeMap<String, Content>,
-        layer: usize,
-        truth: &GroundTruthPixels,
-    ) -> Result<Self, String> {
-        let one_layer = |(name, content): (String, Content)| (name, of_layer(content, layer));
-        Self::decode(&contents.into_iter().map(one_layer).collect(), truth)
-    }
-
-    /// Decodes the outputs that were read back from a frame of one light, by name. If the graph has
-    /// no output `status`, the [reference](crate#terms) `truth` says which pixels face the light,
-    /// and these count as certainly lit or certainly in shadow.
+    /// light. If the graph has no output `status`, the [reference](crate#terms) `truth` of the same
+    /// view says which pixels face the light, and these count as certainly lit or certainly in
+    /// shadow.
     ///
     /// # Errors
     /// An output that is not there or not in one of the allowed formats.
-    pub fn decode(
-        contents: &BTreeMap<String, Content>,
+    pub fn from_contents(
+        mut contents: BTreeMap<String, Content>,
+        layer: usize,
         truth: &GroundTruthPixels,
     ) -> Result<Self, String> {
-        let integers = |name: &str| contents.get(name).and_then(Content::as_u32);
-        let shares = contents.get(VISIBILITY).and_then(Content::as_f32);
+        let mut output = |name: &str| Some(of_layer(contents.remove(name)?, layer));
+        let shown = output(VISIBILITY);
+        let shares = shown.as_ref().and_then(Content::as_f32);
         let visibility = match &shares {
-            Some(shares) => shares
-                .iter()
-                .map(|&share| u32::from(share >= 0.5))
-                .collect(),
-            None => integers(VISIBILITY).ok_or("`visibility` cannot be read as numbers")?,
+            Some(shares) => Some(lit(shares)),
+            None => shown.as_ref().and_then(Content::as_u32),
         };
-        let status = match contents.get(STATUS) {
-            Some(status) => status
-                .as_u32()
-                .ok_or("`status` cannot be read as integers")?,
+        let visibility = visibility.ok_or("`visibility` cannot be read as numbers")?;
+        let status = match output(STATUS).map(|status| status.as_u32()) {
+            Some(status) => status.ok_or("`status` cannot be read as integers")?,
             None => certain(&visibility, truth),
         };
+        let rays = output(RAY_COUNT).as_ref().and_then(Content::as_u32);
         Ok(Self {
             visibility,
             shares,
             status,
-            rays: integers(RAY_COUNT)
-                .and_then(|count| count.first().copied())
-                .map(u64::from),
+            rays: rays.and_then(|count| count.first().copied()).map(u64::from),
         })
     }
 
@@ -261,7 +245,7 @@ impl Outputs {
     /// [`shares`](Self::shares) is `None`.
     pub fn from_shares(shares: Vec<f32>, truth: &GroundTruthPixels) -> Self {
         let is_hard = shares.iter().all(|share| matches!(share, 0.0 | 1.0));
-        let visibility: Vec<u32> = shares.iter().map(|&it| u32::from(it >= 0.5)).collect();
+        let visibility = lit(&shares);
         Self {
             status: certain(&visibility, truth),
             visibility,
@@ -278,6 +262,12 @@ impl Outputs {
             None => Cow::Owned(self.visibility.iter().map(|&lit| lit.share()).collect()),
         }
     }
+}
+
+/// Counts a pixel as lit if it sees half of the light or more.
+fn lit(shares: &[f32]) -> Vec<u32> {
+    let lit = shares.iter().map(|share| u32::from(*share >= 0.5));
+    lit.collect()
 }
 
 /// Returns a layer of an output; the whole output if it has one layer.
@@ -348,7 +338,8 @@ pub(crate) mod tests {
             (graded, Some([0.25, 0.5])),
             (eighths, Some([0.2, 1.0])),
         ] {
-            let outputs = Outputs::decode(&contents(visibility, status()), &truth()).unwrap();
+            let outputs =
+                Outputs::from_contents(contents(visibility, status()), 0, &truth()).unwrap();
             assert_eq!(outputs.visibility, [0, 1, 0, 0]);
             assert_eq!(outputs.status, [3, 2, 1, 0]);
             let first = outputs.shares.as_ref().map(|shares| [shares[0], shares[1]]);
@@ -361,16 +352,17 @@ pub(crate) mod tests {
     #[test]
     fn without_a_status_the_reference_says_what_faces_the_light() {
         let hard = texture(F::R8Uint, &[1, 0, 1, 0]);
-        let outputs = Outputs::decode(&contents(hard, None), &truth()).unwrap();
+        let outputs = Outputs::from_contents(contents(hard, None), 0, &truth()).unwrap();
         assert_eq!(outputs.status, [2, 3, 1, 0]);
     }
 
     #[test]
     fn a_missing_output_is_named() {
-        let missing = Outputs::decode(&BTreeMap::new(), &truth()).err();
+        let missing = Outputs::from_contents(BTreeMap::new(), 0, &truth()).err();
         assert!(missing.unwrap().contains("visibility"));
         let status = Some(texture(F::R8Unorm, &[0; 4]));
-        let wrong = Outputs::decode(&contents(texture(F::R8Uint, &[0; 4]), status), &truth());
+        let wrong =
+            Outputs::from_contents(contents(texture(F::R8Uint, &[0; 4]), status), 0, &truth());
         assert!(wrong.err().unwrap().contains("status"));
     }
 }

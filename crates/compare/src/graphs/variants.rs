@@ -67,8 +67,8 @@ pub fn settings(
         let name = &assignment.name;
         let Some(param) = preset.param(name) else {
             let what = format!("`{}` has no param `{name}`", preset.name);
-            let params: Vec<&str> = preset.settable().collect();
-            return Err(CompareError::Input(unknown(&what, name, "params", &params)));
+            let text = unknown(&what, name, "params", preset.settable());
+            return Err(CompareError::Input(text));
         };
         let values = values(assignment, &param.ty)?;
         let is_told = is_own || values.len() > 1;

@@ -55,14 +55,6 @@ pub fn open<'a>(
 ) -> Result<Gpu, CompareError> {
     let union = |features, graph: &Graph| features | graph.features();
     let features = graphs.into_iter().fold(wgpu::Features::empty(), union);
-    open_with(request, features)
-}
-
-/// Opens the requested adapter, with those of `features` that it has.
-///
-/// # Errors
-/// As [`open`].
-pub fn open_with(request: &GpuRequest, features: wgpu::Features) -> Result<Gpu, CompareError> {
     let mut wanted = Wanted::default().with_features(features);
     wanted.adapter = request.adapter.as_deref();
     wanted.backends = request.backends;

@@ -56,9 +56,7 @@ pub async fn diagnose(
     };
     let drawn = plan.outputs();
     let drawn: Vec<&str> = drawn.iter().map(|output| output.name.as_str()).collect();
-    let rendered = frame::render(session, plan, provider, &drawn)
-        .await
-        .map_err(Stop::from);
+    let rendered = frame::render(session, plan, provider, &drawn).await;
     let mut contents = match attempt(session, method, rendered)? {
         Ok((contents, _)) => contents,
         Err(reason) => return none(&reason),

@@ -187,16 +187,12 @@ impl<'a> GroundTruthView<'a> {
     }
 
     /// Counts the pixels that a method calls certain (by its output `status`) but gets wrong, by
-    /// the kind of caster that blocks the light there. The light must have no extent.
+    /// the kind of caster that blocks the light there. `truth` holds the right answers for these
+    /// pixels, of a light without an extent.
     ///
     /// # Errors
     /// Outputs of another size than the [reference](crate#terms).
-    pub fn blockers(&self, outputs: &Outputs) -> Result<BlockerCounts, CompareError> {
-        self.blockers_of(outputs, &self.ground_truth.pixels)
-    }
-
-    /// Counts as [`blockers`](Self::blockers) does, with the answers `truth` for these pixels.
-    pub(crate) fn blockers_of(
+    pub fn blockers(
         &self,
         outputs: &Outputs,
         truth: &GroundTruthPixels,
@@ -251,16 +247,11 @@ impl<'a> GroundTruthView<'a> {
     }
 
     /// Measures how far a method's wrong pixels lie from the edges of the
-    /// [reference](crate#terms)'s shadows.
+    /// [reference](crate#terms)'s shadows. `truth` holds the right answers for these pixels.
     ///
     /// # Errors
     /// Outputs of another size than the reference.
-    pub fn edges(&self, outputs: &Outputs) -> Result<EdgeDistances, CompareError> {
-        self.edges_of(outputs, &self.ground_truth.pixels)
-    }
-
-    /// Measures as [`edges`](Self::edges) does, with the answers `truth` for these pixels.
-    pub(crate) fn edges_of(
+    pub fn edges(
         &self,
         outputs: &Outputs,
         truth: &GroundTruthPixels,
@@ -311,26 +302,19 @@ pub(crate) fn trace(
     how: (OracleMode, u32),
     (what, sink): (&str, &dyn Sink),
 ) -> Result<Truth, CompareError> {
-    let begin = |stage: &str| {
-        let (name, rows) = (format!("{stage}, {what}"), camera.viewport[1]);
-        Step::begin(sink, &name, rows.into(), "rows")
-    };
+    let rows = camera.viewport[1];
     let failed = |error: Error| match error {
         Error::Interrupted => CompareError::interrupted(),
         error => CompareError::Input(format!("no reference for {what}: {error}")),
     };
-    let step = begin("reference");
-    let rows_done = |rows| step.set_done(rows);
-    let progress = heard(sink, &rows_done);
-    let truth = area::ground_truth(oracle, camera, light, primitives, how, progress);
-    let ground_truth = truth.map_err(failed)?;
-    step.end();
-    let step = begin("what is visible");
-    let rows_done = |rows| step.set_done(rows);
-    let progress = heard(sink, &rows_done);
-    let wrong_surfaces = wrong_surfaces(oracle, camera, primitives, progress);
-    let wrong_surfaces = wrong_surfaces.map_err(failed)?;
-    step.end();
+    let ground_truth = by_rows(sink, &format!("reference, {what}"), rows, |progress| {
+        let truth = area::ground_truth(oracle, camera, light, primitives, how, progress);
+        truth.map_err(failed)
+    })?;
+    let name = format!("what is visible, {what}");
+    let wrong_surfaces = by_rows(sink, &name, rows, |progress| {
+        wrong_surfaces(oracle, camera, primitives, progress).map_err(failed)
+    })?;
     Ok(Truth {
         ground_truth,
         wrong_surfaces,
@@ -390,6 +374,19 @@ impl<'a> GroundTruthFrames<'a> {
         }
         total
     }
+}
+
+/// Does `work` of the oracle on `rows` rows of pixels as a step of the sink.
+pub(crate) fn by_rows<T>(
+    sink: &dyn Sink,
+    name: &str,
+    rows: u32,
+    work: impl FnOnce(Progress) -> Result<T, CompareError>,
+) -> Result<T, CompareError> {
+    let step = Step::begin(sink, name, rows.into(), "rows");
+    let outcome = work(heard(sink, &|rows| step.set_done(rows)))?;
+    step.end();
+    Ok(outcome)
 }
 
 /// Creates the progress callback of an oracle. It calls `rows_done` with the number of finished

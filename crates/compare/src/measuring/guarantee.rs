@@ -67,9 +67,9 @@ pub fn find(
 }
 
 /// The param that says which faces cast no shadow.
-const CULL: &str = "cull";
+pub(super) const CULL: &str = "cull";
 /// Its value with which all do.
-const NONE: &str = "none";
+pub(super) const NONE: &str = "none";
 /// Assignment of the param `cull` with which front and back faces cast shadows.
 pub const WITHOUT_CULLING: &str = "cull=none";
 

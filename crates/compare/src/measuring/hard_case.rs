@@ -250,12 +250,9 @@ impl HardCaseContext<'_> {
             .primary
             .ids(self.session, self.viewport, provider)
             .await?;
-        let (oracle, how) = (
-            Oracle::new(&scene.mesh),
-            (OracleMode::Exact, REFERENCE_SAMPLES),
-        );
+        let how = (OracleMode::Exact, REFERENCE_SAMPLES);
         let (camera, light) = (view.camera(self.viewport), scene.light_of(view));
-        let sink = WithoutSteps(self.session.sink);
+        let (oracle, sink) = (Oracle::new(&scene.mesh), WithoutSteps(self.session.sink));
         GroundTruthView::new(oracle.into(), camera, light, ids, how, (&scene.name, &sink))
     }
 

@@ -65,10 +65,8 @@ pub fn check_exact(exact: &[String], names: &[String]) -> Result<(), CompareErro
         return Ok(());
     };
     let what = format!("--exact {name}: none of the methods that run has this name");
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    Err(CompareError::Request(unknown(
-        &what, name, "methods", &names,
-    )))
+    let text = unknown(&what, name, "methods", names);
+    Err(CompareError::Request(text))
 }
 
 /// Checks that no two pairs of a method and a case have pictures of one file name, and that

@@ -7,7 +7,8 @@ use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame;
 use crate::measuring::ground_truth::GroundTruthView;
-use crate::measuring::stop::{Stop, attempt};
+use crate::measuring::guarantee::{CULL, NONE};
+use crate::measuring::stop::attempt;
 use crate::records::hint::{Cause, Hint};
 use crate::records::tuned::named;
 use crate::sink::Session;
@@ -19,10 +20,7 @@ use skiagraph_reference::BlockerCounts;
 /// Share of the pixels facing the light that must be wrong for a hint to be worth its frames.
 const WORTH: f64 = 1e-3;
 
-/// The param that says which faces cast no shadow, its value with which all do, and the param that
-/// keeps surfaces from shading themselves then.
-const CULL: &str = "cull";
-const NONE: &str = "none";
+/// The param that keeps surfaces from shading themselves.
 const SLOPE_BIAS: &str = "slope_bias";
 
 /// Looks for a setting with which more than half of a method's wrong pixels on a view are right.
@@ -116,9 +114,7 @@ async fn wrong_with(
     let Ok(plan) = method.plan(truth.pixels.viewport, capabilities, provider) else {
         return Ok(None);
     };
-    let rendered = frame::render(session, plan, provider, &names)
-        .await
-        .map_err(Stop::from);
+    let rendered = frame::render(session, plan, provider, &names).await;
     let Ok((contents, _)) = attempt(session, method, rendered)? else {
         return Ok(None);
     };

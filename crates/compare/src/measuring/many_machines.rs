@@ -9,11 +9,11 @@
 //! use std::path::Path;
 //!
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
-//! # fn third_of_ten(comparison: &Comparison, session: Session) -> Done {
+//! # async fn third_of_ten(comparison: &Comparison, session: Session<'_>) -> Done {
 //! let scenes = [SceneCells { comparison, folder: None }];
 //! let plan = plan(&scenes, session, vec!["compare".into()])?;
 //! let share = Share { plan: &plan, shard: "3/10".parse()?, out: Path::new("out") };
-//! let shard = measure(&share, &scenes, session)?;
+//! let shard = measure(&share, &scenes, session).await?;
 //! println!("{} of {} cells were there", shard.kept, shard.cells);
 //! # Ok(())
 //! # }
@@ -164,17 +164,11 @@ pub async fn measure(
         let folder = folder.map_or(out.to_path_buf(), |name| out.join(name));
         let mut series = Series::of_cells(comparison, session, &folder, &ids)?;
         outcome.kept += series.results.runs.len();
-        for view in 0..comparison.views.len() {
-            for viewport in 0..comparison.viewports.len() {
-                series
-                    .measure(view, viewport)
-                    .await
-                    .map_err(|error| match error {
-                        CompareError::Interrupted { .. } => interrupted(share),
-                        error => error,
-                    })?;
-            }
-        }
+        let measured = series.measure_all().await;
+        measured.map_err(|error| match error {
+            CompareError::Interrupted { .. } => interrupted(share),
+            error => error,
+        })?;
         let unavailable = series.results.runs.iter();
         let unavailable = unavailable.filter(|run| run.measured.is_none());
         outcome

@@ -16,6 +16,7 @@ use crate::measuring::timing::{self, Kind, Takes, TimedKinds, Turn};
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::measuring::{date, guarantee, hint};
 use crate::pictures::run_pictures::{PictureFile, PicturePlace, data_files, draw_pictures, stem};
+use crate::records::hint::Hint;
 use crate::records::regimes::RegimeTimes;
 use crate::records::results::{AreaReference, Images, Measured, Run};
 use crate::records::samples::TimedFrame;
@@ -27,7 +28,6 @@ use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, How, SceneProvider};
 use skiagraph_reference::{GroundTruth, Statistics};
-use std::cell::RefCell;
 
 /// Data that all methods share when they are measured on one view or path in one viewport.
 pub struct MeasureContext<'a> {
@@ -49,9 +49,6 @@ pub struct MeasureContext<'a> {
     pub protocol: Protocol,
     /// True to look for a setting that makes most of a method's wrong pixels right ([`Hint`]).
     pub hints: bool,
-    /// Pictures and data files of the run that was judged last, not written yet; `None` to make
-    /// none.
-    pub pictures: Option<RefCell<Vec<PictureFile>>>,
 }
 
 /// A method that was judged on a view or path. Its times are not those of its turns yet.
@@ -127,22 +124,13 @@ impl MeasureContext<'_> {
         self.path.frames.show(index, viewport, provider)?;
         let is_path = matches!(self.view, ViewOrPath::Path(_));
         let counts = &account.counts;
-        let wrong = counts.wrong.total.saturating_sub(counts.wrong.in_band);
-        let explained = account.blockers.filter(|_| self.hints && !is_path);
-        let hint = match explained {
-            Some(blockers) => {
-                let seen = (self.truth_view, layer);
-                hint::find(session, method, seen, (wrong, blockers), provider).await?
-            }
-            None => None,
-        };
+        let hint = self.hint((method, layer), &account, provider).await?;
         let diagnostics =
             diagnose(session, method, truth_view, (&outputs, layer), provider).await?;
         let place = is_path.then_some(index);
         let shown = (&outputs, &judgement, &diagnostics);
-        let mut images = self.draw(method, place, &truth_view.ground_truth, shown)?;
-        let pictures = self.pictures.as_ref();
-        let mut pictures = pictures.map(RefCell::take).unwrap_or_default();
+        let (mut images, mut pictures) =
+            self.draw(method, place, &truth_view.ground_truth, shown)?;
         if let Some(images) = &mut images {
             file_second(&mut pictures, std::mem::take(&mut account.second), images);
         }
@@ -180,6 +168,23 @@ impl MeasureContext<'_> {
         })
     }
 
+    /// Looks for a setting that makes most of the wrong pixels of a still view right.
+    async fn hint(
+        &self,
+        (method, layer): (&Method, usize),
+        account: &Account,
+        provider: &mut SceneProvider,
+    ) -> Result<Option<Hint>, CompareError> {
+        let is_still = matches!(self.view, ViewOrPath::Still(_));
+        let Some(blockers) = account.blockers.filter(|_| self.hints && is_still) else {
+            return Ok(None);
+        };
+        let wrong = account.counts.wrong;
+        let wrong = (wrong.total.saturating_sub(wrong.in_band), blockers);
+        let seen = (self.truth_view, layer);
+        hint::find(self.session, method, seen, wrong, provider).await
+    }
+
     /// Runs a method over a camera path and judges each frame; passes whose inputs have not changed
     /// are skipped. Before the path begins, its first frame is drawn for the protocol's warm-up
     /// frames, unless the method has `remembered` it already. Returns the times of the frames.
@@ -201,7 +206,6 @@ impl MeasureContext<'_> {
         for _ in 0..if remembered { 0 } else { warmup } {
             takes.take(Turn::new(Kind::EveryPass, 0, false)).await?;
         }
-        let has_pictures = self.pictures.is_some() && self.protocol.pictures;
         let mut second = WorstSecond::new(frames.second());
         takes.read(&names);
         for (frame, truth_view) in self.path.truth_views.iter().enumerate() {
@@ -214,7 +218,7 @@ impl MeasureContext<'_> {
             account.add(self.path, frame, outputs, judgement)?;
             let judged = &mut account.frames[frame];
             judged.remade = made.iter().map(remade).collect();
-            if let Some(shown) = account.shown.as_ref().filter(|_| has_pictures) {
+            if let Some(shown) = account.shown.as_ref().filter(|_| self.protocol.pictures) {
                 let place = self.place(method, Some(frame), viewport);
                 let changed = judged.shimmer.map_or(0, |shimmer| shimmer.changed);
                 second.add(changed, place.shaded(shown, &truth.pixels)?);
@@ -320,10 +324,7 @@ impl MeasureContext<'_> {
     pub fn run(&self, method: &Method, planned: &Run, outcome: Result<Measured, String>) -> Run {
         let ground_truth = &self.truth_view.ground_truth;
         let (truth, area) = (&ground_truth.pixels, ground_truth.area.as_ref());
-        let (measured, unavailable) = match outcome {
-            Ok(measured) => (Some(measured), None),
-            Err(reason) => (None, Some(reason)),
-        };
+        let unavailable = outcome.as_ref().err().cloned();
         Run {
             date: date::today(),
             promise: guarantee::promise(method),
@@ -331,7 +332,7 @@ impl MeasureContext<'_> {
             band: self.own.band,
             wrong_surface: self.path.wrong_surfaces(),
             area: area.map(|area| AreaReference::new(area, truth)),
-            measured,
+            measured: outcome.ok(),
             unavailable,
             ..planned.clone()
         }
@@ -343,8 +344,8 @@ impl MeasureContext<'_> {
     }
 
     /// Makes the pictures and data files that the protocol asks for, of a view or of the frame with
-    /// the index `frame` of a path, and puts them into [`pictures`](Self::pictures). Returns the
-    /// names of the pictures; `None` without pictures.
+    /// the index `frame` of a path. Returns the names of the pictures, `None` without pictures, and
+    /// the files.
     ///
     /// # Errors
     /// Outputs of another size than the reference.
@@ -354,10 +355,7 @@ impl MeasureContext<'_> {
         frame: Option<usize>,
         ground_truth: &GroundTruth,
         (outputs, judgement, diagnostics): (&Outputs, &Judgement, &Diagnostics),
-    ) -> Result<Option<Images>, CompareError> {
-        let Some(pictures) = &self.pictures else {
-            return Ok(None);
-        };
+    ) -> Result<(Option<Images>, Vec<PictureFile>), CompareError> {
         let place = self.place(method, frame, ground_truth.pixels.viewport);
         let (mut images, mut files) = (None, Vec::new());
         if self.protocol.pictures {
@@ -369,8 +367,7 @@ impl MeasureContext<'_> {
         if let Some(format) = self.protocol.data {
             files.extend(data_files(&place, ground_truth, outputs, format)?);
         }
-        pictures.replace(files);
-        Ok(images)
+        Ok((images, files))
     }
 }
 

@@ -4,6 +4,7 @@
 //! that are not culled need a bias, and a bias without them only costs. Each change that helps is
 //! kept at once. It ends where no change of two params helps, or where trials end.
 
+use itertools::Itertools;
 use std::collections::BTreeSet;
 
 /// A combination of values: for each param, in the order of the [`Axis`] list, the index of its
@@ -132,16 +133,15 @@ impl<E, T: AsyncFnMut(&[usize], f64) -> Result<Trial, E>> Search<'_, T> {
     /// Tries all values of two params together; true as soon as the values of two help.
     async fn pairs(&mut self) -> Result<bool, E> {
         let axes = self.axes;
-        let pairs =
-            (0..axes.len()).flat_map(|one| (one + 1..axes.len()).map(move |two| (one, two)));
-        let mut pairs: Vec<(usize, usize)> = pairs.collect();
+        let pairs = (0..axes.len()).array_combinations();
         // Words with numbers, then words with words, then numbers with numbers.
-        pairs.sort_by_key(|&(one, two)| match (axes[one].is_word, axes[two].is_word) {
-            (true, true) => 1,
-            (false, false) => 2,
-            _ => 0,
-        });
-        for (one, two) in pairs {
+        let pairs =
+            pairs.sorted_by_key(|&[one, two]| match (axes[one].is_word, axes[two].is_word) {
+                (true, true) => 1,
+                (false, false) => 2,
+                _ => 0,
+            });
+        for [one, two] in pairs {
             let mut helps = false;
             for value in 0..axes[one].values {
                 helps |= self.change([(one, Some(value)), (two, None)]).await?;

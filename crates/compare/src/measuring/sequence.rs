@@ -26,6 +26,7 @@ pub fn cost(frame: &TimedFrame, has_gpu: bool) -> FrameCost {
 }
 
 /// A second of a path in pictures: the one with the most shimmer.
+#[derive(Default)]
 pub struct WorstSecond {
     /// Number of frames in a second.
     length: usize,
@@ -42,9 +43,7 @@ impl WorstSecond {
     pub fn new(length: usize) -> Self {
         Self {
             length,
-            recent: VecDeque::new(),
-            changed: None,
-            pictures: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -102,13 +101,14 @@ impl Account {
         judgement: Judgement,
     ) -> Result<(), CompareError> {
         let (truth_view, counts) = (&path.truth_views[index], judgement.counts);
-        let edges = truth_view.edges(&outputs)?;
+        let truth = &truth_view.ground_truth.pixels;
+        let edges = truth_view.edges(&outputs, truth)?;
         self.edges = match self.frames.len() {
             0 => edges,
             _ => self.edges.with(edges),
         };
         if counts.wrong.certain > 0 && judgement.is_hard {
-            *self.blockers.get_or_insert_default() += truth_view.blockers(&outputs)?;
+            *self.blockers.get_or_insert_default() += truth_view.blockers(&outputs, truth)?;
         }
         let shown = outputs.shown().into_owned();
         let changed = match &self.shown {
@@ -126,10 +126,8 @@ impl Account {
             wrong_outside_band: counts.wrong.total - counts.wrong.in_band,
             graded: judgement.graded,
             rays: outputs.rays,
-            cost: FrameCost::default(),
             shimmer: changed,
-            skipped: Vec::new(),
-            remade: Vec::new(),
+            ..SequenceFrame::default()
         });
         self.counts += counts;
         if let Some(rays) = outputs.rays {

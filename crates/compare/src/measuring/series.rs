@@ -50,14 +50,7 @@ use skiagraph_graph::{Code, Diagnostic, Diagnostics, Plan};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::Oracle;
 use skiagraph_scene::Movable;
-use std::{
-    cell::{OnceCell, RefCell},
-    collections::BTreeSet,
-    ops::Range,
-    path::Path,
-    rc::Rc,
-    sync::Arc,
-};
+use std::{cell::OnceCell, collections::BTreeSet, ops::Range, path::Path, rc::Rc, sync::Arc};
 
 /// A comparison under way: its planned runs, and the results so far.
 pub struct Series<'a> {
@@ -100,11 +93,7 @@ pub struct Series<'a> {
 pub async fn run(comparison: &Comparison, session: Session<'_>) -> Result<Results, CompareError> {
     comparison.check(session)?;
     let mut series = Series::new(comparison, session, None)?;
-    for view in 0..comparison.views.len() {
-        for viewport in 0..comparison.viewports.len() {
-            series.measure(view, viewport).await?;
-        }
-    }
+    series.measure_all().await?;
     match series.broken.iter().join("\n") {
         broken if broken.is_empty() => Ok(series.results),
         broken => Err(CompareError::InvalidOutputs(broken)),
@@ -256,6 +245,17 @@ impl<'a> Series<'a> {
         first..first + methods
     }
 
+    /// Measures the methods on all views and paths in all viewports, as
+    /// [`measure`](Self::measure) does.
+    pub(crate) async fn measure_all(&mut self) -> Result<(), CompareError> {
+        for view in 0..self.comparison.views.len() {
+            for viewport in 0..self.comparison.viewports.len() {
+                self.measure(view, viewport).await?;
+            }
+        }
+        Ok(())
+    }
+
     /// Measures the runs of a view and viewport that are not finished, and writes the results into
     /// the folder, if there is one. A method that cannot run here gets a run that says why
     /// ([`Run::unavailable`]), and the others are measured all the same. Both arguments are
@@ -269,10 +269,8 @@ impl<'a> Series<'a> {
     /// If an index is out of range.
     pub async fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
         let places = self.places(view, viewport);
-        let (view, viewport) = (
-            &self.comparison.views[view],
-            self.comparison.viewports[viewport],
-        );
+        let view = &self.comparison.views[view];
+        let viewport = self.comparison.viewports[viewport];
         let (scene, protocol) = (&self.comparison.scene, self.comparison.protocol);
         let frames = FrameSequence::new(view, scene, protocol.jitter, None)?;
         let frames = frames.with_moving(self.comparison.moving.as_ref());
@@ -309,7 +307,6 @@ impl<'a> Series<'a> {
             own,
             protocol,
             hints: self.comparison.tuned.is_empty(),
-            pictures: protocol.has_files().then(RefCell::default),
         };
         let missing = places.zip(&methods);
         let missing: Vec<(usize, &Method)> = missing
@@ -333,7 +330,8 @@ impl<'a> Series<'a> {
             let mut judged = match self.attempt(context, (place, method)).await? {
                 Ok(judged) => judged,
                 Err(run) => {
-                    self.keep(place, *run, &[])?;
+                    self.done(place, *run);
+                    self.save(&[])?;
                     continue;
                 }
             };
@@ -345,8 +343,8 @@ impl<'a> Series<'a> {
                 group.truncate(1);
                 groups += 1;
             }
-            let run = context.judged_run(&judged);
-            self.keep(place, run, &std::mem::take(&mut judged.pictures))?;
+            self.done(place, context.judged_run(&judged));
+            self.save(&std::mem::take(&mut judged.pictures))?;
             places.push(place);
             group.push(judged);
         }
@@ -408,10 +406,8 @@ impl<'a> Series<'a> {
                 return Ok(Err(run));
             }
         };
-        let (names, device) = (
-            method.preset.diagnostics(),
-            Capabilities::new(self.session.gpu),
-        );
+        let names = method.preset.diagnostics();
+        let device = Capabilities::new(self.session.gpu);
         let diagnostics = method.plan_of(&names, planned.viewport, device, &self.provider);
         let wrong = diagnostics.err().filter(|faults| is_mistake(faults.iter()));
         let wrong = wrong.map(|faults| format!("`{}`: {}", planned.preset, reasons(faults.iter())));
@@ -447,17 +443,6 @@ impl<'a> Series<'a> {
             Some(_) => Ok(plan),
             None => Err(Diagnostic::error(Code::Light, other).into()),
         }
-    }
-
-    /// Keeps a run, and writes what is done.
-    fn keep(
-        &mut self,
-        place: usize,
-        run: Run,
-        pictures: &[PictureFile],
-    ) -> Result<(), CompareError> {
-        self.done(place, run);
-        self.save(pictures)
     }
 
     /// Returns the results of this comparison's finished runs, followed by the other runs that the

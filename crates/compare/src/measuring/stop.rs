@@ -45,9 +45,9 @@ impl From<CompareError> for Stop {
 pub fn attempt<T>(
     session: Session,
     method: &Method,
-    outcome: Result<T, Stop>,
+    outcome: Result<T, impl Into<Stop>>,
 ) -> Result<Result<T, String>, CompareError> {
-    match outcome {
+    match outcome.map_err(Into::into) {
         Ok(outcome) => Ok(Ok(outcome)),
         Err(Stop::Refused(error)) if !is_fatal(&error) => Ok(Err(explain(&error))),
         Err(stop) => Err(stop.into_error(session, &method.name)),

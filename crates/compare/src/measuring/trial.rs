@@ -66,22 +66,17 @@ pub struct Trials<'a> {
     viewport: [u32; 2],
     provider: &'a mut SceneProvider,
     limits: Limits,
-    /// True if settings that need too much memory are refused: the defaults need less.
-    holds_memory: bool,
+    /// True to answer [`Trial::Worse`] for settings beyond the limit of memory.
+    pub holds_memory: bool,
     /// Executor of the last setting.
     executor: Option<Executor>,
-    /// Pixels facing the light, over all views.
-    facing_light: f64,
+    /// Pixels facing the light, over all views; of 0 no setting can be judged.
+    pub facing_light: f64,
     /// Work that may still be done: a plan or a frame is one.
-    left: u64,
+    pub left: u64,
 }
 
 impl<'a> Trials<'a> {
-    /// True if no pixel of the views faces the light, so that no setting can be judged.
-    pub fn is_blind(&self) -> bool {
-        self.facing_light == 0.0
-    }
-
     /// Prepares trials of a method on those of `views` whose kind of light it takes, in the
     /// method's viewport.
     pub fn new(
@@ -107,20 +102,10 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// Number of plans and frames that may still be run, added up.
-    pub fn left(&self) -> u64 {
-        self.left
-    }
-
     /// True if there are limits of memory or frame time.
     pub fn has_budgets(&self) -> bool {
         let budgets = &self.limits.budgets;
         budgets.memory_bytes.is_some() || budgets.frame_ms.is_some()
-    }
-
-    /// Raises the number of plans and frames that may still be run by `more`.
-    pub fn allow(&mut self, more: u64) {
-        self.left += more;
     }
 
     /// Tries the method with `params` on all views, and returns its error: the share of wrong
@@ -148,16 +133,6 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// Makes [`run`](Self::run) answer [`Trial::Worse`] from now on for settings beyond the limit
-    /// of memory, unless the method's own setting is beyond it as well.
-    ///
-    /// # Errors
-    /// A lost device.
-    pub fn hold_memory(&mut self) -> Result<(), CompareError> {
-        self.holds_memory = self.is_small(&self.method.params)?;
-        Ok(())
-    }
-
     /// True if the method with `params` keeps to the limit of memory under each kind of light, or
     /// if there is none.
     ///
@@ -173,7 +148,7 @@ impl<'a> Trials<'a> {
             let Some(plan) = self.planned(&set) else {
                 return Ok(false);
             };
-            let scene = scene_bytes(self.session, &plan, self.provider).map_err(Stop::from);
+            let scene = scene_bytes(self.session, &plan, self.provider);
             match attempt(self.session, &set, scene)? {
                 Ok(scene) if plan.memory_bytes() + scene <= most => {}
                 _ => return Ok(false),
@@ -211,10 +186,7 @@ impl<'a> Trials<'a> {
 
     /// Median milliseconds of a frame with every pass; `None` if it cannot be planned.
     async fn timed(&mut self, set: &Method, view: &View) -> Result<Option<f64>, Stop> {
-        if !self.plan(set)? {
-            return Ok(None);
-        }
-        let Some(executor) = &mut self.executor else {
+        let (true, Some(executor)) = (self.plan(set)?, &mut self.executor) else {
             return Ok(None);
         };
         executor.refresh(self.provider)?;

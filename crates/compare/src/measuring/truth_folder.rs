@@ -102,26 +102,18 @@ impl TruthFolder {
         let vectors = [eye, right, up, forward].map(|vector| vector.to_array());
         let numbers = vectors.as_flattened().iter();
         let numbers = numbers.chain([half_width, half_height, near, far]);
-        let numbers: Vec<u8> = numbers
-            .chain(&jitter.to_array())
-            .flat_map(|number| number.to_le_bytes())
-            .collect();
+        let numbers: Vec<f64> = numbers.chain(&jitter.to_array()).copied().collect();
         let scene = match seen.moved {
             Some(mesh) => self.scene.with_scene(mesh, &[]),
             None => self.scene,
         };
-        let primitives: Vec<u8> = seen
-            .primitives
-            .iter()
-            .flat_map(|id| id.to_le_bytes())
-            .collect();
         scene
             .with_text(PROGRAM)
             .with_text(&self.oracle)
             .with_text(&light_text(seen.light))
             .with_text(&format!("{viewport:?}"))
-            .with_bytes(&numbers)
-            .with_bytes(&primitives)
+            .with_bytes(bytemuck::cast_slice(&numbers))
+            .with_bytes(bytemuck::cast_slice(seen.primitives))
     }
 }
 

@@ -241,7 +241,7 @@ struct Split {
 impl Split {
     /// Splits views; those that are one view under several lights stay together.
     fn new(views: &[ViewOrPath], scene: &Scene) -> Result<Self, CompareError> {
-        let mut places: Vec<(&str, Vec<&View>)> = Vec::new();
+        let mut places: Vec<(&str, Vec<View>)> = Vec::new();
         for view in views {
             let ViewOrPath::Still(still) = view else {
                 let what = "settings are tuned on still views, not along camera paths";
@@ -249,19 +249,12 @@ impl Split {
             };
             let light = view.one_of_lights().map_or(0, |light| light.len() + 1);
             let place = &still.name[..still.name.len() - light];
-            entry(&mut places, place).push(still);
+            entry(&mut places, place).push(still.clone());
         }
         let is_one = places.len() < 2;
-        let (mut judged, mut chosen_on) = (Vec::new(), Vec::new());
-        for (index, (_, views)) in places.into_iter().enumerate() {
-            let views: Vec<View> = views.into_iter().cloned().collect();
-            let part = if is_one || index % 2 == 0 {
-                &mut judged
-            } else {
-                &mut chosen_on
-            };
-            part.push(views);
-        }
+        let places = places.into_iter().map(|(_, views)| views).collect_vec();
+        let judged = places.iter().step_by(2).cloned().collect_vec();
+        let chosen_on = places.iter().skip(1).step_by(2).cloned().collect_vec();
         let missing = OTHERS.saturating_sub(chosen_on.len());
         let mut chosen_on = chosen_on.concat();
         if is_one {
@@ -366,7 +359,7 @@ async fn best(
     mut trials: Trials<'_>,
     most: u64,
 ) -> Result<Option<(ParamValues, Tuned)>, CompareError> {
-    if trials.is_blind() {
+    if trials.facing_light == 0.0 {
         return Ok(None);
     }
     let axes = axes(method, is_soft);
@@ -384,25 +377,23 @@ async fn best(
     };
     let name = format!("tuning {}", method.name);
     let step = Step::begin(session.sink, &name, most, "plans and frames");
-    trials.hold_memory()?;
+    trials.holds_memory = trials.is_small(&method.params)?;
     // Every setting that was the best so far, the defaults first.
     let mut bests: Vec<(ParamValues, f64)> = Vec::new();
-    let mut default_error = None;
     let outcome = search(&ways, async |point, best| {
         let params = params_of(point);
         let trial = trials.run(&params, best).await?;
-        step.set_done(most - trials.left());
+        step.set_done(most - trials.left);
         if let Trial::Error(error) = trial {
-            if point.iter().all(|value| *value == 0) {
-                default_error = Some(error);
-            }
             bests.push((params, error));
         }
         Ok::<_, CompareError>(trial)
     });
     let outcome = outcome.await?;
+    let default = bests.first().filter(|(params, _)| *params == method.params);
+    let default_error = default.map(|(_, error)| *error);
     bests.retain(|(params, error)| *error > outcome.error || *params == params_of(&outcome.point));
-    trials.allow(most / RESERVE);
+    trials.left += most / RESERVE;
     let mut chosen = None;
     while let (None, Some(best)) = (&chosen, bests.pop()) {
         chosen = within_budgets(method, &mut trials, best).await?;

@@ -19,7 +19,7 @@
 use crate::error::CompareError;
 use crate::files::fingerprint::Fingerprint;
 use crate::wording::unknown;
-use skiagraph_scene::{CameraPath, Light, LightKind, Scene, View};
+use skiagraph_scene::{CameraPath, LightKind, Scene, View};
 
 /// One still view or camera path of a comparison.
 #[derive(Clone, Debug)]
@@ -48,11 +48,6 @@ impl ViewOrPath {
         scene.light_of(self.view())
     }
 
-    /// Returns the view's or path's own light; `None` if it is lit by the scene's.
-    pub(crate) fn own_light(&self) -> Option<&Light> {
-        self.view().light.as_ref()
-    }
-
     /// Returns the name of the view's or path's own light, if this is one of several views or paths
     /// that differ only in their light: [`under_lights`] and [`paths`](Self::paths) name these
     /// `NAME@LIGHT`. Returns `None` for any other.
@@ -66,7 +61,7 @@ impl ViewOrPath {
     /// Returns `hash` extended by all fields of the view or path.
     pub fn fingerprint(&self, hash: Fingerprint) -> Fingerprint {
         match self {
-            Self::Still(view) => hash.with_view(view),
+            Self::Still(view) => hash.with_text(&format!("{view:?}")),
             Self::Path(path) => hash.with_text(&format!("{path:?}")),
         }
     }
@@ -147,10 +142,10 @@ pub fn under_lights(
             .filter(|light| name == "all" || light.name == name)
             .collect();
         if chosen.is_empty() {
-            let names: Vec<&str> = lights.iter().map(|light| light.name.as_str()).collect();
+            let names = lights.iter().map(|light| &light.name);
             let (view, scene) = (&view.name, &scene.name);
             let what = format!("view `{view}` of the scene `{scene}` has no light `{name}`");
-            let text = unknown(&what, name, "lights", &names) + ", or all of them: all";
+            let text = unknown(&what, name, "lights", names) + ", or all of them: all";
             return Err(CompareError::Input(text));
         }
         lit.extend(chosen.into_iter().map(|light| View {

@@ -40,7 +40,7 @@ pub fn unlit(view: &str, pixels: &PixelCounts) -> Option<String> {
 pub fn within_lamp(view: &ViewOrPath, scene: &Scene, pixels: u64) -> Option<String> {
     let kind = view.light(scene);
     let radius = kind.radius()?;
-    let lights = view.own_light().into_iter().chain(&scene.lights);
+    let lights = view.view().light.iter().chain(&scene.lights);
     let light = lights.into_iter().find(|light| light.kind == kind);
     let light = light.map_or_else(
         || kind.word().to_owned(),

@@ -238,26 +238,27 @@ fn grey_level(value: f32, (low, high): (f32, f32)) -> u8 {
     (share.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
-/// The colour that marks a value which is no number to draw.
+type NonFinite = (fn(f32) -> bool, [u8; 3], &'static str);
+
+/// Kinds of values that are no numbers to draw: a test, the colour, and the words of the legend.
+const NON_FINITE: [NonFinite; 3] = [
+    (f32::is_nan, INVALID, "magenta NaN"),
+    (|it| it == f32::INFINITY, POSITIVE_INFINITY, "orange +∞"),
+    (
+        |it| it == f32::NEG_INFINITY,
+        NEGATIVE_INFINITY,
+        "light blue -∞",
+    ),
+];
+
 fn non_finite_colour(value: f32) -> Option<[u8; 3]> {
-    match value {
-        _ if value.is_nan() => Some(INVALID),
-        f32::INFINITY => Some(POSITIVE_INFINITY),
-        f32::NEG_INFINITY => Some(NEGATIVE_INFINITY),
-        _ => None,
-    }
+    let mut kinds = NON_FINITE.iter();
+    kinds.find_map(|(is, colour, _)| is(value).then_some(*colour))
 }
 
 fn non_finite_marks(values: &[f32]) -> impl Iterator<Item = String> {
-    let marks = [
-        mark("magenta NaN", count(values, f32::is_nan)),
-        mark("orange +∞", count(values, |value| value == f32::INFINITY)),
-        mark(
-            "light blue -∞",
-            count(values, |value| value == f32::NEG_INFINITY),
-        ),
-    ];
-    marks.into_iter().flatten()
+    let marks = NON_FINITE.iter();
+    marks.filter_map(|(is, _, meaning)| mark(meaning, count(values, is)))
 }
 
 /// The first channels between these ranges; a texel with a value that is not finite shows that,

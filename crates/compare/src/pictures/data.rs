@@ -19,7 +19,7 @@ use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Vec2, 
 use itertools::Itertools;
 use skiagraph_gpu::Content;
 use skiagraph_reference::GroundTruth;
-use std::{io::Cursor, str::FromStr};
+use std::{borrow::Cow, io::Cursor, str::FromStr};
 
 /// Formats of data files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,10 +106,8 @@ impl Array {
         let values = content.as_f32().map(Values::F32).or_else(unsigned);
         let (layers, channels) = (parts.len(), usize::from(format.components()));
         let count = size[0] as usize * size[1] as usize * layers * channels;
-        let values = values
-            .or_else(signed)
-            .filter(|values| values.len() == count);
-        let values = values.ok_or_else(|| {
+        let is_whole = |values: &Values| values.described().0.len() == 4 * count;
+        let values = values.or_else(signed).filter(is_whole).ok_or_else(|| {
             format!("has the format {format:?}, whose texels are not numbers; save it as .bin")
         })?;
         Ok(Self {
@@ -134,41 +132,25 @@ impl Array {
 
     /// Returns shape and type in NumPy's notation, rows first: `an array (256, 512) of f4`.
     pub fn text(&self) -> String {
-        let (_, shape, kind) = self.described();
+        let (shape, kind) = (self.shape(), self.values.described().1);
         let kind = kind.trim_start_matches(['<', '|']);
         format!("an array {shape} of {kind}")
     }
 
-    /// Bytes of the numbers, the shape as Python writes it, and the type as NumPy names it.
-    fn described(&self) -> (Vec<u8>, String, &'static str) {
-        let (bytes, kind) = match &self.values {
-            Values::F32(floats) => (
-                floats.iter().flat_map(|it| it.to_le_bytes()).collect(),
-                "<f4",
-            ),
-            Values::U32(words) => (
-                words.iter().flat_map(|it| it.to_le_bytes()).collect(),
-                "<u4",
-            ),
-            Values::I32(signed) => (
-                signed.iter().flat_map(|it| it.to_le_bytes()).collect(),
-                "<i4",
-            ),
-            Values::U8(bytes) => (bytes.clone(), "|u1"),
-            Values::Bool(flags) => (flags.iter().map(|it| u8::from(*it)).collect(), "|b1"),
-        };
+    /// Shape as Python writes it.
+    fn shape(&self) -> String {
         let layers = (self.layers > 1).then_some(self.layers);
         let channels = (self.channels > 1).then_some(self.channels);
         let [width, height] = self.size.map(|it| it as usize);
         let mut shape = layers.into_iter().chain([height, width]).chain(channels);
-        (bytes, format!("({})", shape.join(", ")), kind)
+        format!("({})", shape.join(", "))
     }
 
     /// The file of NumPy's format 1.0: magic, length of the header, a Python dictionary that ends
     /// with a newline at a multiple of 64 bytes, the numbers.
     fn npy(&self) -> Vec<u8> {
         const BEFORE_HEADER: usize = 10;
-        let (bytes, shape, kind) = self.described();
+        let (shape, (bytes, kind)) = (self.shape(), self.values.described());
         let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
         let whole = (BEFORE_HEADER + header.len() + 1).next_multiple_of(64);
         let width = whole - BEFORE_HEADER - 1;
@@ -187,22 +169,15 @@ impl Array {
             1 => &["Y"],
             count => &["R", "G", "B", "A"][..count.min(4)],
         };
-        let samples = |channel: usize| -> Result<FlatSamples, String> {
-            let each = |count: usize| (channel..count).step_by(self.channels);
-            let count = self.values.len();
-            Ok(match &self.values {
-                Values::F32(floats) => FlatSamples::F32(each(count).map(|at| floats[at]).collect()),
-                Values::U32(words) => FlatSamples::U32(each(count).map(|at| words[at]).collect()),
-                Values::U8(bytes) => {
-                    FlatSamples::U32(each(count).map(|at| bytes[at].into()).collect())
-                }
-                Values::Bool(flags) => {
-                    FlatSamples::U32(each(count).map(|at| flags[at].into()).collect())
-                }
-                Values::I32(_) => {
-                    return Err("has signed integers, which OpenEXR lacks; save it as .npy".into());
-                }
-            })
+        let step = self.channels;
+        let samples = |first: usize| match &self.values {
+            Values::F32(floats) => Ok(FlatSamples::F32(every(floats, first, step))),
+            Values::U32(words) => Ok(FlatSamples::U32(every(words, first, step))),
+            Values::U8(bytes) => Ok(FlatSamples::U32(every(bytes, first, step))),
+            Values::Bool(flags) => Ok(FlatSamples::U32(every(flags, first, step))),
+            Values::I32(_) => {
+                Err("has signed integers, which OpenEXR lacks; save it as .npy".to_owned())
+            }
         };
         let channels = names.iter().enumerate();
         let channels = channels.map(|(index, name)| Ok(AnyChannel::new(*name, samples(index)?)));
@@ -218,17 +193,23 @@ impl Array {
 }
 
 impl Values {
-    /// Returns the number of values.
-    #[allow(clippy::len_without_is_empty, reason = "a picture has pixels")]
-    pub fn len(&self) -> usize {
+    /// Bytes of the numbers, little-endian as on every machine that wgpu runs on, and the type as
+    /// NumPy names it.
+    fn described(&self) -> (&[u8], &'static str) {
         match self {
-            Self::F32(floats) => floats.len(),
-            Self::U32(words) => words.len(),
-            Self::I32(signed) => signed.len(),
-            Self::U8(bytes) => bytes.len(),
-            Self::Bool(flags) => flags.len(),
+            Self::F32(floats) => (bytemuck::cast_slice(floats), "<f4"),
+            Self::U32(words) => (bytemuck::cast_slice(words), "<u4"),
+            Self::I32(signed) => (bytemuck::cast_slice(signed), "<i4"),
+            Self::U8(bytes) => (bytes, "|u1"),
+            Self::Bool(flags) => (bytemuck::cast_slice(flags), "|b1"),
         }
     }
+}
+
+/// Every number of one channel.
+fn every<T: Copy, S: From<T>>(values: &[T], first: usize, step: usize) -> Vec<S> {
+    let values = values.iter().skip(first).step_by(step);
+    values.map(|value| S::from(*value)).collect()
 }
 
 /// Returns arrays of the pixels of a method and of the [reference](crate#terms), each behind the
@@ -239,24 +220,17 @@ impl Values {
 pub fn judged(outputs: &Outputs, ground_truth: &GroundTruth) -> [Vec<(&'static str, Array)>; 2] {
     let truth = &ground_truth.pixels;
     let array = |values| Array::of_pixels(truth.viewport, values);
+    let floats = |shares: Cow<[f32]>| array(Values::F32(shares.into_owned()));
     let status = outputs.status.iter().map(|&status| status as u8).collect();
+    let indeterminate = array(Values::Bool(truth.indeterminate.clone()));
     let own = vec![
-        (
-            "visibility",
-            array(Values::F32(outputs.shown().into_owned())),
-        ),
+        ("visibility", floats(outputs.shown())),
         ("status", array(Values::U8(status))),
     ];
     let reference = vec![
-        (
-            "visibility",
-            array(Values::F32(ground_truth.shares().into_owned())),
-        ),
+        ("visibility", floats(ground_truth.shares())),
         ("status", array(Values::U8(truth.status()))),
-        (
-            "indeterminate",
-            array(Values::Bool(truth.indeterminate.clone())),
-        ),
+        ("indeterminate", indeterminate),
     ];
     [own, reference]
 }

@@ -1,7 +1,6 @@
 //! Encodes and writes PNG files.
 
 use crate::error::CompareError;
-use crate::files::write::write_whole;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use skiagraph_reference::Image;
@@ -19,12 +18,4 @@ pub fn encode(path: &Path, image: &Image) -> Result<Vec<u8>, CompareError> {
         .write_image(&image.rgb, width, height, ExtendedColorType::Rgb8)
         .map_err(|error| CompareError::write(path, error))?;
     Ok(png)
-}
-
-/// Writes a picture, whole or not at all.
-///
-/// # Errors
-/// The picture cannot be encoded, or the file cannot be written.
-pub fn save(path: &Path, image: &Image) -> Result<(), CompareError> {
-    write_whole(path, &encode(path, image)?)
 }

@@ -130,10 +130,7 @@ pub fn draw_pictures(
             0 => None,
             _ => Some(draw(own("uncertain"), uncertain())?),
         },
-        texels: None,
-        perspective: None,
-        projection: None,
-        worst_second: Vec::new(),
+        ..Images::default()
     };
     if let Some(footprints) = footprints {
         let mut heat = |kind: &str, part: fn(Footprint) -> f64| {

@@ -223,7 +223,7 @@ pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<Strin
                 let name = &save.capture.material;
                 CompareError::Input(format!("`{name}` {reason}"))
             })?;
-            png::save(&save.file, &image)?;
+            write_whole(&save.file, &png::encode(&save.file, &image)?)?;
             format!("{}, {part}{legend}", size(image.size))
         }
         Encoding::Data(format) => {

@@ -1,21 +1,21 @@
 //! `profile --baseline`: compares a profile with an older one.
 //!
-//! A ratio is new median by old median. Its spread goes from Q1(new) / Q3(old) to Q3(new) /
-//! Q1(old), Q1 and Q3 being the quartiles of the samples: 1 lies outside it exactly if the middle
-//! halves of both samples do not overlap. Only then is something called faster or slower.
+//! The two were not measured side by side, so their times are compared as `compare --baseline` does
+//! ([`unpaired`]): a time is called faster or slower only if the whole interval of the ratio lies
+//! on one side of 1, and the ratio is off 1 by 3 % or more.
 //!
 //! ```
 //! use skiagraph_compare::records::{baseline::{Ratio, Verdict}, statistics::Series};
 //!
-//! let series = |samples: &[f64]| Series::new(samples.to_vec());
-//! let old = series(&[2.0, 2.1, 2.2, 2.3, 2.4]).ok_or("no samples")?;
-//! let new = series(&[1.0, 1.1, 1.1, 1.2, 1.9]).ok_or("no samples")?;
+//! let old = Series::new(vec![2.0; 8]).ok_or("no samples")?;
+//! let new = Series::new(vec![1.0; 8]).ok_or("no samples")?;
 //! let ratio = Ratio::new(&old, &new);
-//! assert_eq!((ratio.ratio, ratio.verdict), (0.5, Verdict::Faster));
+//! assert_eq!((ratio.ratio, ratio.verdict), (Some(0.5), Verdict::Faster));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use crate::records::statistics::Series;
+use crate::records::unpaired;
 use serde::Serialize;
 
 /// Comparison of a profile with an older one of `profile --baseline`.
@@ -78,12 +78,13 @@ pub struct Ratio {
     pub old_ms: f64,
     /// Median of the new profile's times, one per frame, in milliseconds.
     pub new_ms: f64,
-    /// New median divided by old median.
-    pub ratio: f64,
-    /// Lower end of the ratio's spread: Q1(new) / Q3(old).
-    pub low: f64,
-    /// Upper end of the ratio's spread: Q3(new) / Q1(old).
-    pub high: f64,
+    /// Median of the ratios of every frame of the new profile to every frame of the older one; null
+    /// if one of them has too few frames.
+    pub ratio: Option<f64>,
+    /// Lower end of the interval of the ratio; null where `ratio` is.
+    pub low: Option<f64>,
+    /// Upper end of the interval of the ratio; null where `ratio` is.
+    pub high: Option<f64>,
     /// Verdict on the new time: faster, slower, or no difference that can be told.
     pub verdict: Verdict,
 }
@@ -92,43 +93,32 @@ pub struct Ratio {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The new time is shorter: the ratio's whole spread, `low` to `high`, lies below 1.
+    /// The new time is shorter: the ratio's whole interval lies below 1, the ratio by 3 % or more.
     Faster,
-    /// The new time is longer: the ratio's whole spread, `low` to `high`, lies above 1.
+    /// The new time is longer: the ratio's whole interval lies above 1, the ratio by 3 % or more.
     Slower,
-    /// The times cannot be told apart: 1 lies in the ratio's spread, `low` to `high`.
+    /// The times cannot be told apart.
     Same,
-    /// One of the profiles has fewer than [`MIN_FRAMES`] frames: their quartiles say nothing.
+    /// One of the profiles has fewer than [`LEAST_TURNS`](super::turns::LEAST_TURNS) frames.
     TooFewFrames,
 }
-
-/// Least number of samples for which quartiles are compared: with fewer, a quartile is hardly more
-/// than one sample.
-pub const MIN_FRAMES: usize = 5;
-
-/// One nanosecond: what samples are stored in, so that nothing is divided by zero.
-const RESOLUTION_MS: f64 = 1e-6;
 
 impl Ratio {
     /// Compares a new series of times with an old one.
     pub fn new(old: &Series, new: &Series) -> Self {
-        let ratio = |new: f64, old: f64| new.max(RESOLUTION_MS) / old.max(RESOLUTION_MS);
-        let [old_q1, old_q3] = old.quartiles();
-        let [new_q1, new_q3] = new.quartiles();
-        let (low, high) = (ratio(new_q1, old_q3), ratio(new_q3, old_q1));
-        let verdict = match () {
-            () if old.samples.len().min(new.samples.len()) < MIN_FRAMES => Verdict::TooFewFrames,
-            () if high < 1.0 => Verdict::Faster,
-            () if low > 1.0 => Verdict::Slower,
-            () => Verdict::Same,
-        };
+        let ratio = unpaired::ratio(&new.samples, &old.samples);
         Self {
             old_ms: old.median,
             new_ms: new.median,
-            ratio: ratio(new.median, old.median),
-            low,
-            high,
-            verdict,
+            ratio: ratio.map(|ratio| ratio.median),
+            low: ratio.map(|ratio| ratio.low),
+            high: ratio.map(|ratio| ratio.high),
+            verdict: match ratio {
+                None => Verdict::TooFewFrames,
+                Some(ratio) if !ratio.is_told_apart() => Verdict::Same,
+                Some(ratio) if ratio.median < 1.0 => Verdict::Faster,
+                Some(_) => Verdict::Slower,
+            },
         }
     }
 
@@ -144,33 +134,30 @@ mod tests {
     use crate::records::statistics::tests::series;
 
     #[test]
-    fn only_middle_halves_that_do_not_overlap_are_a_difference() {
-        let old = series(&[1.0, 2.0, 3.0, 4.0, 5.0]); // quartiles 2 and 4
-        let verdict = |samples: &[f64]| Ratio::new(&old, &series(samples)).verdict;
-        assert_eq!(verdict(&[1.0, 2.0, 3.0, 4.0, 5.0]), Verdict::Same);
-        assert_eq!(verdict(&[0.1, 0.5, 1.0, 1.5, 9.0]), Verdict::Faster); // up to 1.5
-        assert_eq!(verdict(&[0.1, 0.5, 1.0, 2.0, 9.0]), Verdict::Same); // they touch
-        assert_eq!(verdict(&[1.0, 5.0, 6.0, 7.0, 8.0]), Verdict::Slower); // from 5
-        assert_eq!(verdict(&[9.0; 4]), Verdict::TooFewFrames);
+    fn the_verdict_is_that_of_runs_that_were_not_measured_side_by_side() {
+        let old = series(&[10.0, 10.1, 10.2, 10.3, 10.4, 10.5, 10.6, 10.7]);
+        let against = |by: f64| {
+            let new: Vec<f64> = old.samples.iter().map(|ms| ms * by).collect();
+            Ratio::new(&old, &series(&new))
+        };
+        let verdicts = [0.8, 1.0, 1.02, 1.2].map(|by| against(by).verdict);
+        let expected = [
+            Verdict::Faster,
+            Verdict::Same,
+            Verdict::Same, // less than 3 % off
+            Verdict::Slower,
+        ];
+        assert_eq!(verdicts, expected);
+        let paired = unpaired::ratio(&old.samples, &old.samples).unwrap();
+        let same = against(1.0);
+        let ratio = [same.low, same.ratio, same.high].map(Option::unwrap);
+        assert_eq!(ratio, [paired.low, paired.median, paired.high]);
     }
 
     #[test]
-    fn a_ratio_is_that_of_the_medians_with_the_quartiles_extremes() {
-        let ratio = Ratio::new(
-            &series(&[1.0, 2.0, 4.0, 5.0, 8.0]),
-            &series(&[2.0, 4.0, 8.0, 10.0, 16.0]),
-        );
-        assert_eq!((ratio.old_ms, ratio.new_ms, ratio.ratio), (4.0, 8.0, 2.0));
-        assert_eq!((ratio.low, ratio.high), (4.0 / 5.0, 10.0 / 2.0));
-    }
-
-    #[test]
-    fn times_of_zero_still_have_a_ratio() {
-        let (zero, one) = (series(&[0.0; 5]), series(&[1.0; 5]));
-        assert_eq!(Ratio::new(&zero, &zero).ratio, 1.0);
-        assert_eq!(Ratio::new(&zero, &zero).verdict, Verdict::Same);
-        for ratio in [Ratio::new(&zero, &one), Ratio::new(&one, &zero)] {
-            assert!(ratio.ratio.is_finite() && ratio.low.is_finite() && ratio.high.is_finite());
-        }
+    fn with_too_few_frames_there_is_no_ratio() {
+        let ratio = Ratio::new(&series(&[1.0; 8]), &series(&[9.0; 7]));
+        assert_eq!((ratio.old_ms, ratio.new_ms), (1.0, 9.0));
+        assert_eq!((ratio.ratio, ratio.verdict), (None, Verdict::TooFewFrames));
     }
 }

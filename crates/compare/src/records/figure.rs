@@ -20,6 +20,7 @@ use crate::quantities::{bytes, milliseconds, percent, positive};
 use crate::records::judged_pictures::JudgedPicture;
 use crate::records::regimes::When;
 use crate::records::results::{Machine, Measured, Part, Results, Run};
+use crate::records::sequence::greatest;
 use crate::records::statistics::Spread;
 use crate::records::steady::Cycle;
 use crate::wording::{self, ms, thousands};
@@ -411,13 +412,7 @@ impl Figure {
         }
         let values = values.into_iter();
         let values = values.map(|(value, place)| Worst { value, place });
-        values.reduce(|worst, next| {
-            if next.value > worst.value {
-                next
-            } else {
-                worst
-            }
-        })
+        greatest(values, |it| it.value).map(|(_, worst)| worst)
     }
 
     /// Returns the text of a value in a table; `–` if it is unknown. `share` formats its first

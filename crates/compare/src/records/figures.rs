@@ -390,8 +390,7 @@ fn quartiles(when: When) -> Figure {
 
 /// True if a method remembers.
 fn remember(runs: &[&Run]) -> bool {
-    let mut measured = runs.iter().filter_map(|run| run.measured.as_ref());
-    measured.any(|measured| measured.steady.is_some())
+    any(runs, |_, measured| measured.steady.is_some())
 }
 
 /// Milliseconds that so many percent of the frames keep to.
@@ -475,8 +474,7 @@ fn edge(measured: &Measured, figure: fn(&Distances) -> f64) -> Option<f64> {
 
 /// True if any run has measurements along a camera path.
 pub fn are_paths(runs: &[&Run]) -> bool {
-    let mut measured = runs.iter().filter_map(|run| run.measured.as_ref());
-    measured.any(|measured| measured.sequence.is_some())
+    any(runs, |_, measured| measured.sequence.is_some())
 }
 
 /// True if any run has a graded answer, or a light with extent.
@@ -486,6 +484,10 @@ fn are_graded(runs: &[&Run]) -> bool {
 
 /// True if the light of any measured run has an extent.
 fn are_soft(runs: &[&Run]) -> bool {
-    let mut measured = runs.iter().filter(|run| run.measured.is_some());
-    measured.any(|run| run.area.is_some())
+    any(runs, |run, _| run.area.is_some())
+}
+
+fn any(runs: &[&Run], is: fn(&Run, &Measured) -> bool) -> bool {
+    let mut runs = runs.iter();
+    runs.any(|run| run.measured.as_ref().is_some_and(|it| is(run, it)))
 }

@@ -33,6 +33,7 @@ pub mod figure;
 pub mod figures;
 pub mod hint;
 pub mod judged_pictures;
+mod measured;
 pub mod profile;
 pub mod published;
 pub mod published_row;

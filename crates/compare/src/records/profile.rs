@@ -11,7 +11,7 @@
 //! let profile = read_back::profile(&new)?;
 //! println!("{} on {}", profile.conditions.preset, profile.conditions.adapter);
 //! let beside = profile.against(&old, &read_back::profile(&old)?);
-//! assert_eq!(beside.frame.wall.ratio, 1.0);
+//! assert_eq!(beside.frame.wall.old_ms, beside.frame.wall.new_ms);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -441,9 +441,8 @@ fn times(then: Measurement, now: Measurement) -> Result<Vec<TimeChange>, String>
     })?;
     let regimes = Regime::ALL.into_iter().filter_map(|regime| {
         let [old, new] = [then, now].map(|measurement| {
-            let mut times = measurement.measured.regimes.iter();
-            let times = times.find(|times| times.regime == regime);
-            times.map_or_else(Vec::new, |times| costs(&times.frame))
+            let times = measurement.measured.times(Some(regime));
+            times.map(costs).unwrap_or_default()
         });
         TimeChange::new(Some(regime), &old, &new)
     });

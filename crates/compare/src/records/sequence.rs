@@ -17,6 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::records::statistics::median;
 use serde::{Deserialize, Serialize};
 use skiagraph_reference::{Graded, Shimmer};
 use std::collections::BTreeMap;
@@ -33,7 +34,7 @@ pub struct Sequence {
 }
 
 /// Measurements of one frame of a camera path.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SequenceFrame {
     /// Number of pixels whose visible surface faces the light.
     pub facing_light: u64,
@@ -126,17 +127,19 @@ impl Sequence {
         for Remade { name, how, ms } in remade {
             times.entry((name, how)).or_default().push(*ms);
         }
-        let median = |((name, how), mut times): ((&'s str, &'s str), Vec<f64>)| {
-            times.sort_by(f64::total_cmp);
-            (name, how, times.len(), times[times.len() / 2])
+        let medians = |((name, how), times): ((&'s str, &'s str), Vec<f64>)| {
+            (name, how, times.len(), median(times))
         };
-        let medians = times.into_iter().map(median);
+        let medians = times.into_iter().map(medians);
         medians.filter(|(.., ms)| *ms >= 0.1).collect()
     }
 }
 
 /// The first item of the greatest figure, with its index.
-fn greatest<T>(items: impl Iterator<Item = T>, figure: impl Fn(&T) -> f64) -> Option<(usize, T)> {
+pub(super) fn greatest<T>(
+    items: impl Iterator<Item = T>,
+    figure: impl Fn(&T) -> f64,
+) -> Option<(usize, T)> {
     items.enumerate().reduce(|most, other| {
         let is_more = figure(&other.1) > figure(&most.1);
         if is_more { other } else { most }

@@ -124,6 +124,12 @@ impl Spread {
     }
 }
 
+/// The middle of some values, of an even number the greater one of two; 0 of none.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
 /// Returns the milliseconds of a time, exact to the nanosecond.
 pub fn ms(time: Duration) -> f64 {
     time.as_nanos() as f64 / 1e6
@@ -155,13 +161,6 @@ impl Series {
             max: samples.iter().copied().reduce(f64::max)?,
             samples,
         })
-    }
-
-    /// Returns the first and third quartile of the samples, each interpolated linearly between the
-    /// two nearest samples.
-    pub fn quartiles(&self) -> [f64; 2] {
-        let spread = Spread::new(self.samples.iter().copied()).unwrap_or_default();
-        [spread.q1, spread.q3]
     }
 }
 
@@ -212,7 +211,10 @@ pub(crate) mod tests {
 
     #[test]
     fn quartiles_lie_between_the_samples_beside_them() {
-        let quartiles = |samples: &[f64]| series(samples).quartiles();
+        let quartiles = |samples: &[f64]| {
+            let spread = Spread::new(samples.iter().copied()).unwrap();
+            [spread.q1, spread.q3]
+        };
         assert_eq!(quartiles(&[5.0, 1.0, 2.0, 4.0, 3.0]), [2.0, 4.0]);
         assert_eq!(quartiles(&[1.0, 2.0]), [1.25, 1.75]);
         assert_eq!(quartiles(&[7.0]), [7.0, 7.0]);

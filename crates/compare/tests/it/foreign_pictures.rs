@@ -7,7 +7,7 @@ use skiagraph_compare::{
     foreign::{
         factor::linear,
         judging::{Judging, Surfaces, judge},
-        raster::Raster,
+        raster,
         truth::{TruthRequest, write_truth},
     },
     graphs::preset::SHIPPED,
@@ -57,7 +57,7 @@ fn shown(scene: &Arc<Scene>, methods: &[&str], map: u32) -> Vec<Shown> {
             let preset = run.preset.split('@').next().unwrap();
             name.starts_with(&format!("{preset}-")) && name.ends_with("-visibility.npy")
         };
-        let values = Raster::read(files.iter().find(is_own).unwrap())
+        let values = raster::read(files.iter().find(is_own).unwrap())
             .unwrap()
             .values;
         Shown {
@@ -196,7 +196,7 @@ fn what_is_written_as_truth_judges_pictures() {
                 lines.iter().any(|line| line.starts_with(&file)),
                 "{lines:?}"
             );
-            Raster::read(&out.join(file)).unwrap()
+            raster::read(&out.join(file)).unwrap()
         };
         let count = |name: &str, wanted: f64| {
             let values = read(name).values;
@@ -271,7 +271,7 @@ fn ids_of_another_camera_are_told() {
     ))
     .unwrap();
     // Upside down.
-    let ids = Raster::read(&out.join("ids.npy")).unwrap();
+    let ids = raster::read(&out.join("ids.npy")).unwrap();
     let rows = ids.values.chunks_exact(SIZE[0] as usize).rev().flatten();
     let turned: Vec<u32> = rows.map(|id| *id as u32).collect();
     let array = Array::of_pixels(SIZE, Values::U32(turned));

@@ -93,7 +93,8 @@ def our_figures(row):
         figures |= {"ms.frame": float(row["gpu_ms"]), "fps": 1000 / float(row["gpu_ms"])}
     for step in row["passes"]:
         # The step `trace_rays` has the passes `trace_rays.inner` and `turn[0].trace_rays`.
-        name = next(part for part in step["name"].split(".") if not part.endswith("]"))
+        parts = step["name"].split(".")
+        name = next((part for part in parts if not part.endswith("]")), step["name"])
         ms = step["gpu_ms"]["median"] if step.get("gpu_ms") else math.nan
         for quantity in (f"ms.{name}", SUM):
             figures[quantity] = figures.get(quantity, 0) + ms

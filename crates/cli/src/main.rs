@@ -48,6 +48,7 @@ fn main() -> ExitCode {
     };
     #[cfg(unix)]
     with_runtime_dir();
+    // Measuring waits for the GPU here alone.
     let outcome = block_on(run(&cli));
     // Where the process ends in the middle of work, that is what is told.
     terminal::stop::take_end();
@@ -57,7 +58,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs the command that was typed. Here alone the program waits.
+/// Runs the command that was typed.
 async fn run(cli: &Cli) -> Result<(), CliError> {
     let gpu = &cli.gpu;
     match &cli.command {

@@ -1,5 +1,5 @@
-//! Waits for a GPU. All other code is `async` as far as it waits, so that a host that cannot wait,
-//! such as a window's event loop, can drive it as well.
+//! Waits for a GPU in a way that a host which cannot wait, such as a window's event loop, can drive
+//! as well.
 
 use crate::error::poll;
 use std::{
@@ -16,8 +16,9 @@ use std::{
 const INTERVAL: Duration = Duration::from_millis(100);
 
 thread_local! {
-    /// The device that the future of this thread waits for.
-    static WAITED_FOR: RefCell<Option<wgpu::Device>> = const { RefCell::new(None) };
+    /// The device that a future waits for which [`block_on`] runs on this thread: `None` outside of
+    /// it, `Some(None)` where the future waits for none.
+    static WAITED_FOR: RefCell<Option<Option<wgpu::Device>>> = const { RefCell::new(None) };
 }
 
 /// Lets the caller go on when all work submitted to `queue` is done, and whenever its future is
@@ -31,7 +32,11 @@ pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
         is_told = true;
         let waker = context.waker().clone();
         queue.on_submitted_work_done(move || waker.wake());
-        WAITED_FOR.set(Some(device.clone()));
+        WAITED_FOR.with_borrow_mut(|waited_for| {
+            if let Some(waited_for) = waited_for {
+                *waited_for = Some(device.clone());
+            }
+        });
         Poll::Pending
     })
     .await;
@@ -50,20 +55,19 @@ impl Wake for Unpark {
 pub fn block_on<T>(future: impl Future<Output = T>) -> T {
     let waker = Waker::from(Arc::new(Unpark(std::thread::current())));
     let mut future = pin!(future);
+    let until_done = wgpu::PollType::Wait {
+        submission_index: None,
+        timeout: Some(INTERVAL),
+    };
     loop {
-        if let Poll::Ready(output) = future.as_mut().poll(&mut Context::from_waker(&waker)) {
-            return output;
-        }
-        match WAITED_FOR.take() {
+        let outer = WAITED_FOR.replace(Some(None));
+        let polled = future.as_mut().poll(&mut Context::from_waker(&waker));
+        let waited_for = WAITED_FOR.replace(outer).flatten();
+        match (polled, waited_for) {
+            (Poll::Ready(output), _) => return output,
             // The future tells if the device is lost.
-            Some(device) => drop(poll(
-                &device,
-                wgpu::PollType::Wait {
-                    submission_index: None,
-                    timeout: Some(INTERVAL),
-                },
-            )),
-            None => std::thread::park(),
+            (Poll::Pending, Some(device)) => drop(poll(&device, until_done.clone())),
+            (Poll::Pending, None) => std::thread::park(),
         }
     }
 }

@@ -212,6 +212,11 @@ impl<'a> Contender<'a> {
         !are_resting && self.row.is_told_apart(other.row, self.when)
     }
 
+    /// True if the frames of both were timed in the same turns.
+    pub fn took_turns_with(&self, other: &Self) -> bool {
+        self.row.ratio(other.row, self.when).is_some()
+    }
+
     /// How many times as fast as another method it is, with the interval.
     pub fn times_as_fast(&self, other: &Self) -> String {
         match other.row.ratio(self.row, self.when) {

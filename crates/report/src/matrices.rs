@@ -40,10 +40,11 @@ pub fn by_summary<'a>(
 /// decides), over all views; the milliseconds of a frame, the mean of the views' medians; and the
 /// memory, the most on a view.
 ///
-/// A frame of all lights draws the first light as its column says, and then of each other light the
-/// passes that run when it moves: a G-buffer is drawn once at most. Its memory is the most of a
-/// light, as the lights are drawn one after another in the same. A method that computes several
-/// lights at once has the frame of its first column.
+/// A frame of all lights draws the first light as its column says (on views after it has moved,
+/// without a G-buffer), and then of each other light the passes that run when it moves. Its memory
+/// is the most of a light, as the lights are drawn one after another in the same. A method that
+/// computes several lights at once has the frame of its first column. A method that lacks views
+/// under a light has no such frame.
 pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
     let summaries = summaries(results);
     let mut tables = Vec::new();
@@ -84,6 +85,9 @@ fn text([wrong, facing]: [u64; 2], time: Option<f64>, memory: u64) -> String {
 /// The cell of all lights, from a method's rows under each.
 fn at_once(rows: &[(&Summary, &Row)]) -> Option<String> {
     let (first, rest) = rows.split_first()?;
+    if rest.iter().any(|(_, row)| row.views() != first.1.views()) {
+        return None;
+    }
     let has_all = first
         .1
         .runs()

@@ -204,14 +204,13 @@ fn sentence(
     methods: &[Contender],
 ) -> String {
     let names = level.iter().map(|method| method.name()).join(" or ");
-    let have_turns = |method: &&Contender| best.row.ratio(method.row, best.when).is_some();
     let (apart, subject) = match level {
         [_] => ("", "It is"),
-        [_, level @ ..] if level.iter().all(have_turns) => {
+        [_, level @ ..] if level.iter().all(|method| method.took_turns_with(best)) => {
             (": their times cannot be told apart", "They are")
         }
         _ => (
-            ": they did not take turns, so their times cannot be told apart",
+            ": they did not all take turns, so their times cannot be told apart",
             "They are",
         ),
     };
@@ -231,7 +230,9 @@ fn sentence(
     };
     if let Some(quickest) = fastest(methods.iter().filter(|method| !method.is_exact)) {
         let (name, error) = (quickest.name(), quickest.error());
-        text += &if !quickest.is_told_apart(best) {
+        text += &if !quickest.took_turns_with(best) {
+            format!(". {name} was not timed in turns with it, and is {error}")
+        } else if !quickest.is_told_apart(best) {
             format!(". {name} is as fast, as far as can be told, and {error}")
         } else if quickest.frame < best.frame {
             let times = quickest.times_as_fast(best);
@@ -334,7 +335,11 @@ fn faster(fastest: &Contender, than: &Contender) -> String {
         let times = fastest.times_as_fast(than);
         format!("{name} is {times}: {error}")
     } else {
-        format!("{name} ({error}) cannot be told apart from it in time")
+        let why = match fastest.took_turns_with(than) {
+            true => "cannot be told apart from it in time",
+            false => "was not timed in turns with it",
+        };
+        format!("{name} ({error}) {why}")
     }
 }
 

@@ -65,14 +65,14 @@ pub async fn run(args: &RunArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         print(&format!("{} on {place}\n{}", preset.name, summary(&plan)))?;
         let mut poisoned = None;
         if args.poison {
-            poisoned = Some(poison::check(session, &plan, &mut provider, preset).await?);
+            poisoned = Some(poison::check(session, &plan, &mut provider, preset).await);
         }
         let still = ViewOrPath::Still(view.clone());
         let still = FrameSequence::new(&still, &scene, None, None)?;
         let frames = (sequence.as_ref().unwrap_or(&still), is_sequence);
         record(frames, session, (preset, plan), &mut provider, saves).await?;
         if let Some(verdict) = poisoned {
-            print(&verdict)?;
+            print(&verdict?)?;
         }
     }
     Ok(())

@@ -218,9 +218,9 @@ pub(crate) async fn wait(
     executor: &mut Executor,
 ) -> Result<FrameReport, ExecuteError> {
     let began = Instant::now();
-    let mut is_over = false;
+    let (mut is_over, mut patience) = (false, Duration::ZERO);
     loop {
-        let passes = match executor.finish_within(Some(Duration::ZERO)) {
+        let passes = match executor.finish_within(Some(patience)) {
             Err(ExecuteError::Unfinished { passes, .. }) => passes,
             done => return done,
         };
@@ -230,8 +230,9 @@ pub(crate) async fn wait(
             return Err(ExecuteError::Unfinished { after, passes });
         }
         submitted_work(&session.gpu.device, &session.gpu.queue).await;
-        // A frame that is done by now counts.
+        // A frame that is done by now counts, and its report may come a moment after it.
         is_over = self::is_over(session, began);
+        patience = Duration::from_millis(1);
     }
 }
 

@@ -93,12 +93,13 @@ fn is_inner(token: &str) -> bool {
 
 /// True if `<` behind the word begins a list of types.
 fn takes_types(word: &str) -> bool {
-    let is_sized = |kind| {
-        let rest = word.strip_prefix(kind).unwrap_or_default();
-        rest.starts_with(|c: char| c.is_ascii_digit())
-    };
-    let is_one = ["array", "ptr", "atomic", "bitcast", "var"].contains(&word);
-    is_one || word.starts_with("texture_") || is_sized("vec") || is_sized("mat")
+    const NAMES: [&str; 6] = ["array", "binding_array", "ptr", "atomic", "bitcast", "var"];
+    let is_matrix = matches!(
+        word.as_bytes(),
+        [b'm', b'a', b't', b'2'..=b'4', b'x', b'2'..=b'4']
+    );
+    let is_vector = matches!(word, "vec2" | "vec3" | "vec4");
+    is_matrix || is_vector || NAMES.contains(&word) || word.starts_with("texture_")
 }
 
 /// True if the token before an operator ends its first operand.

@@ -137,7 +137,7 @@ fn nothing_exact_all_exact_and_level_times() {
     let mut later = run("b", 0, 30.0, 30.0);
     later.session = "2026-11-20T04:50:00Z".into();
     let (_, sentences) = outcome(&[run("a", 0, 10.0, 10.0), later]);
-    let why = "Take `a` or `b`: they did not take turns, so their times cannot be told apart";
+    let why = "Take `a` or `b`: they did not all take turns, so their times cannot be told apart";
     assert!(sentences[0].starts_with(why), "{sentences:?}");
     let (_, sentences) = outcome(&[run("rt", 0, 10.0, 4.0)]);
     assert_eq!(

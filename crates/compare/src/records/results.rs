@@ -55,7 +55,7 @@ pub struct Results {
     pub frames: u32,
     /// Number of untimed warm-up frames before the timed ones.
     pub warmup: u32,
-    /// Number of timed frames of each [`Regime`]; 0 if there are none.
+    /// Number of timed frames of each [regime](crate::records::regimes::Regime); 0 for none.
     pub regime_frames: u32,
     /// Start of the comparison that measured the newest runs, in UTC: `2026-11-21T04:30:12Z`.
     pub began: String,

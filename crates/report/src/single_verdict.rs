@@ -335,9 +335,10 @@ fn faster(fastest: &Contender, than: &Contender) -> String {
         let times = fastest.times_as_fast(than);
         format!("{name} is {times}: {error}")
     } else {
-        let why = match fastest.took_turns_with(than) {
-            true => "cannot be told apart from it in time",
-            false => "was not timed in turns with it",
+        let why = if fastest.took_turns_with(than) {
+            "cannot be told apart from it in time"
+        } else {
+            "was not timed in turns with it"
         };
         format!("{name} ({error}) {why}")
     }

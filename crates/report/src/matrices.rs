@@ -23,15 +23,19 @@ pub fn by_summary<'a>(
     let labels = unique(rows.map(|row| &row.label));
     let cells = labels.into_iter().map(|label| {
         let cell = |(_, summary): &(&str, &Summary<'a>)| {
-            let mut rows = summary.rows.iter().filter(|row| row.views() > 0);
-            let row = rows.find(|row| row.label == *label);
-            or_dash(row, |row| cell(summary, row))
+            or_dash(measured(summary, label), |row| cell(summary, row))
         };
         let cells = columns.iter().map(cell);
         [label.clone()].into_iter().chain(cells).collect()
     });
     let heads = columns.iter().map(|(head, _)| *head);
     Table::new(["method"].into_iter().chain(heads), 1, cells)
+}
+
+/// Returns the row of a method that was measured; `None` if it could not run.
+fn measured<'s, 'a>(summary: &'s Summary<'a>, label: &str) -> Option<&'s Row<'a>> {
+    let mut rows = summary.rows.iter().filter(|row| row.views() > 0);
+    rows.find(|row| row.label == label)
 }
 
 /// Returns, for each viewport with several lights, its size in pixels and a table with a row for
@@ -64,10 +68,8 @@ pub fn by_light(results: &Results) -> Vec<([u32; 2], Table)> {
         let mut table = by_summary(&lights, of_row);
         table.heads.push(format!("all {} at once", lights.len()));
         for cells in &mut table.rows {
-            let rows = lights.iter().map(|(_, summary)| {
-                let mut rows = summary.rows.iter().filter(|row| row.views() > 0);
-                Some((*summary, rows.find(|row| row.label == cells[0])?))
-            });
+            let rows = lights.iter();
+            let rows = rows.map(|(_, summary)| Some((*summary, measured(summary, &cells[0])?)));
             let rows: Option<Vec<_>> = rows.collect();
             cells.push(or_dash(rows.and_then(|rows| at_once(&rows)), |text| text));
         }

@@ -76,7 +76,7 @@ fn is_analytic(case: &HardCase) -> bool {
 fn render(mesh: &Mesh, camera: &Camera, light: LightKind) -> GroundTruthPixels {
     let (oracle, mode) = (Oracle::new(mesh), OracleMode::Exact);
     let primitives = oracle.primary(camera, Progress::default());
-    let primitives = primitives.expect("nobody interrupts");
+    let primitives = primitives.expect("it is not stopped");
     let shaded = oracle.shade(camera, light, &primitives, mode, Progress::default());
     shaded.expect("its own primitives")
 }
@@ -99,7 +99,7 @@ fn complaints(case: &HardCase, viewport: [u32; 2]) -> Vec<String> {
     let oracle = Oracle::new(&mesh);
     let primitives = oracle
         .primary(&camera, Progress::default())
-        .expect("nobody interrupts");
+        .expect("it is not stopped");
     let truth = render(&mesh, &camera, light);
     let count =
         |wanted: &dyn Fn(usize) -> bool| (0..primitives.len()).filter(|&i| wanted(i)).count();

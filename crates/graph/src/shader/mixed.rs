@@ -48,34 +48,34 @@ fn class(operator: &str) -> Option<Class> {
 
 /// Returns the first two operators, of those that no bracket parts, that are not to be mixed.
 fn mixed(operators: &[Operator]) -> Option<Mixed> {
-    let is_parted = |between: &[Operator], by: &[Class]| {
-        between.iter().any(|operator| by.contains(&operator.class))
-    };
-    for (index, second) in operators.iter().enumerate() {
-        let clashes = |(at, first): &(usize, &Operator)| {
-            let between = &operators[at + 1..index];
-            match (first.class, second.class) {
-                (Class::Bits, _) | (_, Class::Bits) | (Class::Choice, Class::Choice) => {
-                    first.text != second.text
-                }
-                (Class::Comparison, Class::Comparison) => !is_parted(between, &[Class::Choice]),
-                (Class::Shift, Class::Shift | Class::Arithmetic)
-                | (Class::Arithmetic, Class::Shift) => {
-                    !is_parted(between, &[Class::Choice, Class::Comparison])
-                }
-                _ => false,
+    let all = operators.first()?;
+    // The first choice, the comparison since the last one, and the operator within its operand.
+    let (mut choice, mut comparison, mut inner) = (None, None, None::<&Operator>);
+    operators.iter().find_map(|second| {
+        let differs = |first: &&Operator| first.text != second.text;
+        let first = match second.class {
+            _ if all.class == Class::Bits => Some(all).filter(differs),
+            Class::Bits => Some(all),
+            Class::Choice => {
+                (comparison, inner) = (None, None);
+                Some(*choice.get_or_insert(second)).filter(differs)
             }
-        };
-        let first = operators[..index].iter().enumerate().find(clashes);
-        if let Some((_, first)) = first {
-            return Some(Mixed {
-                first: first.text.to_owned(),
-                second: second.text.to_owned(),
-                at: second.at.clone(),
-            });
-        }
-    }
-    None
+            Class::Comparison => {
+                inner = None;
+                comparison.replace(second)
+            }
+            Class::Shift => inner.replace(second),
+            Class::Arithmetic => {
+                let first = inner.replace(second);
+                first.filter(|first| first.class == Class::Shift)
+            }
+        }?;
+        Some(Mixed {
+            first: first.text.to_owned(),
+            second: second.text.to_owned(),
+            at: second.at.clone(),
+        })
+    })
 }
 
 /// Words behind which an expression begins.
@@ -174,6 +174,13 @@ mod tests {
             assert_eq!(found(text), [pair], "{text}");
         }
         assert_eq!(found("a = b | c & d; e = f && g || h;"), ["| &", "&& ||"]);
+    }
+
+    #[test]
+    fn a_long_expression_takes_no_longer_than_it_is_long() {
+        let sum = "a + ".repeat(1_000_000);
+        assert_eq!(found(&format!("x = {sum} a;")), [""; 0]);
+        assert_eq!(found(&format!("x = {sum} a << 1u;")), ["+ <<"]);
     }
 
     #[test]

@@ -173,7 +173,7 @@ proptest! {
         let oracle = Oracle::new(&mesh);
         let primitives = oracle
             .primary(&camera, Progress::default())
-            .expect("nobody interrupts");
+            .expect("it is not stopped");
         for mode in [
             OracleMode::Exact,
             OracleMode::Offset(1e-3 * f64::from(scale)),

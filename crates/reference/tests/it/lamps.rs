@@ -163,7 +163,7 @@ proptest! {
         };
         let camera = from_above(1.7, [48, 48]);
         let oracle = Oracle::new(&mesh);
-        let primitives = oracle.primary(&camera, Progress::default()).expect("nobody interrupts");
+        let primitives = oracle.primary(&camera, Progress::default()).expect("it is not stopped");
         let mode = OracleMode::Exact;
         let truth = oracle.shade(&camera, light, &primitives, mode, Progress::default());
         let truth = truth.expect("its own primitives");

@@ -81,7 +81,7 @@ fn f32_errs_in_few_indeterminate_pixels_only(scene: &Scene, mode: OracleMode) {
         let camera = view.camera([480, 360]);
         let primitives = oracle
             .primary(&snapped(&camera), Progress::default())
-            .expect("nobody interrupts");
+            .expect("it is not stopped");
         let truth = shade(&oracle, scene, &camera, &primitives, mode);
         let (visibility, status) = f32_shading::shade(
             &scene.mesh,
@@ -118,7 +118,7 @@ fn sponza_has_the_dissertations_counts() {
         let begin = Instant::now();
         let primitives = oracle
             .primary(&camera, Progress::default())
-            .expect("nobody interrupts");
+            .expect("it is not stopped");
         println!("{viewport:?} primary rays: {:?}", begin.elapsed());
         for mode in [OracleMode::Offset(0.03), OracleMode::Exact] {
             let begin = Instant::now();

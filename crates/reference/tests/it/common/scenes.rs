@@ -77,7 +77,7 @@ pub fn render(
     let oracle = Oracle::new(mesh);
     let primitives = oracle
         .primary(camera, Progress::default())
-        .expect("nobody interrupts");
+        .expect("it is not stopped");
     oracle
         .shade(camera, light, &primitives, mode, Progress::default())
         .expect("its own primitives")

@@ -48,14 +48,14 @@ fn class(operator: &str) -> Option<Class> {
 
 /// Returns the first two operators, of those that no bracket parts, that are not to be mixed.
 fn mixed(operators: &[Operator]) -> Option<Mixed> {
-    let all = operators.first()?;
+    let begin = operators.first()?;
     // The first choice, the comparison since the last one, and the operator within its operand.
     let (mut choice, mut comparison, mut inner) = (None, None, None::<&Operator>);
     operators.iter().find_map(|second| {
         let differs = |first: &&Operator| first.text != second.text;
         let first = match second.class {
-            _ if all.class == Class::Bits => Some(all).filter(differs),
-            Class::Bits => Some(all),
+            _ if begin.class == Class::Bits => Some(begin).filter(differs),
+            Class::Bits => Some(begin),
             Class::Choice => {
                 (comparison, inner) = (None, None);
                 Some(*choice.get_or_insert(second)).filter(differs)

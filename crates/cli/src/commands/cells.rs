@@ -2,7 +2,8 @@
 
 use crate::args::cli::{Cli, Command};
 use crate::args::{commands::CompareArgs, shared::GpuArgs};
-use crate::commands::compare::{COMMIT, Loaded, check_all, write_graphs};
+use crate::commands::compare::{check_all, write_graphs};
+use crate::commands::loaded::{COMMIT, Loaded};
 use crate::error::CliError;
 use crate::terminal::{Terminal, console::note};
 use clap::Parser;

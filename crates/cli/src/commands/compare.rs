@@ -1,56 +1,33 @@
 //! `skiagraph compare`: measures speed and error of methods on every view, viewport and map size.
 
 use crate::args::commands::{CompareArgs, Format, Images};
-use crate::args::shared::{GpuArgs, SceneArgs};
+use crate::args::shared::GpuArgs;
+use crate::commands::loaded::{Loaded, Target};
 use crate::error::CliError;
-use crate::scene_selection::{SceneSelection, paths};
 use crate::terminal::console::{note, print};
 use crate::terminal::{Terminal, interrupt};
 use itertools::Itertools;
-use skiagraph_compare::comparison::{Comparison, Protocol};
+use skiagraph_compare::comparison::Comparison;
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::json;
 use skiagraph_compare::files::write::{check_folder, write_whole};
 use skiagraph_compare::graphs::faults::GraphFaults;
-use skiagraph_compare::graphs::method::{self, Method};
 use skiagraph_compare::graphs::planning::Capabilities;
-use skiagraph_compare::graphs::{preset, shadow_method};
-use skiagraph_compare::lists::unique;
-use skiagraph_compare::measuring::{
-    date, device,
-    frame_sequence::MovingParts,
-    ground_truth::PrimaryVisibility,
-    resume::Kept,
-    scene_folders::{check_kind, scene_folders},
-    series::Series,
-    tune::tune,
-    view_or_path::{ViewOrPath, under_lights},
-};
+use skiagraph_compare::measuring::{date, resume::Kept, series::Series, tune::tune};
 use skiagraph_compare::pictures::run_pictures::graph_name;
-use skiagraph_compare::records::{
-    budgets::Budgets, published, results::Results, results_baseline::Baseline,
-};
+use skiagraph_compare::records::{results::Results, results_baseline::Baseline};
 use skiagraph_compare::sink::{Session, Silent};
-use skiagraph_compare::size::Size;
-use skiagraph_compare::wording::{command_line, or_nothing, plural, size};
+use skiagraph_compare::wording::{or_nothing, plural, size};
 use skiagraph_draw::{from_plan, to_svg};
-use skiagraph_gpu::device::Gpu;
 use skiagraph_passes::SceneProvider;
-use skiagraph_report::gate::Gate;
 use skiagraph_report::overview::Overview;
 use skiagraph_report::summary_table::{self, Summary};
 use skiagraph_report::table::terminal;
 use skiagraph_report::{baseline_text, markdown, matrices, page, results_table};
-use skiagraph_scene::{CameraPath, Scene};
 use std::{
-    ffi::OsString,
     io::IsTerminal,
     path::{Path, PathBuf},
-    sync::Arc,
 };
-
-/// Commit that the program was built from.
-pub const COMMIT: Option<&str> = option_env!("SKIAGRAPH_COMMIT");
 
 /// Checks all arguments, then measures the methods on each scene and prints and saves the results.
 ///
@@ -245,94 +222,6 @@ impl Work<'_> {
     }
 }
 
-/// The comparisons that the arguments ask for, not checked yet.
-pub struct Loaded {
-    /// The GPU that they run on.
-    pub gpu: Gpu,
-    /// One for each scene.
-    pub comparisons: Vec<Comparison>,
-    /// The folder of each.
-    pub targets: Vec<Target>,
-}
-
-impl Loaded {
-    /// Loads methods and scenes, and opens the GPU. `words` are those of the command line.
-    pub fn new(
-        args: &CompareArgs,
-        gpu: &GpuArgs,
-        words: impl Iterator<Item = OsString>,
-    ) -> Result<Self, CliError> {
-        interrupt::install()?;
-        let scenes = args.scene.each()?;
-        let published = published::read(&args.published)?;
-        let sources = preset::sources(&Terminal);
-        let names = match &args.presets[..] {
-            [] if !args.all => preset::shipped_and_own(&sources),
-            presets => preset::named_or_all(presets, &sources),
-        };
-        let sizes = if args.map_curve {
-            &MAP_CURVE[..]
-        } else {
-            &args.map_size
-        };
-        let (params, load) = (&args.params, shadow_method::load_each);
-        let methods = method::load(&names, params, sizes, &sources, load)?;
-        note_without_map(&methods, &args.map_size);
-        Gate::check(&args.fail_if, &methods).map_err(CliError::Input)?;
-        let primary = PrimaryVisibility::load(&sources)?;
-        let loaded = methods.iter().map(|method| &method.preset.graph);
-        let gpu = device::open(&gpu.request(), loaded)?;
-        let session = Session::new(&gpu, &Terminal);
-        let targets = Target::all(args)?;
-        let command = command_line(words);
-        let comparison = |scene| -> Result<Comparison, CliError> {
-            let mut selection = SceneSelection::load(scene)?;
-            let notes = std::mem::take(&mut selection.notes);
-            // Without timed frames of regimes the mesh stays in one piece.
-            let regime_frames = args.regime_frames.unwrap_or(args.frames);
-            let moving = (regime_frames > 0).then(|| moving(&selection.paths, &selection.scene));
-            let (scene, views) = views(args, scene, selection, &methods, session)?;
-            Ok(Comparison {
-                views,
-                moving: moving.flatten(),
-                viewports: unique(args.size.iter().map(|Size(size)| *size)),
-                methods: methods.clone(),
-                tuned: Default::default(),
-                protocol: Protocol {
-                    frames: args.frames,
-                    warmup: args.warmup,
-                    regime_frames,
-                    jitter: args.jitter,
-                    oracle: args.oracle,
-                    reference_samples: args.reference_samples,
-                    pictures: args.images == Images::All,
-                    data: args.data,
-                },
-                primary: primary.clone(),
-                budgets: Budgets {
-                    frame_ms: args.under,
-                    wrong_percent: args.below,
-                    memory_bytes: args.memory,
-                },
-                published: published.clone(),
-                command: Some(command.clone()),
-                commit: COMMIT.map(str::to_owned),
-                notes,
-                scene,
-            })
-        };
-        let comparisons = scenes.iter().map(comparison).collect::<Result<_, _>>()?;
-        Ok(Self {
-            gpu,
-            comparisons,
-            targets,
-        })
-    }
-}
-
-/// Checks the comparisons of all scenes: where no method can run on one, they may on another.
-///
-/// # Errors
 /// The reasons of all scenes if no method can run on any; the other errors of
 /// [`Comparison::check`].
 pub fn check_all(comparisons: &[Comparison], session: Session) -> Result<(), CliError> {
@@ -358,81 +247,12 @@ fn search_ended(why: CompareError) -> CliError {
     }
 }
 
-/// A scene's folder for results.
-pub struct Target {
-    /// The folder.
-    pub folder: PathBuf,
-    /// The folder's name below that of all scenes; `None` of a single scene.
-    pub name: Option<String>,
-}
-
-impl Target {
-    /// The folder of each scene.
-    fn all(args: &CompareArgs) -> Result<Vec<Self>, CliError> {
-        check_kind(&args.out, args.scene.scenes.len() > 1).map_err(CliError::Input)?;
-        if args.scene.scenes.len() == 1 {
-            let folder = args.out.clone();
-            return Ok(vec![Self { folder, name: None }]);
-        }
-        let names = scene_folders(&args.scene.scenes).into_iter();
-        let target = |name: String| Self {
-            folder: args.out.join(&name),
-            name: Some(name),
-        };
-        Ok(names.map(target).collect())
-    }
-}
-
-/// A scene with the views or paths that the arguments select.
-fn views(
-    args: &CompareArgs,
-    scene_args: &SceneArgs,
-    selection: SceneSelection,
-    methods: &[Method],
-    session: Session,
-) -> Result<(Arc<Scene>, Vec<ViewOrPath>), CliError> {
-    let scene = Arc::new(selection.scene);
-    let light = light_name(scene_args, methods, &scene, session);
-    if let Some(name) = &args.path {
-        let views = paths(scene_args, &scene, &selection.paths, name, light)?;
-        return Ok((scene, views));
-    }
-    let mut views = [selection.views, selection.further].concat();
-    if scene_args.light.is_none() {
-        views = under_lights(&scene, views, light)?;
-    }
-    Ok((scene, views.into_iter().map(ViewOrPath::Still).collect()))
-}
-
-/// The parts that move on the scene's paths; a path that cannot move them is noted.
-fn moving(paths: &[CameraPath], scene: &Scene) -> Option<Arc<MovingParts>> {
-    MovingParts::first(paths, &scene.mesh).unwrap_or_else(|error| {
-        note(&format!("{error}: views are timed without moving meshes"));
-        None
-    })
-}
-
-/// Edges of the shadow maps of `--map-curve`, in texels.
-const MAP_CURVE: [u32; 5] = [256, 512, 1024, 2048, 4096];
-
 /// The earlier results that are kept.
 fn kept(args: &CompareArgs) -> Kept {
     match (args.replace, args.resume) {
         (true, _) => Kept::Nothing,
         (_, true) => Kept::All,
         _ => Kept::Others,
-    }
-}
-
-/// Prints a note on the methods without a param `map_size`, unless `map_sizes` is empty.
-pub fn note_without_map(methods: &[Method], map_sizes: &[u32]) {
-    let without = methods.iter().filter(|method| method.map_size.is_none());
-    let without: Vec<&str> = without.map(|method| method.name.as_str()).collect();
-    if !map_sizes.is_empty() && !without.is_empty() {
-        let names = without.join(", ");
-        note(&format!(
-            "--map-size has no effect on {names}: no param `map_size`"
-        ));
     }
 }
 
@@ -461,23 +281,6 @@ pub fn write_graphs(
         }
     }
     Ok(())
-}
-
-/// The light by its name: where a method answers for every light it is judged under every light,
-/// unless one is named.
-fn light_name<'a>(
-    args: &'a SceneArgs,
-    methods: &[Method],
-    scene: &Arc<Scene>,
-    session: Session,
-) -> Option<&'a str> {
-    let provider = SceneProvider::new(scene.clone());
-    let device = Capabilities::new(session.gpu);
-    let is_layered = |method: &Method| shadow_method::is_layered(method, &device, &provider);
-    match args.light {
-        None if methods.iter().any(is_layered) => Some("all"),
-        _ => args.light_name(),
-    }
 }
 
 /// Measures what is missing, and prints every view and viewport when it is whole.

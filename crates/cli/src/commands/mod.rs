@@ -1,4 +1,5 @@
-//! Runs the commands, one in each file. Each takes its arguments and may return an error.
+//! Runs the commands, one in each file (`loaded` and `run_sequence` are parts of some). Each takes
+//! its arguments and may return an error.
 
 pub mod cells;
 pub mod chart;
@@ -8,6 +9,7 @@ pub mod completions;
 pub mod doctor;
 pub mod graph;
 pub mod judge;
+pub mod loaded;
 pub mod merge;
 pub mod new;
 pub mod presets;

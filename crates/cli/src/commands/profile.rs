@@ -2,7 +2,7 @@
 
 use crate::args::commands::ProfileArgs;
 use crate::args::shared::GpuArgs;
-use crate::commands::compare::note_without_map;
+use crate::commands::loaded::note_without_map;
 use crate::error::CliError;
 use crate::scene_selection::SceneSelection;
 use crate::terminal::console::{note, print};

@@ -62,7 +62,7 @@ fn main() -> ExitCode {
 async fn run(cli: &Cli) -> Result<(), CliError> {
     let gpu = &cli.gpu;
     match &cli.command {
-        Command::Compare(args) if args.plan.is_some() => commands::cells::plan(args, gpu),
+        Command::Compare(args) if args.plan.is_some() => commands::cells::plan(args, gpu).await,
         Command::Compare(args) if args.cells.is_some() => commands::cells::measure(args, gpu).await,
         Command::Compare(args) => commands::compare::compare(args, gpu).await,
         Command::Run(args) => commands::run::run(args, gpu).await,

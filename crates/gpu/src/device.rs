@@ -77,10 +77,11 @@ impl Wanted<'_> {
 
 /// The backends that [`open`] and [`open_with`] search by default: Vulkan, Metal and Direct3D 12.
 /// GL is left out: it would list the same GPU a second time with fewer features, and not every
-/// graph is tested on it.
+/// graph is tested on it. In a browser there is only its WebGPU.
 pub const BACKENDS: wgpu::Backends = wgpu::Backends::VULKAN
     .union(wgpu::Backends::METAL)
-    .union(wgpu::Backends::DX12);
+    .union(wgpu::Backends::DX12)
+    .union(wgpu::Backends::BROWSER_WEBGPU);
 
 /// Reasons why [`open`] or [`open_with`] could not open a device.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -164,8 +165,8 @@ fn instance(backends: wgpu::Backends) -> wgpu::Instance {
     wgpu::Instance::new(descriptor)
 }
 
-fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
-    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+async fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+    let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
     adapters.sort_by_key(|adapter| {
         let info = adapter.get_info();
         let kind = match info.device_type {
@@ -184,7 +185,11 @@ fn enumerate(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
 /// integrated ones, virtual ones, software adapters, others. Among adapters of one type, GL
 /// adapters come last; [`open`] skips them by default.
 pub fn adapters() -> Vec<wgpu::AdapterInfo> {
-    let adapters = enumerate(&instance(wgpu::Backends::all()));
+    pollster::block_on(all_adapters())
+}
+
+async fn all_adapters() -> Vec<wgpu::AdapterInfo> {
+    let adapters = enumerate(&instance(wgpu::Backends::all())).await;
     adapters.iter().map(wgpu::Adapter::get_info).collect()
 }
 
@@ -208,15 +213,24 @@ pub fn open(name: Option<&str>) -> Result<Gpu, GpuError> {
 /// # Errors
 /// See [`GpuError`].
 pub fn open_with(wanted: &Wanted<'_>) -> Result<Gpu, GpuError> {
+    pollster::block_on(request(wanted))
+}
+
+/// Opens a device as [`open_with`] does, without holding the thread: in a browser, where no thread
+/// can wait, the browser's own device.
+///
+/// # Errors
+/// See [`GpuError`].
+pub async fn request(wanted: &Wanted<'_>) -> Result<Gpu, GpuError> {
     let of_environment = std::env::var("WGPU_BACKEND").ok();
     let of_environment = of_environment.filter(|words| !words.trim().is_empty());
     let words = of_environment.as_deref();
     let listed = words.map(wgpu::Backends::from_comma_list);
     let asked = wanted.backends.or(listed);
     let instance = instance(asked.unwrap_or(BACKENDS));
-    let adapters = enumerate(&instance);
+    let adapters = enumerate(&instance).await;
     if adapters.is_empty() {
-        let infos = self::adapters();
+        let infos = all_adapters().await;
         return Err(match (asked, wanted.backends, of_environment) {
             (None, ..) => GpuError::NoAdapter,
             _ if infos.is_empty() => GpuError::NoAdapter,
@@ -247,11 +261,11 @@ pub fn open_with(wanted: &Wanted<'_>) -> Result<Gpu, GpuError> {
             seen: list(&infos),
         });
     };
-    device_of(instance, adapter.clone(), wanted.features)
+    device_of(instance, adapter.clone(), wanted.features).await
 }
 
 /// The device of an adapter, with those of these features that it offers.
-fn device_of(
+async fn device_of(
     instance: wgpu::Instance,
     adapter: wgpu::Adapter,
     wanted: wgpu::Features,
@@ -265,7 +279,7 @@ fn device_of(
         required_limits: adapter.limits(),
         ..wgpu::DeviceDescriptor::default()
     });
-    match pollster::block_on(request) {
+    match request.await {
         Ok((device, queue)) => Ok(Gpu {
             instance,
             adapter,

@@ -300,6 +300,9 @@ pub(crate) fn scoped<T>(
     let made = caught(make);
     // Scopes are a stack: the last one pushed is popped first.
     let from_last = scopes.into_iter().rev();
+    #[cfg(target_arch = "wasm32")]
+    let errors = from_last.filter_map(|scope| crate::late::note(name, scope));
+    #[cfg(not(target_arch = "wasm32"))]
     let errors = from_last.filter_map(|scope| pollster::block_on(scope.pop()));
     let errors: Vec<wgpu::Error> = errors.collect();
     let made = made.map_err(|panicked| ExecuteError::Panicked {
@@ -308,14 +311,22 @@ pub(crate) fn scoped<T>(
     })?;
     match errors.into_iter().next() {
         None => Ok(made),
-        Some(wgpu::Error::OutOfMemory { .. }) => Err(ExecuteError::OutOfMemory {
-            name: name.to_owned(),
+        Some(error) => Err(refusal(name, &error)),
+    }
+}
+
+/// The error of a refused resource, or of a pass or frame with this name.
+pub(crate) fn refusal(name: &str, error: &wgpu::Error) -> ExecuteError {
+    let name = name.to_owned();
+    match error {
+        wgpu::Error::OutOfMemory { .. } => ExecuteError::OutOfMemory {
+            name,
             table: String::new(),
-        }),
-        Some(error) => Err(ExecuteError::Resource {
-            name: name.to_owned(),
-            message: chain(&error),
-        }),
+        },
+        error => ExecuteError::Resource {
+            name,
+            message: chain(error),
+        },
     }
 }
 

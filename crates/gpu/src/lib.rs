@@ -31,6 +31,8 @@ mod experimental;
 mod frame;
 mod identity;
 pub mod import;
+#[cfg(target_arch = "wasm32")]
+mod late;
 mod memory;
 mod pipelines;
 mod presence;

@@ -10,7 +10,7 @@ use skiagraph_compare::graphs::argument::{Assignment, MethodArgument};
 use skiagraph_compare::graphs::{method, openings, preset};
 use skiagraph_compare::measuring::device::{self, GpuRequest};
 use skiagraph_compare::sink::Sink;
-use skiagraph_gpu::timing::Trust;
+use skiagraph_gpu::{block_on, timing::Trust};
 use skiagraph_scene::SceneLibrary;
 use std::{
     collections::BTreeSet,
@@ -156,7 +156,7 @@ fn choices(opening: &Opening, gpu: &skiagraph_gpu::device::Gpu, sink: &dyn Sink)
     let mut scenes: BTreeSet<String> = listed.map(|scene| scene.name).collect();
     scenes.insert(opening.scene.clone());
     let info = gpu.adapter.get_info();
-    let adapter = match device::timestamp_trust(gpu) {
+    let adapter = match block_on(device::timestamp_trust(gpu)) {
         Trust::Trusted => info.name,
         Trust::Untrusted { reason } => format!("{}; no GPU times: {reason}", info.name),
     };

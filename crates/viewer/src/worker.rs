@@ -1,21 +1,14 @@
 //! Thread that runs the graphs: it loads scenes and methods, and runs a frame whenever the desired
 //! state changes. It has a device of its own, so that the window never waits for a method.
 
-use crate::desired_state::{DesiredState, Event, FrameSnapshot, Loaded};
-use crate::ground_truth::Question;
-use crate::slot::{How, Lost, Slot};
-use skiagraph_compare::error::{CompareError, explain, with_causes};
-use skiagraph_compare::measuring::{
-    device::{self, GpuRequest},
-    frame,
-    ground_truth::PrimaryVisibility,
-};
-use skiagraph_compare::pictures::colours::ClipPlanes;
+use crate::desired_state::{DesiredState, Event, Loaded};
+use crate::slot::{Lost, Slot};
+use crate::stage::{Clock, Stage};
+use skiagraph_compare::error::{CompareError, with_causes};
+use skiagraph_compare::measuring::device::{self, GpuRequest};
 use skiagraph_compare::sink::{Session, Silent};
-use skiagraph_gpu::{Content, Executor, block_on, device::Gpu, timing::Trust};
+use skiagraph_gpu::{block_on, device::Gpu, timing::Trust};
 use skiagraph_graph::Sources;
-use skiagraph_passes::SceneProvider;
-use skiagraph_reference::{Progress, unshadowed};
 use skiagraph_scene::{Scene, View};
 use std::{
     error::Error,
@@ -83,15 +76,6 @@ pub type LoadScene =
 /// Function that sends an event to the window; its thread calls it.
 pub type Tell = Box<dyn Fn(Event) + Send>;
 
-/// The scene that is there, and what stands on it.
-struct Stage {
-    name: String,
-    loaded: Loaded,
-    provider: SceneProvider,
-    /// Draws the primitive ids, in pictures of that size.
-    primitives: Option<(Executor, [u32; 2])>,
-}
-
 /// State of the thread that runs the graphs: the GPU, the scene and the methods.
 pub struct Worker {
     request: GpuRequest,
@@ -117,7 +101,7 @@ impl Worker {
         tell: Tell,
     ) -> Self {
         Self {
-            timing: device::timestamp_trust(&gpu) == Trust::Trusted,
+            timing: block_on(device::timestamp_trust(&gpu)) == Trust::Trusted,
             request,
             load_scene,
             gpu,
@@ -164,7 +148,19 @@ impl Worker {
         self.fill_slots(desired)?;
         // A device that a method has lost is opened anew once, without that method.
         for _ in 0..=desired.methods.len() {
-            match self.take_snapshot(desired).await? {
+            let session = Session::new(&self.gpu, &Silent);
+            let Some(stage) = &mut self.stage else {
+                return Err(CompareError::Input("no scene is loaded".into()));
+            };
+            let clock = Clock {
+                has_timestamps: self.timing,
+                seconds: self.began.elapsed().as_secs_f32(),
+            };
+            let methods = (&mut self.slots[..], &*self.sources);
+            match stage
+                .take_snapshot(session, methods, desired, clock)
+                .await?
+            {
                 Ok(snapshot) => {
                     (self.tell)(Event::Frame(Box::new(snapshot)));
                     return Ok(());
@@ -194,12 +190,7 @@ impl Worker {
                 (self.tell)(Event::Scene(desired.scene.clone(), Ok(loaded.clone())));
                 self.slots.iter_mut().for_each(Slot::forget_device);
                 self.failed_scene = None;
-                self.stage = Some(Stage {
-                    name: desired.scene.clone(),
-                    provider: SceneProvider::new(loaded.scene.clone()),
-                    loaded,
-                    primitives: None,
-                });
+                self.stage = Some(Stage::new(&desired.scene, loaded));
                 true
             }
             Err(error) => {
@@ -243,94 +234,8 @@ impl Worker {
         self.gpu = gpu;
         self.slots.iter_mut().for_each(Slot::forget_device);
         if let Some(stage) = &mut self.stage {
-            stage.provider = SceneProvider::new(stage.loaded.scene.clone());
-            stage.primitives = None;
+            *stage = Stage::new(&stage.name, stage.loaded.clone());
         }
         Ok(())
-    }
-
-    async fn take_snapshot(
-        &mut self,
-        desired: &DesiredState,
-    ) -> Result<Result<FrameSnapshot, Lost>, CompareError> {
-        let session = Session::new(&self.gpu, &Silent);
-        let Some(stage) = &mut self.stage else {
-            return Err(CompareError::Input("no scene is loaded".into()));
-        };
-        let view = desired.view.as_ref().or(stage.loaded.views.first());
-        let Some(view) = view.cloned() else {
-            return Err(CompareError::Input(format!("{} has no view", stage.name)));
-        };
-        view.check().map_err(CompareError::Input)?;
-        stage.provider.set_view(&view, desired.size);
-        let camera = view.camera(desired.size);
-        let primitives = stage
-            .primitives(session, &*self.sources, desired.size)
-            .await?;
-        let light = stage.provider.light();
-        let (scene, progress) = (&stage.loaded.scene, Progress::default());
-        let facing = unshadowed(&scene.mesh, &camera, &light, &primitives, progress);
-        let facing = facing.map_err(|error| CompareError::Input(error.to_string()))?;
-        let how = How {
-            size: desired.size,
-            timing: self.timing,
-            all_passes: desired.all_passes,
-            seconds: self.began.elapsed().as_secs_f32(),
-            planes: ClipPlanes::new(&view),
-        };
-        let mut methods = Vec::new();
-        for (slot, method) in self.slots.iter_mut().zip(&desired.methods) {
-            match slot
-                .take_snapshot(session, &mut stage.provider, method, &how)
-                .await
-            {
-                Ok(snapshot) => methods.push(snapshot),
-                Err(lost) => return Ok(Err(lost)),
-            }
-        }
-        Ok(Ok(FrameSnapshot {
-            desired: desired.clone(),
-            question: Question {
-                scene: scene.clone(),
-                camera,
-                light,
-                primitives: Arc::new(primitives),
-                outdated: Arc::default(),
-            },
-            facing: Arc::new(facing),
-            methods,
-        }))
-    }
-}
-
-impl Stage {
-    /// The primitive that each pixel shows.
-    async fn primitives(
-        &mut self,
-        session: Session<'_>,
-        sources: &dyn Sources,
-        size: [u32; 2],
-    ) -> Result<Vec<u32>, CompareError> {
-        let wrong = |why: String| CompareError::Input(format!("no picture of the scene: {why}"));
-        let provider = &mut self.provider;
-        let is_stale = |(_, planned): &(_, [u32; 2])| *planned != size;
-        if self.primitives.as_ref().is_none_or(is_stale) {
-            let plan = PrimaryVisibility::load(sources)?.plan(session, size, provider)?;
-            let executor = Executor::on(session.gpu, plan, provider);
-            self.primitives = Some((executor.map_err(|error| wrong(explain(&error)))?, size));
-        }
-        let Some((executor, _)) = &mut self.primitives else {
-            return Ok(Vec::new());
-        };
-        let read = match executor.refresh(provider) {
-            Ok(_) => frame::read(session, executor, &["primitive"]).await,
-            Err(error) => Err(error),
-        };
-        let contents = read.map_err(|error| {
-            self.primitives = None;
-            wrong(explain(&error))
-        })?;
-        let ids = contents.get("primitive").and_then(Content::as_u32);
-        ids.ok_or_else(|| wrong("its primitives are not integers".into()))
     }
 }

@@ -20,7 +20,7 @@ use std::{ffi::OsString, path::Path};
 /// # Errors
 /// If a graph has errors, a scene cannot be loaded, no GPU can be opened, or the file cannot be
 /// written.
-pub fn plan(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
+pub async fn plan(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let file = args.plan.as_deref().unwrap_or(Path::new(FILE));
     let loaded = Loaded::new(args, gpu, std::env::args_os())?;
     let session = Session::new(&loaded.gpu, &Terminal);
@@ -31,7 +31,7 @@ pub fn plan(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let text = format!("--plan: {word:?} is not UTF-8; rename it, for plans are text");
         CliError::Input(text)
     })?;
-    let plan = many_machines::plan(&scenes(&loaded), session, words)?;
+    let plan = many_machines::plan(&scenes(&loaded), session, words).await?;
     write_whole(file, plan.text().as_bytes())?;
     let (cells, file) = (plural(plan.cells.len(), "cell"), file.display());
     note(&format!(

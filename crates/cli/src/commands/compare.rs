@@ -55,13 +55,13 @@ pub async fn compare(args: &CompareArgs, gpu: &GpuArgs) -> Result<(), CliError> 
         check_folder(&target.folder)?;
         if args.tune && comparison.refusals(silent)?.is_empty() {
             // Refused before the search, not behind it.
-            work.check_earlier(comparison, target)?;
+            work.check_earlier(comparison, target).await?;
             tune(comparison, session).await.map_err(search_ended)?;
         }
     }
     check_all(&comparisons, session)?;
     for (comparison, target) in comparisons.iter().zip(&targets) {
-        work.check_earlier(comparison, target)?;
+        work.check_earlier(comparison, target).await?;
     }
     let outcome = async {
         for (comparison, target) in comparisons.into_iter().zip(&targets) {
@@ -109,10 +109,14 @@ struct Work<'a> {
 impl Work<'_> {
     /// Checks that the earlier results of a scene can be continued, and that the baseline has some
     /// of its cells, before the first scene is measured.
-    fn check_earlier(&self, comparison: &Comparison, target: &Target) -> Result<(), CliError> {
+    async fn check_earlier(
+        &self,
+        comparison: &Comparison,
+        target: &Target,
+    ) -> Result<(), CliError> {
         let silent = Session::new(self.session.gpu, &Silent);
         let kept = Some((&*target.folder, kept(self.args)));
-        let series = Series::new(comparison, silent, kept)?;
+        let series = Series::new(comparison, silent, kept).await?;
         if let Some(baseline) = &self.baseline {
             baseline.check(&series.results, series.planned_runs())?;
         }
@@ -122,7 +126,7 @@ impl Work<'_> {
     /// Measures a scene, prints and saves its results.
     async fn measure(&mut self, comparison: &Comparison, target: &Target) -> Result<(), CliError> {
         let (args, folder) = (self.args, &target.folder);
-        let mut series = Series::new(comparison, self.session, Some((folder, kept(args))))?;
+        let mut series = Series::new(comparison, self.session, Some((folder, kept(args)))).await?;
         let file = folder.join("results.json");
         let written = |file: &Path| file.metadata().and_then(|file| file.modified()).ok();
         let (before, has_runs) = (written(&file), !series.results.runs.is_empty());

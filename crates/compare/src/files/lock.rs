@@ -19,8 +19,9 @@ use std::{
     path::Path,
     sync::atomic::Ordering,
     thread,
-    time::{Duration, Instant},
+    time::Duration,
 };
+use web_time::Instant;
 
 /// Name of the lock file for stress.json, the results of one `skiagraph stress` command. The lock
 /// is held to the end of the command. The lock file is never deleted, as that would let two

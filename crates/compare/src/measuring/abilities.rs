@@ -12,7 +12,10 @@
 use crate::measuring::device::{adapter, describe, machine, timestamp_trust};
 use crate::records::abilities::{Abilities, Ability, Limits};
 use crate::records::results::{Adapter, PROGRAM};
-use skiagraph_gpu::device::{self, Gpu};
+use skiagraph_gpu::{
+    block_on,
+    device::{self, Gpu},
+};
 use skiagraph_scene::{SceneLibrary, library::ASSETS_VARIABLE};
 
 /// Lists the adapters of this machine through all backends, the preferred one first.
@@ -29,7 +32,7 @@ pub fn abilities(gpu: &Gpu) -> Abilities {
         program: PROGRAM.into(),
         machine: machine(),
         adapters: adapters(),
-        adapter: describe(gpu, timestamp_trust(gpu)),
+        adapter: describe(gpu, block_on(timestamp_trust(gpu))),
         limits: Limits {
             texture_edge: limits.max_texture_dimension_2d,
             storage_binding: limits.max_storage_buffer_binding_size,

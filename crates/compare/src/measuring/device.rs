@@ -5,6 +5,7 @@
 //!     graphs::preset,
 //!     measuring::device::{self, GpuRequest},
 //! };
+//! use skiagraph_gpu::block_on;
 //! use skiagraph_passes::EmbeddedSources;
 //! use std::time::Duration;
 //!
@@ -13,13 +14,15 @@
 //! request.adapter = Some("llvmpipe".into());
 //! request.timeout = Some(Duration::from_secs(60));
 //! let gpu = device::open(&request, preset::graphs(&presets))?;
-//! println!("{}", device::describe(&gpu, device::timestamp_trust(&gpu)));
+//! let trust = block_on(device::timestamp_trust(&gpu));
+//! println!("{}", device::describe(&gpu, trust));
 //! # Ok::<(), skiagraph_compare::error::CompareError>(())
 //! ```
 
 use crate::error::{CompareError, with_causes};
 use crate::records::results::{Adapter, Machine};
 use skiagraph_gpu::{
+    block_on,
     device::{self, Gpu, GpuError, Wanted},
     timing::{self, Trust},
 };
@@ -53,12 +56,24 @@ pub fn open<'a>(
     request: &GpuRequest,
     graphs: impl IntoIterator<Item = &'a Graph>,
 ) -> Result<Gpu, CompareError> {
+    block_on(self::request(request, graphs))
+}
+
+/// Opens an adapter as [`open`] does, without holding the thread.
+///
+/// # Errors
+/// Those of [`open`].
+pub async fn request<'a>(
+    request: &GpuRequest,
+    graphs: impl IntoIterator<Item = &'a Graph>,
+) -> Result<Gpu, CompareError> {
     let union = |features, graph: &Graph| features | graph.features();
     let features = graphs.into_iter().fold(wgpu::Features::empty(), union);
     let mut wanted = Wanted::default().with_features(features);
     wanted.adapter = request.adapter.as_deref();
     wanted.backends = request.backends;
-    let mut gpu = device::open_with(&wanted)
+    let mut gpu = device::request(&wanted)
+        .await
         .map_err(|error: GpuError| CompareError::NoGpu(error.to_string()))?;
     let is_software = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
     gpu.memory = request
@@ -132,8 +147,9 @@ pub fn driver(info: &wgpu::AdapterInfo) -> String {
 }
 
 /// Checks whether a GPU's timestamps can be trusted, by timing work on it.
-pub fn timestamp_trust(gpu: &Gpu) -> Trust {
-    timing::check(&gpu.device, &gpu.queue).unwrap_or_else(|error| Trust::Untrusted {
+pub async fn timestamp_trust(gpu: &Gpu) -> Trust {
+    let checked = timing::check(&gpu.device, &gpu.queue).await;
+    checked.unwrap_or_else(|error| Trust::Untrusted {
         reason: format!(
             "the check of its timestamps failed: {}",
             with_causes(&error)

@@ -27,10 +27,8 @@ use skiagraph_gpu::{
 };
 use skiagraph_graph::Plan;
 use skiagraph_passes::{Built, SceneProvider};
-use std::{
-    collections::BTreeMap,
-    time::{Duration, Instant},
-};
+use std::{collections::BTreeMap, time::Duration};
+use web_time::Instant;
 
 /// Contents that were read back from a frame, by the names of the outputs and of the captures
 /// (materials that the plan copies for the host after a pass).

@@ -74,9 +74,9 @@ pub struct ShardOutcome {
 ///
 /// # Errors
 /// Two methods that are the same cell.
-pub fn plan(
-    scenes: &[SceneCells],
-    session: Session,
+pub async fn plan(
+    scenes: &[SceneCells<'_>],
+    session: Session<'_>,
     arguments: Vec<String>,
 ) -> Result<CellPlan, CompareError> {
     let commit = scenes
@@ -89,7 +89,7 @@ pub fn plan(
     };
     let silent = Session::new(session.gpu, &Silent);
     for SceneCells { comparison, folder } in scenes {
-        let series = Series::new(comparison, silent, None)?;
+        let series = Series::new(comparison, silent, None).await?;
         let mut runs = series.planned_runs().iter();
         for view in &comparison.views {
             let frames = match view {
@@ -149,7 +149,7 @@ pub async fn measure(
     session: Session<'_>,
 ) -> Result<ShardOutcome, CompareError> {
     let Share { plan, shard, out } = *share;
-    let own_plan = self::plan(scenes, session, plan.head.arguments.clone())?;
+    let own_plan = self::plan(scenes, session, plan.head.arguments.clone()).await?;
     check_alike(plan, &own_plan)?;
     check_folder(out)?;
     copy_plan(plan, out)?;
@@ -162,7 +162,7 @@ pub async fn measure(
     let mut broken = BTreeSet::new();
     for SceneCells { comparison, folder } in scenes {
         let folder = folder.map_or(out.to_path_buf(), |name| out.join(name));
-        let mut series = Series::of_cells(comparison, session, &folder, &ids)?;
+        let mut series = Series::of_cells(comparison, session, &folder, &ids).await?;
         outcome.kept += series.results.runs.len();
         let measured = series.measure_all().await;
         measured.map_err(|error| match error {

@@ -61,7 +61,7 @@ pub async fn profile(
         program: PROGRAM.into(),
         build: build.into(),
         date: date::now(),
-        adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
+        adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu).await),
         scene: (&**scene).into(),
         preset: method.name.clone(),
         view: view.name.clone(),

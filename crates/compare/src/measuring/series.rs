@@ -11,7 +11,7 @@
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
 //! # async fn measure(comparison: &Comparison, session: Session<'_>) -> Done {
 //! comparison.check(session)?;
-//! let mut series = Series::new(comparison, session, Some((Path::new("out"), Kept::Others)))?;
+//! let mut series = Series::new(comparison, session, Some((Path::new("out"), Kept::Others))).await?;
 //! for view in 0..comparison.views.len() {
 //!     for viewport in 0..comparison.viewports.len() {
 //!         series.measure(view, viewport).await?; // and writes `out/results.json`
@@ -92,7 +92,7 @@ pub struct Series<'a> {
 /// for the graphs in [`Series::broken`].
 pub async fn run(comparison: &Comparison, session: Session<'_>) -> Result<Results, CompareError> {
     comparison.check(session)?;
-    let mut series = Series::new(comparison, session, None)?;
+    let mut series = Series::new(comparison, session, None).await?;
     series.measure_all().await?;
     match series.broken.iter().join("\n") {
         broken if broken.is_empty() => Ok(series.results),
@@ -117,12 +117,12 @@ impl<'a> Series<'a> {
     /// # Errors
     /// A results.json in the folder that cannot be read, or was measured with another adapter,
     /// scene or protocol; with [`Kept::Nothing`], such a file is not an error.
-    pub fn new(
+    pub async fn new(
         comparison: &'a Comparison,
         session: Session<'a>,
         kept_in: Option<(&Path, Kept)>,
     ) -> Result<Self, CompareError> {
-        let mut series = Self::in_memory(comparison, session);
+        let mut series = Self::in_memory(comparison, session).await;
         let opened = kept_in.map(|(folder, keep)| {
             let plan = (&series.results, &series.planned[..]);
             Store::open(folder, keep, plan, session.sink)
@@ -132,7 +132,7 @@ impl<'a> Series<'a> {
     }
 
     /// A comparison that has not begun.
-    fn in_memory(comparison: &'a Comparison, session: Session<'a>) -> Self {
+    async fn in_memory(comparison: &'a Comparison, session: Session<'a>) -> Self {
         let methods = comparison.settled(session);
         let began = date::now();
         let machine = device::machine();
@@ -147,7 +147,7 @@ impl<'a> Series<'a> {
         let results = Results {
             schema: SCHEMA,
             program: PROGRAM.into(),
-            adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu)),
+            adapter: device::describe(session.gpu, device::timestamp_trust(session.gpu).await),
             machine,
             scene: (&*comparison.scene).into(),
             oracle: protocol.oracle.to_string(),
@@ -184,13 +184,13 @@ impl<'a> Series<'a> {
     ///
     /// # Errors
     /// The errors of [`Store::of_share`].
-    pub(crate) fn of_cells(
+    pub(crate) async fn of_cells(
         comparison: &'a Comparison,
         session: Session<'a>,
         folder: &Path,
         chosen: &BTreeSet<&str>,
     ) -> Result<Self, CompareError> {
-        let mut series = Self::in_memory(comparison, session);
+        let mut series = Self::in_memory(comparison, session).await;
         let planned = series.planned.iter();
         series.is_left_out = planned.map(|run| !chosen.contains(&*run.cell)).collect();
         let plan = (&series.results, &series.planned[..]);
@@ -247,7 +247,10 @@ impl<'a> Series<'a> {
 
     /// Measures the methods on all views and paths in all viewports, as
     /// [`measure`](Self::measure) does.
-    pub(crate) async fn measure_all(&mut self) -> Result<(), CompareError> {
+    ///
+    /// # Errors
+    /// Those of [`measure`](Self::measure).
+    pub async fn measure_all(&mut self) -> Result<(), CompareError> {
         for view in 0..self.comparison.views.len() {
             for viewport in 0..self.comparison.viewports.len() {
                 self.measure(view, viewport).await?;

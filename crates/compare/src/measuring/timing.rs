@@ -16,7 +16,8 @@ use crate::sink::Session;
 use skiagraph_gpu::{ExecuteError, Executor, Frame, FrameReport, FrameTiming};
 use skiagraph_passes::{Built, SceneProvider};
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Frames that are timed together: the same is shown, or has moved since the frame before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

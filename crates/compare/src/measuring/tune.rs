@@ -109,7 +109,7 @@ pub async fn tune(comparison: &mut Comparison, session: Session<'_>) -> Result<(
     let limits = Limits {
         work: most - most / RESERVE,
         budgets: comparison.budgets,
-        has_timestamps: device::timestamp_trust(session.gpu) == Trust::Trusted,
+        has_timestamps: device::timestamp_trust(session.gpu).await == Trust::Trusted,
     };
     let names: Vec<String> = views.iter().map(|view| view.view.name.clone()).collect();
     let (mut compared, mut tuned) = (Vec::new(), Vec::new());

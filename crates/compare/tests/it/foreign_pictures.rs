@@ -45,7 +45,8 @@ fn shown(scene: &Arc<Scene>, methods: &[&str], map: u32) -> Vec<Shown> {
     compared.protocol.reference_samples = SAMPLES;
     compared.protocol.data = Some(DataFormat::Npy);
     let session = Session::new(gpu(), &Silent);
-    let mut series = Series::new(&compared, session, Some((folder.path(), Kept::Nothing))).unwrap();
+    let kept = Some((folder.path(), Kept::Nothing));
+    let mut series = block_on(Series::new(&compared, session, kept)).unwrap();
     block_on(series.measure(0, 0)).unwrap();
     let files: Vec<PathBuf> = fs::read_dir(folder.path())
         .unwrap()

@@ -370,7 +370,7 @@ fn whatever_cannot_run_is_a_row_with_its_reason() {
         "told at once: {}",
         heard.notes()
     );
-    let mut series = Series::new(&compared, session, None).unwrap();
+    let mut series = block_on(Series::new(&compared, session, None)).unwrap();
     block_on(series.measure(0, 0)).unwrap();
     let runs = &series.results.runs;
     assert_eq!(runs.len(), rows.len());

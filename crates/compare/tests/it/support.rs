@@ -188,7 +188,7 @@ pub fn keep(
     let session = Session::new(gpu(), &heard);
     comparison.check(session)?;
     fs::create_dir_all(out).unwrap();
-    let mut series = Series::new(comparison, session, Some((out, kept)))?;
+    let mut series = block_on(Series::new(comparison, session, Some((out, kept))))?;
     for view in 0..comparison.views.len() {
         for viewport in 0..comparison.viewports.len() {
             block_on(series.measure(view, viewport))?;

@@ -8,10 +8,8 @@ use crate::{
     signal::{Progress, Signal},
 };
 use skiagraph_graph::step::CpuCall;
-use std::{
-    ops::Range,
-    time::{Duration, Instant},
-};
+use std::{ops::Range, time::Duration};
+use web_time::Instant;
 
 /// How often a frame that waits for the GPU asks whether it should go on.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);

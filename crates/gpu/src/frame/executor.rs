@@ -14,9 +14,11 @@ use crate::{
     memory::physical::Physical,
     pipelines::pipelines::Pipelines,
     provider::Provider,
+    waiting::submitted_work,
 };
 use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceKind};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Longest wait for another thread that polls the device to signal finished work.
 const CALLBACK: Duration = Duration::from_secs(10);
@@ -248,7 +250,7 @@ impl Executor {
         if let Some(report) = self.poll()? {
             return Ok(report);
         }
-        if !wait(&self.runner.device, timeout)? {
+        if !wait(&self.runner.device, timeout)? || !self.is_told()? {
             return Err(self.unfinished(began));
         }
         // A device that was destroyed is waited for without complaint, but has no query buffers to
@@ -280,6 +282,9 @@ impl Executor {
             if waited.elapsed() >= CALLBACK {
                 break;
             }
+            if cfg!(target_arch = "wasm32") {
+                return Err(self.unfinished(began));
+            }
             // Another thread that polls the device may be about to say so.
             std::thread::sleep(Duration::from_micros(50));
         }
@@ -291,6 +296,38 @@ impl Executor {
             .report(&self.runner.device, &self.runner.presence)?;
         let frame = waited_for.unwrap_or_default();
         report.ok_or(ExecuteError::NotRun { frame })
+    }
+
+    /// Waits as [`finish`](Self::finish) does, but leaves the thread to others meanwhile.
+    /// [`block_on`](crate::block_on) drives it on this thread; in a browser, where no thread can
+    /// wait, the event loop does.
+    ///
+    /// # Errors
+    /// Those of `finish`.
+    pub async fn finished(&mut self) -> Result<FrameReport, ExecuteError> {
+        let mut patience = Duration::ZERO;
+        loop {
+            match self.finish_within(Some(patience)) {
+                Err(ExecuteError::Unfinished { .. }) => (),
+                done => return done,
+            }
+            submitted_work(&self.runner.device, &self.runner.queue).await;
+            // The report of a frame that is done may come a moment after it.
+            patience = Duration::from_millis(1);
+        }
+    }
+
+    /// True if it is known of all frames whether they ran, and of what was made whether the device
+    /// took it. Outside of a browser a wait is enough.
+    #[cfg(target_arch = "wasm32")]
+    fn is_told(&mut self) -> Result<bool, ExecuteError> {
+        self.runner.settle()?;
+        Ok(crate::late::check()? && !self.runner.frames_in_flight.is_pending())
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn is_told(&self) -> Result<bool, ExecuteError> {
+        Ok(true)
     }
 
     /// Returns the error of a frame that has not finished, with the passes of the last frame.

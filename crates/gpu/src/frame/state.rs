@@ -22,7 +22,8 @@ use crate::{
     pipelines::pipelines::Pipelines,
 };
 use skiagraph_graph::{Ids, LinkedPass, Origin, Plan, ResourceId, ResourceKind, step::Step};
-use std::{sync::Arc, time::Instant};
+use std::sync::Arc;
+use web_time::Instant;
 
 /// A plan and everything that was created for it on the device.
 pub(super) struct State {

@@ -201,10 +201,13 @@ struct Modules<'a> {
 }
 
 fn module_of(device: &wgpu::Device, shader: &Shader) -> wgpu::ShaderModule {
-    device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(shader.file()),
-        source: wgpu::ShaderSource::Naga(Cow::Owned(shader.module().clone())),
-    })
+    // A browser's compiler reads WGSL: the author's, since naga's writer leaves attributes out.
+    #[cfg(target_arch = "wasm32")]
+    let source = wgpu::ShaderSource::Wgsl(Cow::Owned(shader.wgsl()));
+    #[cfg(not(target_arch = "wasm32"))]
+    let source = wgpu::ShaderSource::Naga(Cow::Owned(shader.module().clone()));
+    let label = Some(shader.file());
+    device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source })
 }
 
 fn fullscreen_module(device: &wgpu::Device) -> wgpu::ShaderModule {

@@ -6,11 +6,8 @@ use crate::{
     frame::{Executor, Frame},
 };
 use skiagraph_graph::{Graph, NoProvider, ParamValue, PlanRequest, Registry, Sources};
-use std::{
-    collections::BTreeMap,
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::{collections::BTreeMap, sync::Arc, time::Duration};
+use web_time::Instant;
 
 /// Result of [`check`]: tells if an adapter's GPU timestamps can be believed.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,11 +34,11 @@ const FRAMES: usize = 5;
 
 /// Checks a device's timestamps: runs a long dispatch after a raster pass and compares its GPU time
 /// with the wall time of the frame. An [`Executor`] times the dispatch as it times the passes of
-/// any graph. Call it once per device; it waits for the GPU.
+/// any graph. Call it once per device.
 ///
 /// # Errors
 /// If the check's own small graph fails on this device.
-pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, ExecuteError> {
+pub async fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, ExecuteError> {
     if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
         return Ok(Trust::Untrusted {
             reason: "the adapter has no timestamp queries".to_owned(),
@@ -73,7 +70,7 @@ pub fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, Execut
             executor.encode(&mut encoder, &frame)?;
             let start = Instant::now();
             queue.submit([encoder.finish()]);
-            let report = executor.finish()?;
+            let report = executor.finished().await?;
             let gpu = report
                 .timing
                 .and_then(|timing| timing.passes.last().and_then(|pass| pass.gpu));

@@ -1,10 +1,10 @@
 //! GPU timestamps, checked against wall time, and pipeline statistics.
 //!
 //! ```no_run
-//! use skiagraph_gpu::{Executor, Frame, device::Gpu, timing::{self, Trust}};
+//! use skiagraph_gpu::{Executor, Frame, block_on, device::Gpu, timing::{self, Trust}};
 //!
 //! # fn time(gpu: &Gpu, executor: &mut Executor) -> Result<(), skiagraph_gpu::ExecuteError> {
-//! if let Trust::Untrusted { reason } = timing::check(&gpu.device, &gpu.queue)? {
+//! if let Trust::Untrusted { reason } = block_on(timing::check(&gpu.device, &gpu.queue))? {
 //!     println!("no GPU times: {reason}");
 //! }
 //! let mut encoder = gpu.device.create_command_encoder(&Default::default());

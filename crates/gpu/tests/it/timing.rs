@@ -4,7 +4,7 @@
 use crate::support::Files;
 use crate::tiny::{GPU, NUMBER, encoder, frame, made, u32s};
 use skiagraph_gpu::{
-    ExecuteError, Frame, device,
+    ExecuteError, Frame, block_on, device,
     timing::{Trust, check},
 };
 use std::time::Duration;
@@ -13,7 +13,7 @@ use std::time::Duration;
 fn a_long_dispatch_after_a_raster_pass_is_timed_truly_or_not_at_all() {
     let gpu = device::open(None).unwrap_or_else(|error| panic!("{error}"));
     let adapter = gpu.adapter.get_info().name;
-    match check(&gpu.device, &gpu.queue).expect("the check's graph runs") {
+    match block_on(check(&gpu.device, &gpu.queue)).expect("the check's graph runs") {
         Trust::Trusted => {}
         // The software adapter of CI has the trap and the way around it, so there is no excuse.
         Trust::Untrusted { reason } => assert!(
@@ -49,7 +49,8 @@ fn every_pass_is_timed_or_the_reason_is_known() {
         let mut timed = times.passes.iter();
         let untimed = timed.any(|pass| pass.gpu.is_none() && (times_copies || pass.name != "keep"));
         if untimed {
-            match check(&GPU.device, &GPU.queue).unwrap_or_else(|error| panic!("{error}")) {
+            match block_on(check(&GPU.device, &GPU.queue)).unwrap_or_else(|error| panic!("{error}"))
+            {
                 Trust::Untrusted { reason } => assert!(!reason.is_empty()),
                 Trust::Trusted => panic!("timestamps are trusted, but a pass has none"),
             }

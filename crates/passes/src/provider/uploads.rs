@@ -19,7 +19,8 @@ use skiagraph_graph::Provided;
 use skiagraph_scene::{
     BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets, packed_masks::mask_words,
 };
-use std::{ops::Range, sync::Arc, time::Instant};
+use std::{ops::Range, sync::Arc};
+use web_time::Instant;
 
 /// A resource of scenes.
 pub(super) struct Resource {

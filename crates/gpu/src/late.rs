@@ -1,0 +1,34 @@
+//! Errors of wgpu in a browser, which tells them later: nothing there can wait.
+
+use crate::error::{ExecuteError, refusal};
+use std::cell::{Cell, RefCell};
+
+thread_local! {
+    static SCOPES: Cell<usize> = const { Cell::new(0) };
+    static ERRORS: RefCell<Vec<ExecuteError>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Ends the scope of what has this name. Its error, if there is one, is found by [`check`].
+pub(crate) fn note(name: &str, scope: wgpu::ErrorScopeGuard) -> Option<wgpu::Error> {
+    let (name, popped) = (name.to_owned(), scope.pop());
+    SCOPES.set(SCOPES.get() + 1);
+    wasm_bindgen_futures::spawn_local(async move {
+        let error = popped.await;
+        SCOPES.set(SCOPES.get() - 1);
+        if let Some(error) = error {
+            ERRORS.with_borrow_mut(|errors| errors.push(refusal(&name, &error)));
+        }
+    });
+    None
+}
+
+/// Returns true if all ended scopes have told whether they hold an error.
+///
+/// # Errors
+/// The first error of those that have; the others follow from it, and are forgotten.
+pub(crate) fn check() -> Result<bool, ExecuteError> {
+    match ERRORS.take().into_iter().next() {
+        Some(error) => Err(error),
+        None => Ok(SCOPES.get() == 0),
+    }
+}

@@ -42,6 +42,8 @@ pub mod generate;
 pub mod gltf;
 #[cfg(feature = "files")]
 pub mod ground;
+#[cfg(feature = "files")]
+mod handed;
 pub mod indexed;
 mod keys;
 #[cfg(feature = "files")]
@@ -113,6 +115,7 @@ pub use texture::{Texture, Wrap};
 pub use self::{
     gltf::load_gltf,
     ground::{Ground, add_ground, has_ground},
+    handed::{forget_handed, hand_over},
     library::{SceneLibrary, SceneListing},
     limit::Limit,
     material_use::MaterialUse,

@@ -72,9 +72,12 @@ impl SceneLibrary {
     /// the user's cache, on Linux `~/.cache/skiagraph`.
     pub fn from_environment() -> Self {
         let variable = std::env::var_os(ASSETS_VARIABLE).unwrap_or_default();
-        let mut assets: Vec<PathBuf> = std::env::split_paths(&variable)
-            .filter(|path| !path.as_os_str().is_empty())
-            .collect();
+        let mut assets = Vec::new();
+        // Splitting panics where there are no environment variables.
+        if !variable.is_empty() {
+            let folders = std::env::split_paths(&variable);
+            assets.extend(folders.filter(|path| !path.as_os_str().is_empty()));
+        }
         assets.extend(
             directories::ProjectDirs::from("", "", "skiagraph")
                 .map(|folders| folders.cache_dir().to_owned()),

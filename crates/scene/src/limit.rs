@@ -1,6 +1,6 @@
 //! Reading a file whole, and never more of it than a file of its kind has.
 
-use crate::text::without_mark;
+use crate::{handed::handed, text::without_mark};
 use std::{
     fs::File,
     io::{self, Read},
@@ -27,6 +27,15 @@ impl Limit {
     /// An error of the operating system; a folder, a device or a pipe, which is not opened because
     /// that alone can block; a file beyond the limit. The message does not name the file.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let most = self.mib * MIB;
+        if let Some(bytes) = handed(path) {
+            return match bytes.len() as u64 {
+                length if length > most => {
+                    Err(self.exceeded(&format!("{} MiB", length.div_ceil(MIB))))
+                }
+                _ => Ok(bytes.to_vec()),
+            };
+        }
         let metadata = std::fs::metadata(path)?;
         if metadata.is_dir() {
             return Err(io::Error::other("it is a folder, expected a file"));
@@ -37,7 +46,6 @@ impl Limit {
                  into a file, and name that",
             ));
         }
-        let most = self.mib * MIB;
         if metadata.len() > most {
             return Err(self.exceeded(&format!("{} MiB", metadata.len().div_ceil(MIB))));
         }

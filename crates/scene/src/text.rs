@@ -1,5 +1,6 @@
 //! Text of files that other programs wrote: byte order marks and encodings.
 
+use crate::handed::is_file;
 use std::{
     borrow::Cow,
     ffi::OsString,
@@ -95,9 +96,9 @@ fn file_name(bytes: Vec<u8>) -> PathBuf {
 /// The file of that name in a folder. Its name may be in the encoding that the text was read from.
 pub(crate) fn file_in(folder: &Path, name: &str) -> PathBuf {
     let path = folder.join(name);
-    let bytes = windows_1252(name).filter(|_| !name.is_ascii() && !path.exists());
+    let bytes = windows_1252(name).filter(|_| !name.is_ascii() && !is_file(&path));
     let other = bytes.map(|bytes| folder.join(file_name(bytes)));
-    other.filter(|other| other.exists()).unwrap_or(path)
+    other.filter(|other| is_file(other)).unwrap_or(path)
 }
 
 /// The part of a statement before a comment.

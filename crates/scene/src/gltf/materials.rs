@@ -5,6 +5,7 @@ use super::{
     buffers::{Buffers, data_uri, path_of},
 };
 use crate::{
+    handed::is_file,
     mask::Mask,
     material::Material,
     material_use::MaterialUse,
@@ -162,7 +163,7 @@ impl Reader<'_> {
                 None => {
                     let folder = self.file.parent().unwrap_or(Path::new(""));
                     let path = path_of(folder, uri);
-                    if !path.is_file() {
+                    if !is_file(&path) {
                         return Err(format!("{place}: {} is not there", path.display()));
                     }
                     (path.display().to_string(), Source::File(path))

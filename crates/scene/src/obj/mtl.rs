@@ -8,6 +8,7 @@ use super::{
 };
 use crate::{
     error::SceneError,
+    handed::is_file,
     limit::Limit,
     mask::Mask,
     material::Material,
@@ -182,7 +183,7 @@ impl Reading<'_> {
     /// The files that a `mtllib` line names: one with spaces in its name, or several.
     fn files(&self, library: &str) -> Vec<PathBuf> {
         let whole = beside(self.path, library);
-        if whole.is_file() || !library.contains(char::is_whitespace) {
+        if is_file(&whole) || !library.contains(char::is_whitespace) {
             return vec![whole];
         }
         let names = library.split_whitespace();
@@ -222,7 +223,7 @@ impl Reading<'_> {
         let colour = from.diffuse_map.as_deref().map(TextureStatement::parse);
         let texture = colour.as_ref().map(|statement| {
             let source = beside(file, &statement.file);
-            if !source.is_file() {
+            if !is_file(&source) {
                 let missing = format!("{place}: {} is not there", source.display());
                 self.found.colours_missing.push(missing);
             }

@@ -1,11 +1,13 @@
 //! Errors of wgpu in a browser, which tells them later: nothing there can wait.
 
-use crate::error::{ExecuteError, refusal};
 use std::cell::{Cell, RefCell};
+
+/// Name of what was refused, and the error.
+pub(crate) type Late = (String, wgpu::Error);
 
 thread_local! {
     static SCOPES: Cell<usize> = const { Cell::new(0) };
-    static ERRORS: RefCell<Vec<ExecuteError>> = const { RefCell::new(Vec::new()) };
+    static ERRORS: RefCell<Vec<Late>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Ends the scope of what has this name. Its error, if there is one, is found by [`check`].
@@ -16,7 +18,7 @@ pub(crate) fn note(name: &str, scope: wgpu::ErrorScopeGuard) -> Option<wgpu::Err
         let error = popped.await;
         SCOPES.set(SCOPES.get() - 1);
         if let Some(error) = error {
-            ERRORS.with_borrow_mut(|errors| errors.push(refusal(&name, &error)));
+            ERRORS.with_borrow_mut(|errors| errors.push((name, error)));
         }
     });
     None
@@ -26,7 +28,7 @@ pub(crate) fn note(name: &str, scope: wgpu::ErrorScopeGuard) -> Option<wgpu::Err
 ///
 /// # Errors
 /// The first error of those that have; the others follow from it, and are forgotten.
-pub(crate) fn check() -> Result<bool, ExecuteError> {
+pub(crate) fn check() -> Result<bool, Late> {
     match ERRORS.take().into_iter().next() {
         Some(error) => Err(error),
         None => Ok(SCOPES.get() == 0),

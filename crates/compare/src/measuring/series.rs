@@ -11,7 +11,8 @@
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
 //! # async fn measure(comparison: &Comparison, session: Session<'_>) -> Done {
 //! comparison.check(session)?;
-//! let mut series = Series::new(comparison, session, Some((Path::new("out"), Kept::Others))).await?;
+//! let kept = Some((Path::new("out"), Kept::Others));
+//! let mut series = Series::new(comparison, session, kept).await?;
 //! for view in 0..comparison.views.len() {
 //!     for viewport in 0..comparison.viewports.len() {
 //!         series.measure(view, viewport).await?; // and writes `out/results.json`

@@ -322,7 +322,9 @@ impl Executor {
     #[cfg(target_arch = "wasm32")]
     fn is_told(&mut self) -> Result<bool, ExecuteError> {
         self.runner.settle()?;
-        Ok(crate::late::check()? && !self.runner.frames_in_flight.is_pending())
+        let refused = |(name, error): crate::late::Late| crate::error::refusal(&name, &error);
+        let is_told = crate::late::check().map_err(refused)?;
+        Ok(is_told && !self.runner.frames_in_flight.is_pending())
     }
 
     #[cfg(not(target_arch = "wasm32"))]

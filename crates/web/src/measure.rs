@@ -1,0 +1,243 @@
+//! Measures methods and runs the hard cases on the page's device, with progress and an early end.
+
+use crate::answer::{Answer, fault, json, parsed};
+use crate::documents::{Files, sources};
+use crate::stage::loaded;
+use serde::Deserialize;
+use serde_json::json;
+use skiagraph_compare::comparison::Comparison;
+use skiagraph_compare::error::CompareError;
+use skiagraph_compare::files::json::to_text;
+use skiagraph_compare::graphs::shadow_method::load_methods;
+use skiagraph_compare::measuring::ground_truth::PrimaryVisibility;
+use skiagraph_compare::measuring::hard_case::{HardCaseContext, MethodRun};
+use skiagraph_compare::measuring::hard_cases::cases;
+use skiagraph_compare::measuring::series::Series;
+use skiagraph_compare::measuring::view_or_path::ViewOrPath;
+use skiagraph_compare::records::results::{Adapter, Measured, PROGRAM, Results};
+use skiagraph_compare::records::stress::{Report, Verdict};
+use skiagraph_compare::sink::{Session, Sink};
+use skiagraph_gpu::device::Gpu;
+use skiagraph_passes::EmbeddedSources;
+use skiagraph_report::summary_table::summaries;
+use std::{
+    cell::{Cell, RefCell},
+    sync::atomic::{AtomicBool, Ordering},
+};
+use wasm_bindgen::prelude::*;
+
+/// Set by [`stop`].
+static STOP: AtomicBool = AtomicBool::new(false);
+
+thread_local! {
+    static PROGRESS: RefCell<Option<js_sys::Function>> = const { RefCell::new(None) };
+    static RUNS: Cell<[u64; 2]> = const { Cell::new([0, 0]) };
+    static STEP: RefCell<(String, u64, &'static str)> =
+        const { RefCell::new((String::new(), 0, "")) };
+}
+
+/// Tells the page's function the progress.
+struct Told;
+
+impl Told {
+    fn tell(value: &serde_json::Value) {
+        PROGRESS.with_borrow(|progress| {
+            if let Some(progress) = progress {
+                // An error of the page's function is the page's.
+                let _ = progress.call1(&JsValue::NULL, &JsValue::from_str(&value.to_string()));
+            }
+        });
+    }
+}
+
+impl Sink for Told {
+    fn note(&self, text: &str) {
+        Self::tell(&json!({"note": text}));
+    }
+
+    fn begin_runs(&self, total: u64) {
+        RUNS.set([0, total]);
+    }
+
+    fn count_run(&self) {
+        let [done, total] = RUNS.get();
+        RUNS.set([done + 1, total]);
+    }
+
+    fn begin_step(&self, name: &str, total: u64, unit: &'static str) {
+        STEP.set((name.to_owned(), total, unit));
+        self.set_done(0);
+    }
+
+    fn set_done(&self, done: u64) {
+        let [runs, of_runs] = RUNS.get();
+        STEP.with_borrow(|(name, total, unit)| {
+            Self::tell(&json!({
+                "done": done, "of": total, "unit": unit, "step": name, "runs": runs,
+                "of_runs": of_runs,
+            }));
+        });
+    }
+
+    fn stop(&self) -> &AtomicBool {
+        &STOP
+    }
+}
+
+/// Request for the hard cases; all of them if `cases` is empty.
+#[derive(Deserialize)]
+struct Conformance {
+    methods: Vec<String>,
+    #[serde(default)]
+    cases: Vec<String>,
+    size: u32,
+}
+
+/// Request for a comparison on the worker's scene.
+#[derive(Deserialize)]
+struct Measure {
+    views: Vec<String>,
+    methods: Vec<String>,
+    size: [u32; 2],
+    frames: u32,
+    #[serde(default)]
+    files: Files,
+}
+
+/// Asks the measurement that runs to end.
+pub fn stop() {
+    STOP.store(true, Ordering::Relaxed);
+}
+
+/// [`Page::conformance`](crate::page::Page::conformance).
+pub async fn conformance(
+    (gpu, adapter): (&Gpu, Adapter),
+    request: &str,
+    progress: js_sys::Function,
+) -> Answer<String> {
+    let request: Conformance = parsed(request)?;
+    begin(progress);
+    let viewport = [request.size; 2];
+    let methods = load_methods(&request.methods, &[], &[], &EmbeddedSources).map_err(fault)?;
+    let features = gpu.device.features();
+    let methods = methods
+        .into_iter()
+        .map(|method| MethodRun::new(method.at(viewport).settled(features), &[]));
+    let methods: Vec<MethodRun> = methods.collect();
+    let primary = PrimaryVisibility::load(&EmbeddedSources).map_err(fault)?;
+    let cases = cases(&request.cases).map_err(fault)?;
+    let context = HardCaseContext {
+        session: Session::new(gpu, &Told),
+        primary: &primary,
+        methods: &methods,
+        viewport,
+        pictures: None,
+    };
+    let mut report = Report {
+        schema: 1,
+        program: PROGRAM.into(),
+        adapter,
+        viewport,
+        methods: methods.iter().map(|run| run.column.clone()).collect(),
+        cases: Vec::new(),
+    };
+    let cells = cases.len() * methods.len();
+    for case in &cases {
+        match context.run(case).await {
+            Ok(judged) => {
+                report.cases.push(judged);
+                tell_cells(&report, cells);
+            }
+            Err(CompareError::Interrupted { .. }) => break,
+            Err(error) => return Err(fault(error)),
+        }
+    }
+    PROGRESS.take();
+    Ok(to_text(&report))
+}
+
+/// [`Page::measure`](crate::page::Page::measure).
+pub async fn measure(
+    (gpu, adapter): (&Gpu, Adapter),
+    request: &str,
+    progress: js_sys::Function,
+) -> Answer<String> {
+    let request: Measure = parsed(request)?;
+    begin(progress);
+    let (scene, sources) = (loaded()?, sources(&request.files));
+    let methods = load_methods(&request.methods, &[], &[], &sources).map_err(fault)?;
+    let mut comparison = Comparison::new(scene, methods).map_err(fault)?;
+    let is_asked = |view: &ViewOrPath| request.views.iter().any(|it| it == view.name());
+    comparison.views.retain(is_asked);
+    comparison.viewports = vec![request.size];
+    comparison.protocol.frames = request.frames.max(1);
+    comparison.protocol.regime_frames = request.frames;
+    let session = Session::new(gpu, &Told);
+    comparison.check(session).map_err(fault)?;
+    let series = Series::new(&comparison, session, None).await;
+    let mut series = series.map_err(fault)?;
+    series.results.adapter = adapter;
+    let measured = series.measure_all().await;
+    PROGRESS.take();
+    match measured {
+        Ok(()) | Err(CompareError::Interrupted { .. }) => (),
+        Err(error) => return Err(fault(error)),
+    }
+    let mut results = series.results;
+    results.notes.extend(step(&results));
+    Ok(to_text(&results))
+}
+
+fn begin(progress: js_sys::Function) {
+    STOP.store(false, Ordering::Relaxed);
+    PROGRESS.set(Some(progress));
+}
+
+/// Tells the cells of the last case.
+fn tell_cells(report: &Report, total: usize) {
+    let before: usize = report.cases.iter().map(|case| case.cells.len()).sum();
+    let Some(case) = report.cases.last() else {
+        return;
+    };
+    for (cell, done) in case.cells.iter().zip(before + 1 - case.cells.len()..) {
+        let outside = cell.counts.as_ref().map(|counts| &counts.outside_band);
+        let wrong = outside.map_or(1, |outside| outside.lit + outside.shadow);
+        let is_wrong = cell.verdict == Verdict::Fail;
+        Told::tell(&json!({
+            "done": done, "of": total.max(done), "case": case.name, "method": cell.preset,
+            "wrong": if is_wrong { wrong.max(1) } else { 0 },
+        }));
+    }
+}
+
+/// A note on the step of the timestamps, which browsers make coarse.
+fn step(results: &Results) -> Option<String> {
+    let measured = results.runs.iter().filter_map(|run| run.measured.as_ref());
+    let times = measured.flat_map(|Measured { passes, .. }| passes);
+    let times = times.filter_map(|pass| pass.gpu_ms);
+    let mut times: Vec<f64> = times.flat_map(|gpu| [gpu.min, gpu.median]).collect();
+    times.sort_by(f64::total_cmp);
+    let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let step = steps.filter(|step| *step > 1e-6).min_by(f64::total_cmp)?;
+    Some(format!(
+        "GPU times differ by {step:.4} ms or more: the browser's clock has steps"
+    ))
+}
+
+/// Returns the text of a results.json as JSON: its `verdict`, and the table (`header`, `rows`) of
+/// the methods over all views.
+///
+/// # Errors
+/// A text that is no results.json.
+#[wasm_bindgen]
+pub fn verdict(results: &str) -> Answer<String> {
+    let results: Results = parsed(results)?;
+    let tables = summaries(&results);
+    let sentences = tables
+        .iter()
+        .flat_map(|summary| summary.verdict().sentences);
+    let sentences: Vec<String> = sentences.collect();
+    let table = tables.first().map(|summary| summary.table());
+    let (header, rows) = table.map_or_else(Default::default, |table| (table.heads, table.rows));
+    json(&json!({"verdict": sentences.join("\n"), "header": header, "rows": rows}))
+}

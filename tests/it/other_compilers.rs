@@ -3,8 +3,11 @@
 
 use glam::DVec3;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use serde_json::json;
-use skiagraph_graph::{Graph, LinkedProgram, ParamType, ParamValue, PlanRequest};
+use serde_json::{Value, json};
+use skiagraph_graph::{
+    Attachment, Graph, Ids, LinkedProgram, ParamType, ParamValue, PlanRequest,
+    step::{Draw, Step},
+};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
 use skiagraph_scene::{
     DirectionalLight, Light, LightKind, PointLight, SceneLibrary, SpotLight, View,
@@ -40,9 +43,9 @@ fn lights(radius: f64) -> [LightKind; 3] {
     [sun.into(), LightKind::Spot(spot), LightKind::Point(point)]
 }
 
-/// Calls `visit` with each program of the presets under each kind of light, with the defaults of
-/// their params and each other word of one. None needs more than WebGPU has.
-fn programs(visit: &mut dyn FnMut(&LinkedProgram)) {
+/// Calls `visit` with each step of the presets that has a program, under each kind of light, with
+/// the defaults of their params and each other word of one. None needs more than WebGPU has.
+fn programs(visit: &mut dyn FnMut(&Step<Ids>, &LinkedProgram)) {
     let (scene, _) = SceneLibrary::default().load("park").unwrap();
     let scene = Arc::new(scene);
     let lights = [0.0, 0.7].into_iter().flat_map(lights);
@@ -70,10 +73,11 @@ fn programs(visit: &mut dyn FnMut(&LinkedProgram)) {
                 let Ok(plan) = graph.plan(&request) else {
                     continue;
                 };
-                let steps = plan.live().flat_map(|pass| &pass.steps);
-                steps
-                    .filter_map(|step| step.program())
-                    .for_each(&mut *visit);
+                for step in plan.live().flat_map(|pass| &pass.steps) {
+                    if let Some(program) = step.program() {
+                        visit(step, program);
+                    }
+                }
             }
         }
     }
@@ -106,8 +110,9 @@ fn facts(module: &naga::Module) -> BTreeSet<String> {
     bindings.chain(overrides).chain(structs).collect()
 }
 
-/// The shader's file and text, the names and stages of the entry points, the values of overrides.
-fn record(program: &LinkedProgram, wgsl: &str) -> String {
+/// The shader's file and text, the names and stages of the entry points, the values of overrides,
+/// and the formats that a draw writes.
+fn record(step: &Step<Ids>, program: &LinkedProgram, wgsl: &str) -> String {
     let module = program.shader.module();
     let entries = program.entries.iter().map(|entry| {
         let entry = &module.entry_points[*entry];
@@ -118,8 +123,31 @@ fn record(program: &LinkedProgram, wgsl: &str) -> String {
         "wgsl": wgsl,
         "entries": entries.collect::<Vec<_>>(),
         "constants": program.constants,
+        "draw": match step {
+            Step::Draw(draw) => targets(draw),
+            _ => Value::Null,
+        },
     });
     record.to_string()
+}
+
+fn targets(draw: &Draw<Ids>) -> Value {
+    let format = |target: &Attachment| format!("{:?}", target.format);
+    let colors = draw.colors.iter().map(|color| format(&color.target));
+    let canvas = draw
+        .canvas
+        .iter()
+        .map(|canvas| format!("{:?}", canvas.format));
+    let depth = draw.depth.as_ref().map(|depth| &depth.target);
+    let depth = depth.or(draw.stencil.as_ref().map(|stencil| &stencil.target));
+    let colored = draw.colors.first().map(|color| &color.target);
+    json!({
+        "fullscreen": draw.fullscreen,
+        "colors": colors.chain(canvas).collect::<Vec<_>>(),
+        "depth": depth.map(format),
+        "samples": colored.or(depth).map_or(1, |target| target.samples),
+        "topology": format!("{:?}", draw.primitive.topology),
+    })
 }
 
 /// The programs are written into the file that `SKIAGRAPH_PROGRAMS` names, if it is set: a line
@@ -127,9 +155,9 @@ fn record(program: &LinkedProgram, wgsl: &str) -> String {
 #[test]
 fn what_naga_writes_is_what_it_read() {
     let (mut texts, mut records) = (BTreeSet::new(), BTreeSet::new());
-    programs(&mut |program| {
+    programs(&mut |step, program| {
         let (shader, text) = (&program.shader, program.shader.wgsl());
-        records.insert(record(program, &text));
+        records.insert(record(step, program, &text));
         if !texts.insert(text.clone()) {
             return;
         }

@@ -191,7 +191,7 @@ await check('broken and large files are refused in a sentence', async () => {
     return said.join(' ');
 });
 
-await check('measured with two methods, read back by the program', async () => {
+await check('measured with two methods: counts of the program, which reads them back', async () => {
     const chosen = dice.some(catalogue.measured.filter((name) => name !== 'light_buffer'), 1).concat('light_buffer');
     await page.evaluate((names) => {
         const tick = (part, isOn) => {
@@ -216,13 +216,18 @@ await check('measured with two methods, read back by the program', async () => {
         assert(Date.now() < deadline, `${file} was not downloaded; ${await alerts()}`);
         await new Promise((later) => { setTimeout(later, 50); });
     }
-    const { runs, adapter } = JSON.parse(fs.readFileSync(file));
+    const results = (path) => JSON.parse(fs.readFileSync(path));
+    const { runs } = results(file);
     assert.equal(runs.length, 2);
     skiagraph(['report', within('downloads'), '--out', within('report.html')]);
-    skiagraph(['compare', ...chosen, '--scene', 'park', '--view', runs[0].view.name ?? runs[0].view, '--size', '256x256', '--frames', '2', '--warmup', '0',
+    skiagraph(['compare', ...chosen, '--scene', 'park', '--view', runs[0].view, '--size', '256x256', '--frames', '2', '--warmup', '0',
         '--regime-frames', '0', '--images', 'none', '--out', within('compared')]);
     skiagraph(['merge', within('compared'), within('downloads'), '--out', within('merged')]);
-    const names = [adapter.name, JSON.parse(fs.readFileSync(within('compared/results.json'))).adapter.name];
+    const sources = [results(file), results(within('compared/results.json'))];
+    const [ours, theirs] = sources.map((source) => Object.fromEntries(source.runs.map(({ preset, fingerprint, params, pixels, band, certain, uncertain, rays, wrong }) => (
+        [preset, { fingerprint, params, pixels, band, certain, uncertain, rays, wrong }]))));
+    assert.deepEqual(ours, theirs);
+    const names = sources.map(({ adapter }) => adapter.name);
     const html = fs.readFileSync(within('merged/report.html'), 'utf8');
     for (const name of names) assert(html.includes(name), `the merged page names ${name}`);
     assert.notEqual(await page.$eval('#measure-verdict', (line) => line.textContent), '');

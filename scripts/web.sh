@@ -59,7 +59,7 @@ fi
 cargo build -p skiagraph-web --lib --target wasm32-unknown-unknown --profile "$profile" --locked >&2
 page=crates/web/page
 rm -rf "$page/pkg"
-"$wasm_bindgen" --target web --no-typescript --out-dir "$page/pkg" "$built"
+"$wasm_bindgen" --target web --no-typescript --remove-name-section --remove-producers-section --out-dir "$page/pkg" "$built"
 
 # Only these files: what else lies in the folder is left alone.
 mkdir -p "$folder"

@@ -193,7 +193,7 @@ export function begin(adapter) {
   chosen.scene = { argument: 'park', files: new Map() };
   scenes.set('park', chosen.scene);
   chosen.method = { name: 'light_buffer', about: '', params: [] };
-  chosen.size = /swiftshader|llvmpipe|lavapipe|basic render/i.test(JSON.stringify(adapter)) ? 256 : 512;
+  chosen.size = /swiftshader|llvmpipe|lavapipe|basic render|"kind":"Cpu"/i.test(JSON.stringify(adapter)) ? 256 : 512;
   byId('size').value = String(chosen.size);
   drawScenes();
   drawMethod();

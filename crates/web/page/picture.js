@@ -22,6 +22,10 @@ let version = 0;
 let isMoving = false, isRunning = false, isPaused = false, isJudging = false;
 let wake = null;
 let shown = null, judged = null;
+/** Seconds of one frame after which many browsers take the GPU away. */
+const longest = 5;
+/** The last frame in which every pass ran: its method, scene, width and ms. */
+let whole = null;
 
 export const methodText = () => (chosen.method ? written(chosen.method, chosen.values) : 'mine');
 export const lastShown = () => shown;
@@ -137,13 +141,24 @@ function fail(error) {
   tell('picture', `${error.message}\nChoose another method, scene or size.`);
 }
 
+/** Keeps the former size where a frame of the chosen one would take too long. */
+function boundSize() {
+  const isSame = whole?.method === methodText() && whole.scene === chosen.scene;
+  const seconds = isSame ? whole.ms / 1000 * (chosen.size / whole.width) ** 2 : 0;
+  if (chosen.size <= (whole?.width ?? 0) || seconds < longest) return;
+  tell('picture', `A frame of ${chosen.size} x ${chosen.size} pixels would take about ${Math.round(seconds)} s here, and browsers take the GPU away from long frames. The size stays ${whole.width}.`);
+  chosen.size = whole.width;
+  byId('size').value = String(whole.width);
+}
+
 /** One frame of what is chosen; if nothing changes in a short while, also its times and its judgement. */
 async function draw(mine) {
   await loadScene();
   if (mine !== version) return;
+  hush('picture');
+  boundSize();
   shown = await show(methodText(), false);
   judged = null;
-  hush('picture');
   say('shown', shown);
   const right = await besideOf();
   put(right);
@@ -153,6 +168,7 @@ async function draw(mine) {
   sayJudged('judging …');
   await workers.gpu.call('check_clock');
   shown = await show(methodText(), true);
+  whole = { method: methodText(), scene: chosen.scene, width: shown.width, ms: shown.ms_wall };
   sayTimes(shown);
   judged = await judge(mine);
   if (mine !== version) return;

@@ -164,6 +164,7 @@ impl Page {
             "name": adapter.name,
             "driver": adapter.driver,
             "backend": adapter.backend,
+            "kind": adapter.device_type,
             "checked": self.is_checked.get(),
             "timestamps": adapter.gpu_unavailable.clone().unwrap_or_default(),
             "limits": {

@@ -90,7 +90,9 @@ pub fn scene(argument: &str) -> Answer<String> {
     let (path, options) = (Path::new(argument), MeshSceneOptions::default());
     let mut notes = Vec::new();
     let own: OwnScene = if MeshFile::is_one(path) {
-        let own = OwnScene::of_mesh(path, &options).map_err(fault)?;
+        let mut own = OwnScene::of_mesh(path, &options).map_err(fault)?;
+        let views = own.views(Some("all"), &options.camera, None);
+        own.scene.views = views.map_err(fault)?;
         notes = own_scene_notes::notes(&options, &own);
         own
     } else {

@@ -11,6 +11,8 @@ use std::{
     thread::Thread,
     time::Duration,
 };
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen::prelude::*;
 
 /// How often a future that waits for a GPU is asked whether it gives up.
 const INTERVAL: Duration = Duration::from_millis(100);
@@ -22,7 +24,7 @@ thread_local! {
 }
 
 /// Lets the caller go on when all work submitted to `queue` is done, and whenever its future is
-/// polled before. [`block_on`] does so every tenth of a second.
+/// polled before. [`block_on`] does so every tenth of a second, and so does a browser's timer.
 pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
     let mut is_told = false;
     poll_fn(|context| {
@@ -30,6 +32,12 @@ pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
             return Poll::Ready(());
         }
         is_told = true;
+        #[cfg(target_arch = "wasm32")]
+        {
+            let waker = context.waker().clone();
+            let closure = Closure::once_into_js(move || waker.wake());
+            set_timeout(closure, INTERVAL.as_millis() as i32);
+        }
         let waker = context.waker().clone();
         queue.on_submitted_work_done(move || waker.wake());
         WAITED_FOR.with_borrow_mut(|waited_for| {
@@ -40,6 +48,14 @@ pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
         Poll::Pending
     })
     .await;
+}
+
+#[cfg(target_arch = "wasm32")]
+#[wasm_bindgen]
+extern "C" {
+    /// A browser's timer, in its pages and its workers.
+    #[wasm_bindgen(js_name = setTimeout)]
+    fn set_timeout(closure: JsValue, milliseconds: i32);
 }
 
 struct Unpark(Thread);

@@ -4,7 +4,7 @@
 //! use skiagraph_scene::{MeshFile, MeshFileOptions, hand_over};
 //! use std::path::Path;
 //!
-//! hand_over("dropped/tile.obj", b"v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n".to_vec());
+//! hand_over("dropped/./tiles/../tile.obj", b"v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n".to_vec());
 //! let tile = MeshFile::load(Path::new("dropped/tile.obj"), &MeshFileOptions::default())?;
 //! assert_eq!(tile.mesh.triangles.len(), 1);
 //! # Ok::<(), skiagraph_scene::SceneError>(())
@@ -12,7 +12,7 @@
 
 use std::{
     collections::BTreeMap,
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
     sync::{Arc, PoisonError, RwLock},
 };
 
@@ -20,9 +20,9 @@ static FILES: RwLock<BTreeMap<PathBuf, Arc<[u8]>>> = RwLock::new(BTreeMap::new()
 
 /// Hands over the content of a file: meshes, materials and textures that name this path are read
 /// from it, whatever the file system has there. A later content replaces it.
-pub fn hand_over(path: impl Into<PathBuf>, bytes: Vec<u8>) {
+pub fn hand_over(path: impl AsRef<Path>, bytes: Vec<u8>) {
     let mut files = FILES.write().unwrap_or_else(PoisonError::into_inner);
-    files.insert(path.into(), bytes.into());
+    files.insert(plain(path.as_ref()), bytes.into());
 }
 
 /// Forgets all files that were handed over.
@@ -34,7 +34,20 @@ pub fn forget_handed() {
 /// Returns the content of a file that was handed over.
 pub(crate) fn handed(path: &Path) -> Option<Arc<[u8]>> {
     let files = FILES.read().unwrap_or_else(PoisonError::into_inner);
-    files.get(path).cloned()
+    files.get(&plain(path)).cloned()
+}
+
+/// A path without `.`, and without `..` behind a folder.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => (),
+            Component::ParentDir if plain.file_name().is_some() => drop(plain.pop()),
+            part => plain.push(part),
+        }
+    }
+    plain
 }
 
 /// True if a file was handed over, or is in the file system.

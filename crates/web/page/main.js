@@ -4,7 +4,6 @@ import { byId, el, ready, tell } from './page.js';
 import { begin, startGpu, startOracle, workers } from './workers.js';
 import { readLink } from './link.js';
 import { change, lost, lostOracle } from './picture.js';
-import { setClock } from './readout.js';
 import * as menus from './menus.js';
 import * as conformance from './conformance.js';
 import * as measure from './measure.js';
@@ -38,7 +37,7 @@ async function findAdapter() {
 
 function showFacts(adapter) {
   byId('adapter').textContent = [adapter.name, adapter.driver, adapter.backend].filter(Boolean).join(' · ');
-  const facts = { ...adapter, timestamps: adapter.timestamps || 'believed', browser: navigator.userAgent };
+  const facts = { ...adapter, timestamps: adapter.timestamps || (adapter.checked ? 'believed' : 'not checked yet'), browser: navigator.userAgent };
   byId('facts').replaceChildren(...Object.entries(facts).flatMap(([name, value]) => [el('dt', {}, name),
     el('dd', {}, typeof value === 'object' ? Object.entries(value).map(([key, limit]) => `${key} ${limit}`).join(', ') : String(value))]));
 }
@@ -51,9 +50,10 @@ async function follow(words) {
 
 /** Starts the GPU worker; resolves to what it says of the adapter. */
 async function openGpu() {
+  if (!isSecureContext) throw new Error('This page was loaded by http: WebGPU needs https, or localhost.');
   if (!navigator.gpu) throw new Error('This browser has no WebGPU.');
   const adapterJson = await findAdapter();
-  if (!adapterJson) throw new Error('This browser has WebGPU, but gives it no GPU.');
+  if (!adapterJson) throw new Error('This browser has WebGPU, but found no GPU.');
   startGpu(adapterJson, lost);
   const adapter = JSON.parse(await workers.gpu.call('adapter'));
   showFacts(adapter);
@@ -65,7 +65,6 @@ async function clock() {
   await workers.gpu.call('check_clock');
   const adapter = JSON.parse(await workers.gpu.call('adapter'));
   showFacts(adapter);
-  setClock(adapter.timestamps);
 }
 
 /** Leaves the playground to a reader without a GPU. */

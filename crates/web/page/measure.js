@@ -19,9 +19,10 @@ function boxes(id, names, isChosen) {
 
 // Another tab with this page takes part of the GPU's time.
 const tabs = new BroadcastChannel('skiagraph');
+let isMeasuring = false;
 tabs.addEventListener('message', ({ data }) => {
   if (data === 'measuring') tabs.postMessage('open');
-  else tell('measure', 'Another tab has this page open. Close it and measure again: both share the GPU, and times suffer.');
+  else if (isMeasuring) tell('measure', 'Another tab has this page open. Close it and measure again: both share the GPU, and times suffer.');
 });
 
 async function run() {
@@ -31,10 +32,15 @@ async function run() {
   const size = Number(byId('measure-size').value), frames = Number(byId('measure-frames').value);
   if (methods.length === 0 || views.length === 0) return tell('measure', 'Choose one method and one view at least.');
   if (!Number.isInteger(frames) || frames < 1 || frames > 1000) return tell('measure', 'Frames are a whole number from 1 to 1000.');
+  isMeasuring = true;
   tabs.postMessage('measuring');
   const bar = byId('measure-bar');
   bar.removeAttribute('value');
-  byId('measure-stop').onclick = () => workers.gpu.call('stop').catch(() => {});
+  byId('measure-save').hidden = true;
+  byId('measure-stop').onclick = () => {
+    now('Stopping after this step …');
+    workers.gpu.call('stop').catch(() => {});
+  };
   try {
     const request = { scene: chosen.scene.argument, views, methods: [...new Set(methods)], size: [size, size], frames, files: chosen.mine?.files ?? {} };
     const verdict = await alone('measure', async () => {
@@ -52,6 +58,7 @@ async function run() {
   } catch (error) {
     tell('measure', `The measurement ended early: ${error.message}\nChoose fewer methods or a smaller size, and measure again.`);
   }
+  isMeasuring = false;
   now('');
   return undefined;
 }

@@ -6,7 +6,7 @@ import { cameraOf, cameraText, dolly, orbit } from './camera.js';
 import { clean, drawParams, parse } from './params.js';
 import { chosenFiles, droppedFiles, scenesOf } from './files.js';
 import { change, chosen, lastShown, methodText, setBeside } from './picture.js';
-import { sayPixel, sayScene, setClock } from './readout.js';
+import { sayPixel, sayScene } from './readout.js';
 import { navigate } from './stage.js';
 import { remember } from './link.js';
 
@@ -185,11 +185,11 @@ function listen() {
   addEventListener('scene', ({ detail }) => drawPlace(detail));
   addEventListener('shown', ({ detail }) => drawBeside(detail));
   addEventListener('changed', save);
+  addEventListener('restarted', () => chooseMethod('light_buffer'));
 }
 
 /** Chooses the first picture before the catalogue is there. A GPU that the CPU plays begins with a small one. */
 export function begin(adapter) {
-  setClock(adapter?.timestamps ?? '');
   chosen.scene = { argument: 'park', files: new Map() };
   scenes.set('park', chosen.scene);
   chosen.method = { name: 'light_buffer', about: '', params: [] };

@@ -5,7 +5,7 @@ import { busy, byId, hush, tell } from './page.js';
 import { Cancelled, Lost, startGpu, startOracle, workers } from './workers.js';
 import { written } from './params.js';
 import { picture, showPictures } from './stage.js';
-import { sayJudged, sayQuickTime, sayTimes, sayVerdict } from './readout.js';
+import { sayJudged, sayQuickTime, sayTimes, sayVerdict, setClock } from './readout.js';
 
 export const chosen = {
   /** {argument, files}; what the worker says of it is in `place` once it is loaded. */
@@ -40,7 +40,8 @@ async function show(method, timed) {
   const { json, rgba, ...arrays } = await workers.gpu.call('show', JSON.stringify(request));
   const fields = JSON.parse(json);
   const [width, height] = fields.size;
-  return { ...fields, ...arrays, view, light, width, height, picture: picture(rgba, width, height) };
+  const { scene } = chosen;
+  return { ...fields, ...arrays, label: method, scene, view, light, width, height, picture: picture(rgba, width, height) };
 }
 
 /** The picture at the right, {picture, name, legend}; null where it waits for the judgement. */
@@ -94,9 +95,12 @@ export function lostOracle(reason) {
 /** Offers a new GPU worker for one that failed. */
 export function lost(reason) {
   sayJudged('');
-  tell('page', `${reason}\nThe page goes on once the GPU is asked for again.`, 'Start again', () => {
+  tell('page', `${reason}\nPress Start again to open the GPU once more.`, 'Start again', () => {
     startGpu(null, lost);
-    change();
+    workers.gpu.ready.catch(({ message }) => lost(message));
+    // The method of the playground may be the reason.
+    if (chosen.method) change();
+    else say('restarted');
   });
 }
 
@@ -137,6 +141,8 @@ async function run() {
 function fail(error) {
   if (error instanceof Lost && error === workers.gpu.ended && byId('page-alert').hidden) lost(error.message);
   if (error instanceof Cancelled || error instanceof Lost) return;
+  [shown, judged] = [null, null];
+  showPictures([null, ''], null);
   sayJudged('');
   tell('picture', `${error.message}\nChoose another method, scene or size.`);
 }
@@ -167,8 +173,9 @@ async function draw(mine) {
   if (mine !== version) return;
   sayJudged('judging …');
   await workers.gpu.call('check_clock');
+  setClock(JSON.parse(await workers.gpu.call('adapter')).timestamps);
   shown = await show(methodText(), true);
-  whole = { method: methodText(), scene: chosen.scene, width: shown.width, ms: shown.ms_wall };
+  whole = { method: shown.label, scene: shown.scene, width: shown.width, ms: shown.ms_wall };
   sayTimes(shown);
   judged = await judge(mine);
   if (mine !== version) return;
@@ -177,7 +184,7 @@ async function draw(mine) {
 }
 
 function put(right) {
-  showPictures([shown.picture, methodText()], right && [right.picture, right.name], right?.legend);
+  showPictures([shown.picture, shown.label], right && [right.picture, right.name], right?.legend);
 }
 
 /** Changes the picture at the right, at once where its judgement is there. */

@@ -8,6 +8,7 @@ import { showMine } from './menus.js';
 /** Path of the document among the files. */
 let main = null;
 let timer = 0, turn = 0, tabs = 0;
+let isEdited = false;
 
 const areas = () => all('#texts textarea');
 const areaOf = (path) => areas().find((area) => area.dataset.path === path) ?? null;
@@ -28,6 +29,7 @@ function add(path, text) {
   tabs += 1;
   const tab = el('button', { type: 'button', role: 'tab', id: `tab-${tabs}`, 'aria-controls': `panel-${tabs}`, 'data-path': path, onclick: () => choose(path) }, path);
   const area = el('textarea', { 'data-path': path, 'aria-label': path, spellcheck: 'false', autocapitalize: 'off', autocomplete: 'off', oninput: () => {
+    isEdited = true;
     clearTimeout(timer);
     timer = setTimeout(check, 250);
   } });
@@ -40,6 +42,7 @@ function load({ files, main: document }) {
   byId('tabs').replaceChildren();
   byId('texts').replaceChildren();
   main = document;
+  isEdited = false;
   for (const path of [main, ...Object.keys(files).filter((path) => path !== main)]) add(path, files[path]);
   choose(main);
   byId('shared').hidden = true;
@@ -105,7 +108,7 @@ async function share() {
   hush('playground');
   try {
     const packed = await pack(texts());
-    if (packed.length > longest) throw new Error(`it is ${bytes(packed.length)} and links hold ${bytes(longest)}. Send the files themselves`);
+    if (packed.length > longest) throw new Error(`the method has ${bytes(packed.length)}, and a link holds ${bytes(longest)}. Send the files themselves`);
     const link = linkOf({ g: packed });
     byId('link').value = link;
     byId('shared').hidden = false;
@@ -113,13 +116,14 @@ async function share() {
     const isCopied = await navigator.clipboard?.writeText(link).then(() => true, () => false);
     byId('shared-note').textContent = `${isCopied ? 'Copied. ' : ''}The texts are in the link itself; nothing was sent.`;
   } catch (error) {
-    tell('playground', `There is no link of this method: ${error.message}.`);
+    tell('playground', `No link was made: ${error.message}.`);
   }
 }
 
 /** Opens a preset's document. */
 export async function begin(preset) {
   try {
+    if (isEdited && !confirm('Replace the texts that you have written?')) return;
     await load(JSON.parse(await reader().call('document', preset)));
   } catch (error) {
     tell('playground', `${preset} could not be opened: ${error.message}`);

@@ -30,9 +30,8 @@ export function sayTimes({ ms_gpu: gpu, ms_wall: wall, memory_bytes: memory, pas
   const isTrusted = timestamps === '' && typeof gpu === 'number';
   byId('frame-time').textContent = `${isTrusted ? `${ms(gpu)} ms on the GPU, ` : ''}${ms(wall)} ms by the clock${
     memory > 0 ? `; ${(memory / 1e6).toFixed(1)} MB of GPU memory` : ''}`;
-  const isEncoded = passes.some((pass) => typeof pass.cpu_ms === 'number');
-  const cell = (pass) => (pass.skipped ? 'skipped' : isTrusted ? ms(pass.gpu_ms) : isEncoded ? ms(pass.cpu_ms) : 'run');
-  byId('passes').replaceChildren(table(['pass', isTrusted ? 'GPU ms' : isEncoded ? 'CPU ms to encode' : 'state'],
+  const cell = (pass) => (pass.skipped ? 'skipped' : isTrusted ? ms(pass.gpu_ms) : 'run');
+  byId('passes').replaceChildren(table(['pass', isTrusted ? 'GPU ms' : 'state'],
     passes.map((pass) => [pass.name, cell(pass)])));
   const reason = (timestamps || 'the GPU gave no time of this frame').replace(/\.$/, '');
   byId('clock').textContent = isTrusted ? '' : `Times are those of the CPU’s clock: ${reason}.`;

@@ -100,6 +100,8 @@ export function navigate({ orbit, dolly, read }) {
     return b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
   };
   canvas.addEventListener('wheel', (event) => {
+    // Elsewhere the page scrolls.
+    if (document.activeElement !== canvas) return;
     event.preventDefault();
     const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 30 : 1;
     dolly(1 - Math.exp(Math.max(-300, Math.min(300, event.deltaY * lines)) / 600));

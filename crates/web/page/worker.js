@@ -19,13 +19,17 @@ console.error = (...words) => {
   log(...words);
 };
 const textOf = (error) => (error instanceof Error ? error.message : String(error));
-const lose = (error) => postMessage({ lost: `The program stopped at a fault of its own: ${panic || textOf(error)}` });
+const lose = (error) => postMessage({ lost: `The program crashed: ${panic || textOf(error)}` });
 addEventListener('error', (event) => lose(event.error ?? event.message));
 addEventListener('unhandledrejection', (event) => lose(event.reason));
 
 async function start(module, adapterJson) {
   await init({ module_or_path: module });
-  const lost = (reason) => postMessage({ lost: `The GPU was lost: ${reason}` });
+  // A run that is under way hands over what it has before the page ends this worker.
+  const lost = async (reason) => {
+    await Promise.race([turn, new Promise((resolve) => setTimeout(resolve, 3000))]);
+    postMessage({ lost: `The GPU was lost: ${reason}` });
+  };
   owner = adapterJson === null ? new program.Judge() : await program.Page.open(adapterJson, lost);
 }
 

@@ -14,6 +14,8 @@ class Client {
   /** The error of its calls once it has ended. */
   ended = null;
   #scene = null;
+  /** The loads of scenes, one after another: each is several calls. */
+  #loads = Promise.resolve();
 
   constructor(module, adapterJson, lost) {
     const fail = (reason) => {
@@ -68,7 +70,8 @@ class Client {
         for (const [path, file] of scene.files) await this.call('put_file', path, file);
         return this.call('scene', scene.argument);
       };
-      const loading = load();
+      const loading = this.#loads.then(load);
+      this.#loads = loading.catch(() => {});
       this.#scene = { scene, loading };
       loading.catch(() => { if (this.#scene?.loading === loading) this.#scene = null; });
     }
@@ -117,4 +120,4 @@ export function startOracle(lost) {
 }
 
 /** The worker that answers questions of text: the catalogue, documents, checks. */
-export const reader = () => workers.gpu ?? workers.oracle;
+export const reader = () => (workers.gpu && !workers.gpu.ended ? workers.gpu : workers.oracle);

@@ -16,7 +16,8 @@ pub fn fault(error: impl Into<Box<dyn Error>>) -> JsValue {
 
 /// Reads the JSON of a request.
 pub fn parsed<T: DeserializeOwned>(json: &str) -> Answer<T> {
-    serde_json::from_str(json).map_err(|error| fault(format!("the page asks wrongly: {error}")))
+    serde_json::from_str(json)
+        .map_err(|error| fault(format!("invalid request from the page: {error}")))
 }
 
 /// Writes a value as JSON.

@@ -65,7 +65,7 @@ fn described(diagnostic: &Diagnostic) -> Value {
 }
 
 /// Returns JSON with the `files` to begin a document with: a preset's, under the name `main`, and
-/// the shaders that are not shared with other presets.
+/// the shaders that it reads, without the modules that they import.
 ///
 /// # Errors
 /// A name without a preset.

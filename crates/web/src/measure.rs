@@ -6,18 +6,21 @@ use crate::stage::loaded;
 use serde::Deserialize;
 use serde_json::json;
 use skiagraph_compare::comparison::Comparison;
-use skiagraph_compare::error::CompareError;
+use skiagraph_compare::error::{CompareError, with_causes};
 use skiagraph_compare::files::json::to_text;
+use skiagraph_compare::graphs::argument::MethodArgument;
+use skiagraph_compare::graphs::method::Method;
 use skiagraph_compare::graphs::shadow_method::load_methods;
 use skiagraph_compare::measuring::ground_truth::PrimaryVisibility;
 use skiagraph_compare::measuring::hard_case::{HardCaseContext, MethodRun};
-use skiagraph_compare::measuring::hard_cases::cases;
+use skiagraph_compare::measuring::hard_cases::{cases, plan};
 use skiagraph_compare::measuring::series::Series;
 use skiagraph_compare::measuring::view_or_path::ViewOrPath;
 use skiagraph_compare::records::results::{Adapter, Measured, PROGRAM, Results};
 use skiagraph_compare::records::stress::{Report, Verdict};
 use skiagraph_compare::sink::{Session, Sink};
 use skiagraph_gpu::device::Gpu;
+use skiagraph_graph::Sources;
 use skiagraph_passes::EmbeddedSources;
 use skiagraph_report::summary_table::summaries;
 use std::{
@@ -36,7 +39,7 @@ thread_local! {
         const { RefCell::new((String::new(), 0, "")) };
 }
 
-/// Tells the page's function the progress.
+/// Reports progress to the page.
 struct Told;
 
 impl Told {
@@ -123,11 +126,15 @@ pub async fn conformance(
     let methods = methods
         .into_iter()
         .map(|method| MethodRun::new(method.at(viewport).settled(features), &[]));
-    let methods: Vec<MethodRun> = methods.collect();
+    let mut methods: Vec<MethodRun> = methods.collect();
     let primary = PrimaryVisibility::load(&EmbeddedSources).map_err(fault)?;
-    let cases = cases(&request.cases).map_err(fault)?;
+    let (cases, session) = (
+        cases(&request.cases).map_err(fault)?,
+        Session::new(gpu, &Told),
+    );
+    plan(session, &primary, &mut methods, &cases, viewport).map_err(fault)?;
     let context = HardCaseContext {
-        session: Session::new(gpu, &Told),
+        session,
         primary: &primary,
         methods: &methods,
         viewport,
@@ -141,19 +148,21 @@ pub async fn conformance(
         methods: methods.iter().map(|run| run.column.clone()).collect(),
         cases: Vec::new(),
     };
-    let cells = cases.len() * methods.len();
     for case in &cases {
         match context.run(case).await {
             Ok(judged) => {
                 report.cases.push(judged);
-                tell_cells(&report, cells);
+                tell_case(&report, cases.len());
             }
             Err(CompareError::Interrupted { .. }) => break,
-            Err(error) => return Err(fault(error)),
+            Err(error) if report.cases.is_empty() => return end(Err(fault(error))),
+            Err(error) => {
+                Told.note(&with_causes(&error));
+                break;
+            }
         }
     }
-    PROGRESS.take();
-    Ok(to_text(&report))
+    end(Ok(to_text(&report)))
 }
 
 /// [`Page::measure`](crate::page::Page::measure).
@@ -165,7 +174,17 @@ pub async fn measure(
     let request: Measure = parsed(request)?;
     begin(progress);
     let (scene, sources) = (loaded()?, sources(&request.files));
-    let methods = load_methods(&request.methods, &[], &[], &sources).map_err(fault)?;
+    // A built-in method keeps its shaders, whatever the user's own are called.
+    let load = |word: &String| {
+        let is_own = request
+            .files
+            .contains_key(&MethodArgument::new(word).preset);
+        let sources: &dyn Sources = if is_own { &sources } else { &EmbeddedSources };
+        load_methods(&[word], &[], &[], sources).map_err(fault)
+    };
+    let methods = request.methods.iter().map(load);
+    let methods: Vec<Vec<Method>> = methods.collect::<Answer<_>>()?;
+    let methods = methods.concat();
     let mut comparison = Comparison::new(scene, methods).map_err(fault)?;
     let is_asked = |view: &ViewOrPath| request.views.iter().any(|it| it == view.name());
     comparison.views.retain(is_asked);
@@ -178,50 +197,66 @@ pub async fn measure(
     let mut series = series.map_err(fault)?;
     series.results.adapter = adapter;
     let measured = series.measure_all().await;
-    PROGRESS.take();
+    let mut results = series.results;
     match measured {
         Ok(()) | Err(CompareError::Interrupted { .. }) => (),
-        Err(error) => return Err(fault(error)),
+        Err(error) if results.runs.is_empty() => return end(Err(fault(error))),
+        Err(error) => {
+            let note = with_causes(&error);
+            Told.note(&note);
+            results.notes.push(note);
+        }
     }
-    let mut results = series.results;
     results.notes.extend(step(&results));
-    Ok(to_text(&results))
+    end(Ok(to_text(&results)))
 }
 
 fn begin(progress: js_sys::Function) {
-    STOP.store(false, Ordering::Relaxed);
     PROGRESS.set(Some(progress));
 }
 
-/// Tells the cells of the last case.
-fn tell_cells(report: &Report, total: usize) {
-    let before: usize = report.cases.iter().map(|case| case.cells.len()).sum();
+/// Forgets the page's function and its wish to stop, which is about the run that ends.
+fn end<T>(outcome: T) -> T {
+    PROGRESS.take();
+    STOP.store(false, Ordering::Relaxed);
+    outcome
+}
+
+/// Tells the outcome of the last case: of each cell, or of the case if it has none.
+fn tell_case(report: &Report, total: usize) {
     let Some(case) = report.cases.last() else {
         return;
     };
-    for (cell, done) in case.cells.iter().zip(before + 1 - case.cells.len()..) {
-        let outside = cell.counts.as_ref().map(|counts| &counts.outside_band);
-        let wrong = outside.map_or(1, |outside| outside.lit + outside.shadow);
-        let is_wrong = cell.verdict == Verdict::Fail;
+    let tell = |method: &str, verdict: Verdict, wrong: u64, failed: &Option<String>| {
         Told::tell(&json!({
-            "done": done, "of": total.max(done), "case": case.name, "method": cell.preset,
-            "wrong": if is_wrong { wrong.max(1) } else { 0 },
+            "done": report.cases.len(), "of": total, "case": case.name, "method": method,
+            "verdict": verdict, "wrong": wrong, "failed": failed,
         }));
+    };
+    if case.verdict == Verdict::Fail || case.cells.is_empty() {
+        tell("", case.verdict, 0, &case.failed);
+    }
+    for cell in &case.cells {
+        let outside = cell.counts.as_ref().map(|counts| &counts.outside_band);
+        let wrong = outside.map_or(0, |outside| outside.lit + outside.shadow);
+        tell(&cell.preset, cell.verdict, wrong, &cell.failed);
     }
 }
 
-/// A note on the step of the timestamps, which browsers make coarse.
+/// Least step of a clock that is worth a note, in milliseconds.
+const COARSE: f64 = 0.005;
+
+/// A note on the step of the timestamps, if the times are multiples of one, as browsers make them.
 fn step(results: &Results) -> Option<String> {
     let measured = results.runs.iter().filter_map(|run| run.measured.as_ref());
     let times = measured.flat_map(|Measured { passes, .. }| passes);
-    let times = times.filter_map(|pass| pass.gpu_ms);
-    let mut times: Vec<f64> = times.flat_map(|gpu| [gpu.min, gpu.median]).collect();
-    times.sort_by(f64::total_cmp);
-    let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
-    let step = steps.filter(|step| *step > 1e-6).min_by(f64::total_cmp)?;
-    Some(format!(
-        "GPU times differ by {step:.4} ms or more: the browser's clock has steps"
-    ))
+    let times = times.filter_map(|pass| pass.gpu_ms.map(|gpu| gpu.min));
+    let times: Vec<f64> = times.filter(|ms| *ms > 0.0).collect();
+    let step = times.iter().copied().min_by(f64::total_cmp)?;
+    let is_multiple = |ms: &f64| (ms / step - (ms / step).round()).abs() < 0.02;
+    (step >= COARSE && times.len() > 3 && times.iter().all(is_multiple)).then(|| {
+        format!("GPU times are multiples of {step:.4} ms, the step of the browser's clock")
+    })
 }
 
 /// Returns the text of a results.json as JSON: its `verdict`, and the table (`header`, `rows`) of

@@ -12,7 +12,8 @@ use skiagraph_compare::measuring::device;
 use skiagraph_compare::records::results::Adapter;
 use skiagraph_compare::sink::{Session, Silent};
 use skiagraph_gpu::device::{Gpu, Wanted};
-use skiagraph_graph::Capture;
+use skiagraph_graph::{Capture, Sources};
+use skiagraph_passes::EmbeddedSources;
 use skiagraph_reference::Image;
 use skiagraph_scene::View;
 use skiagraph_viewer::live::{
@@ -30,7 +31,7 @@ use wasm_bindgen::prelude::*;
 /// Longest time that a frame may take; the browser itself ends most devices before.
 const TIMEOUT: Duration = Duration::from_secs(60);
 
-/// The browser's words on its adapter.
+/// Adapter as the browser describes it.
 #[derive(Deserialize)]
 struct Told {
     #[serde(default)]
@@ -66,7 +67,8 @@ struct Document {
 /// A scene on the device and a method on it.
 struct Shows {
     stage: Stage,
-    slots: [Slot; 1],
+    /// The two methods that were shown last, so that two beside each other stay prepared.
+    slots: Vec<Slot>,
     files: Files,
 }
 
@@ -179,7 +181,8 @@ impl Page {
     /// `size`; with `timed`, every pass runs.
     ///
     /// # Errors
-    /// A document with faults; a method that cannot run here; a call before the last one is done.
+    /// A document with faults; a method that cannot run here. The page asks for one frame after
+    /// another.
     pub async fn show(&self, request: &str) -> Answer<Shown> {
         let request: Request = parsed(request)?;
         let Request {
@@ -302,20 +305,42 @@ impl Page {
                         scene,
                     },
                 ),
-                slots: [Slot::default()],
+                slots: Vec::new(),
                 files: Files::new(),
             },
         };
-        let name = desired.methods[0].name.clone();
-        if shows.slots[0].name != name {
-            shows.slots = [Slot::new(&name)];
+        let snapshot = self
+            .run(&mut shows, &mut desired, (files, &sources), argument)
+            .await;
+        self.shows.replace(Some(shows));
+        snapshot
+    }
+
+    async fn run(
+        &self,
+        shows: &mut Shows,
+        desired: &mut DesiredState,
+        (files, sources): (&Files, &dyn Sources),
+        argument: Option<&MethodArgument>,
+    ) -> Answer<FrameSnapshot> {
+        let name = &desired.methods[0].name;
+        match shows.slots.iter().position(|slot| slot.name == *name) {
+            Some(index) => shows.slots.swap(0, index),
+            None => shows.slots.insert(0, Slot::new(name)),
         }
-        if shows.slots[0].graph().is_none() || shows.files != *files {
-            shows.slots[0].read(&sources);
+        shows.slots.truncate(2);
+        let slot = &mut shows.slots[0];
+        // Built-in methods have shaders of the same names as the user's.
+        if !files.contains_key(name) {
+            if slot.graph().is_none() {
+                slot.read(&EmbeddedSources);
+            }
+        } else if slot.graph().is_none() || shows.files != *files {
+            slot.read(sources);
             shows.files.clone_from(files);
         }
         let own = argument.map_or(&[][..], |argument| &argument.own);
-        if let Some(graph) = shows.slots[0].graph() {
+        if let Some(graph) = slot.graph() {
             for set in own {
                 let value = graph.parse_param(&set.name, &set.value).map_err(fault);
                 desired.methods[0].params.insert(set.name.clone(), value?);
@@ -327,15 +352,14 @@ impl Page {
             seconds: 0.0,
         };
         let session = Session::new(&self.gpu, &Silent);
-        let methods = (&mut shows.slots[..], &sources as _);
+        let methods = (&mut shows.slots[..1], &EmbeddedSources as _);
         let taken = shows
             .stage
-            .take_snapshot(session, methods, &desired, clock)
+            .take_snapshot(session, methods, desired, clock)
             .await;
         let Ok(snapshot) = taken.map_err(fault)? else {
             return Err(fault("the device is lost"));
         };
-        self.shows.replace(Some(shows));
         match snapshot
             .methods
             .first()

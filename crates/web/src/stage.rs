@@ -102,6 +102,8 @@ pub fn scene(argument: &str) -> Answer<String> {
     if own.report.has_warnings() {
         notes.extend(own.report.to_string().lines().map(str::to_owned));
     }
+    // Others name options that a page has not.
+    notes.retain(|note| !note.contains("--"));
     let scene = own.scene;
     let views: Vec<Camera> = scene.views.iter().map(Camera::from).collect();
     let (least, greatest) = scene.mesh.bounds().unwrap_or_default();

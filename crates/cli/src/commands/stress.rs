@@ -9,24 +9,19 @@ use itertools::Itertools;
 use skiagraph_cases::HardCase;
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::files::write::write_whole;
-use skiagraph_compare::graphs::planning::Capabilities;
-use skiagraph_compare::graphs::shadow_method::{self, PlanCheck};
+use skiagraph_compare::graphs::shadow_method;
 use skiagraph_compare::graphs::{method, preset};
 use skiagraph_compare::measuring::device;
 use skiagraph_compare::measuring::ground_truth::PrimaryVisibility;
 use skiagraph_compare::measuring::hard_case::{HardCaseContext, MethodRun};
-use skiagraph_compare::measuring::hard_cases::{
-    cases, check_exact, check_pictures, claim, one_of_each_light,
-};
+use skiagraph_compare::measuring::hard_cases::{cases, check_exact, check_pictures, claim, plan};
 use skiagraph_compare::records::results::PROGRAM;
 use skiagraph_compare::records::stress::{Column, Report, Verdict};
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::sink::Sink;
 use skiagraph_compare::wording::{command_line, plural};
 use skiagraph_gpu::timing::Trust;
-use skiagraph_passes::SceneProvider;
 use skiagraph_report::stress_matrix;
-use std::sync::Arc;
 
 /// Checks all arguments, then runs the methods on the cases and prints and saves the results.
 ///
@@ -48,33 +43,13 @@ pub async fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let viewport = args.size.0;
     let graphs = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), graphs)?;
-    let (session, device) = (Session::new(&gpu, &Terminal), Capabilities::new(&gpu));
+    let session = Session::new(&gpu, &Terminal);
     let methods = methods.into_iter().map(|method| {
         let method = method.at(viewport).settled(gpu.device.features());
         MethodRun::new(method, &args.exact)
     });
     let mut methods: Vec<MethodRun> = methods.collect();
-    let mut plans = PlanCheck::default();
-    for scene in one_of_each_light(&cases) {
-        let provider = SceneProvider::new(Arc::new(scene));
-        primary.plan(session, viewport, &provider)?;
-        let methods = methods.iter().map(|run| &run.method);
-        plans.add(methods, &[viewport], &provider, &device);
-    }
-    plans.end(&Terminal).none_or_error()?;
-    let mut mistakes = Vec::new();
-    for run in &mut methods {
-        let unclear = run.column.unavailable.take().map(|reason| (reason, true));
-        let refusal = unclear.or_else(|| plans.refusal(&run.method));
-        if let Some((reason, is_mistake)) = refusal {
-            let text = format!("`{}` cannot run: {reason}", run.method.name);
-            mistakes.extend(is_mistake.then_some(text));
-            run.column.unavailable = Some(reason);
-        }
-    }
-    if mistakes.is_empty() && plans.has_mistakes() {
-        mistakes.push("a document has mistakes; they stand above".into());
-    }
+    let mistakes = plan(session, &primary, &mut methods, &cases, viewport)?;
     if let Some(folder) = &args.save {
         check_pictures(&methods, &cases, viewport, folder)?;
     }

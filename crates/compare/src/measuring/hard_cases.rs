@@ -15,15 +15,19 @@
 use crate::error::CompareError;
 use crate::files::lock::{self, Locked};
 use crate::files::write::check_folder;
+use crate::graphs::planning::Capabilities;
+use crate::graphs::shadow_method::PlanCheck;
 use crate::lists::unique;
+use crate::measuring::ground_truth::PrimaryVisibility;
 use crate::measuring::hard_case::MethodRun;
 use crate::pictures::run_pictures::{check_stems, reference_stem};
-use crate::sink::Sink;
+use crate::sink::{Session, Sink};
 use crate::wording::{did_you_mean, unknown};
 use itertools::Itertools;
 use skiagraph_cases::HardCase;
+use skiagraph_passes::SceneProvider;
 use skiagraph_scene::Scene;
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 /// Returns the cases of these names, each once, in the order of the names; all cases if `names` is
 /// empty.
@@ -53,6 +57,44 @@ pub fn one_of_each_light(cases: &[HardCase]) -> Vec<Scene> {
     let scenes = cases.iter().map(HardCase::scene);
     let scenes = scenes.sorted_by_key(|scene| scene.mesh.triangles.is_empty());
     scenes.unique_by(|scene| scene.light().word()).collect()
+}
+
+/// Plans methods on a scene under each kind of light before the cases run, and says of those that
+/// cannot run here why ([`Column::unavailable`](crate::records::stress::Column::unavailable)).
+/// Returns the mistakes of documents, one line each.
+///
+/// # Errors
+/// A GPU that cannot run the graph of the visible triangles; no method that can be planned, with
+/// the reasons of all.
+pub fn plan(
+    session: Session,
+    primary: &PrimaryVisibility,
+    methods: &mut [MethodRun],
+    cases: &[HardCase],
+    viewport: [u32; 2],
+) -> Result<Vec<String>, CompareError> {
+    let (mut plans, device) = (PlanCheck::default(), Capabilities::new(session.gpu));
+    for scene in one_of_each_light(cases) {
+        let provider = SceneProvider::new(Arc::new(scene));
+        primary.plan(session, viewport, &provider)?;
+        let methods = methods.iter().map(|run| &run.method);
+        plans.add(methods, &[viewport], &provider, &device);
+    }
+    plans.end(session.sink).none_or_error()?;
+    let mut mistakes = Vec::new();
+    for run in methods {
+        let unclear = run.column.unavailable.take().map(|reason| (reason, true));
+        let refusal = unclear.or_else(|| plans.refusal(&run.method));
+        if let Some((reason, is_mistake)) = refusal {
+            let text = format!("`{}` cannot run: {reason}", run.method.name);
+            mistakes.extend(is_mistake.then_some(text));
+            run.column.unavailable = Some(reason);
+        }
+    }
+    if mistakes.is_empty() && plans.has_mistakes() {
+        mistakes.push("a document has mistakes; they stand above".into());
+    }
+    Ok(mistakes)
 }
 
 /// Checks that each name of `exact`, the methods to be judged as guaranteed to be exact

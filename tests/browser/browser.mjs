@@ -234,6 +234,16 @@ await check('measured with two methods: counts of the program, which reads them 
     return `${chosen.join(', ')}; ${names.join(' beside ')}`;
 });
 
+await check('a built-in method keeps its shaders beside those of the playground', async () => {
+    const view = JSON.parse(await call('gpu', 'scene', 'park')).views[0].name;
+    const measured = async (files) => {
+        const request = { views: [view], methods: ['nsm'], size: [64, 64], frames: 1, files };
+        const [{ fingerprint, wrong }] = JSON.parse(await call('gpu', 'measure', JSON.stringify(request))).runs;
+        return { fingerprint, wrong };
+    };
+    assert.deepEqual(await measured({ 'mine.ron': '', 'shaders/shadow_lookup.wgsl': 'no WGSL' }), await measured({}));
+});
+
 await check('mistakes in a document and a shader with file, line and column', async () => {
     const said = [];
     await picture();
@@ -301,4 +311,20 @@ await check('axe-core finds nothing, wide and narrow, light and dark', async () 
     }
     return `${passed} rules passed; pictures in ${within('screenshots')}`;
 });
+if (isAll) {
+    // Behind all others: a driver on the CPU goes on with it.
+    await check('a frame that does not end is given up', async () => {
+        const { files, main } = JSON.parse(await call('gpu', 'document', 'nsm'));
+        const name = 'shaders/surface.wgsl';
+        const body = files[name].indexOf('{', files[name].indexOf('@compute')) + 1;
+        const long = 'var spin = 1u; for (var i = 0u; i < 4000000000u; i++) { for (var j = 0u; j < 4000000000u; j++) { spin = (spin ^ (i + j)) * 3u; } } if spin == 12345u { return; }';
+        files[name] = `${files[name].slice(0, body)}${long}${files[name].slice(body)}`;
+        const scene = JSON.parse(await call('gpu', 'scene', 'park'));
+        await assert.rejects(show({ method: main, document: { files, main }, view: scene.views[0] }));
+        await until(() => [...document.querySelectorAll('.alert:not([hidden]) button')].some((button) => button.textContent === 'Start again'), { what: 'a button Start again' });
+        faults.length = 0;
+        return alerts();
+    });
+}
+
 await ended(0);

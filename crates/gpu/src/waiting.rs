@@ -2,9 +2,10 @@
 //! as well.
 
 use crate::error::poll;
+#[cfg(not(target_arch = "wasm32"))]
+use std::future::poll_fn;
 use std::{
     cell::RefCell,
-    future::poll_fn,
     pin::pin,
     sync::Arc,
     task::{Context, Poll, Wake, Waker},
@@ -13,6 +14,8 @@ use std::{
 };
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::*;
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_futures::JsFuture;
 
 /// How often a future that waits for a GPU is asked whether it gives up.
 const INTERVAL: Duration = Duration::from_millis(100);
@@ -25,6 +28,7 @@ thread_local! {
 
 /// Lets the caller go on when all work submitted to `queue` is done, and whenever its future is
 /// polled before. [`block_on`] does so every tenth of a second, and so does a browser's timer.
+#[cfg(not(target_arch = "wasm32"))]
 pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
     let mut is_told = false;
     poll_fn(|context| {
@@ -32,12 +36,6 @@ pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
             return Poll::Ready(());
         }
         is_told = true;
-        #[cfg(target_arch = "wasm32")]
-        {
-            let waker = context.waker().clone();
-            let closure = Closure::once_into_js(move || waker.wake());
-            set_timeout(closure, INTERVAL.as_millis() as i32);
-        }
         let waker = context.waker().clone();
         queue.on_submitted_work_done(move || waker.wake());
         WAITED_FOR.with_borrow_mut(|waited_for| {
@@ -50,12 +48,24 @@ pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
     .await;
 }
 
+/// As outside of a browser. A promise is kept once, so that no timer that comes late wakes a later
+/// wait.
+#[cfg(target_arch = "wasm32")]
+pub async fn submitted_work(_: &wgpu::Device, queue: &wgpu::Queue) {
+    let either = js_sys::Promise::new(&mut |resolve, _| {
+        set_timeout(&resolve, INTERVAL.as_millis() as i32);
+        queue.on_submitted_work_done(move || drop(resolve.call0(&JsValue::NULL)));
+    });
+    // It is never broken.
+    let _ = JsFuture::from(either).await;
+}
+
 #[cfg(target_arch = "wasm32")]
 #[wasm_bindgen]
 extern "C" {
     /// A browser's timer, in its pages and its workers.
     #[wasm_bindgen(js_name = setTimeout)]
-    fn set_timeout(closure: JsValue, milliseconds: i32);
+    fn set_timeout(then: &js_sys::Function, milliseconds: i32);
 }
 
 struct Unpark(Thread);

@@ -29,7 +29,7 @@ use std::{
 use wasm_bindgen::prelude::*;
 
 /// Longest time that a frame may take; the browser itself ends most devices before.
-const TIMEOUT: Duration = Duration::from_secs(60);
+const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Adapter as the browser describes it.
 #[derive(Deserialize)]
@@ -82,6 +82,7 @@ struct Last {
 #[wasm_bindgen]
 pub struct Page {
     gpu: Gpu,
+    lost: js_sys::Function,
     adapter: RefCell<Adapter>,
     /// True if the timestamps were checked.
     is_checked: Cell<bool>,
@@ -131,10 +132,9 @@ impl Page {
         let opened = skiagraph_gpu::device::request(&wanted).await;
         let mut gpu = opened.map_err(fault)?;
         gpu.timeout = Some(TIMEOUT);
-        gpu.device.set_device_lost_callback(move |_, reason| {
-            // The page is told; what its function returns is of no interest.
-            let _ = lost.call1(&JsValue::NULL, &JsValue::from_str(&reason));
-        });
+        let of_callback = lost.clone();
+        gpu.device
+            .set_device_lost_callback(move |_, reason| tell_lost(&of_callback, &reason));
         let mut adapter = device::adapter(gpu.adapter.get_info());
         let words = [&browser.vendor, &browser.architecture, &browser.description];
         let words = words.map(|word| word.trim()).into_iter();
@@ -148,6 +148,7 @@ impl Page {
         let (is_checked, shows, last) = Default::default();
         Ok(Self {
             gpu,
+            lost,
             adapter: RefCell::new(adapter),
             is_checked,
             shows,
@@ -358,7 +359,9 @@ impl Page {
             .take_snapshot(session, methods, desired, clock)
             .await;
         let Ok(snapshot) = taken.map_err(fault)? else {
-            return Err(fault("the device is lost"));
+            let reason = "a frame took too long, or the driver gave up";
+            tell_lost(&self.lost, reason);
+            return Err(fault(format!("the device is lost: {reason}")));
         };
         match snapshot
             .methods
@@ -369,6 +372,11 @@ impl Page {
             None => Ok(snapshot),
         }
     }
+}
+
+/// Calls the page's function on a lost device; its result is of no interest.
+fn tell_lost(lost: &js_sys::Function, reason: &str) {
+    let _ = lost.call1(&JsValue::NULL, &JsValue::from_str(reason));
 }
 
 /// The parts of a frame that the page gets.

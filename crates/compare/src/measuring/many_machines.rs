@@ -11,7 +11,7 @@
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
 //! # async fn third_of_ten(comparison: &Comparison, session: Session<'_>) -> Done {
 //! let scenes = [SceneCells { comparison, folder: None }];
-//! let plan = plan(&scenes, session, vec!["compare".into()])?;
+//! let plan = plan(&scenes, session, vec!["compare".into()]).await?;
 //! let share = Share { plan: &plan, shard: "3/10".parse()?, out: Path::new("out") };
 //! let shard = measure(&share, &scenes, session).await?;
 //! println!("{} of {} cells were there", shard.kept, shard.cells);

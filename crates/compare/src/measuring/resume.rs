@@ -10,7 +10,7 @@
 //! use std::path::Path;
 //!
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
-//! # fn go_on(comparison: &Comparison, session: Session) -> Done {
+//! # async fn go_on(comparison: &Comparison, session: Session<'_>) -> Done {
 //! // Runs in `out` of which nothing has changed are not measured again.
 //! let series = Series::new(comparison, session, Some((Path::new("out"), Kept::All))).await?;
 //! println!("{} of {} are there", series.results.runs.len(), series.planned());

@@ -1,7 +1,7 @@
 //! The page of Skiagraph in a browser: what its workers call. `page/` holds the page itself.
 //!
 //! Structured data goes both ways as JSON, pixels as typed arrays. There are two workers: one owns
-//! the device ([`page::Page`]), the other computes the exact reference ([`judge::Judge`]).
+//! the device (`page::Page`), the other computes the exact reference (`judge::Judge`).
 
 #![cfg(target_arch = "wasm32")]
 

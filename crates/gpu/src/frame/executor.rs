@@ -317,14 +317,16 @@ impl Executor {
         }
     }
 
-    /// True if it is known of all frames whether they ran, and of what was made whether the device
-    /// took it. Outside of a browser a wait is enough.
+    /// True if it is known of all frames whether they ran, of growing buffers how much they need,
+    /// and of what was made whether the device took it. Outside of a browser a wait is enough.
     #[cfg(target_arch = "wasm32")]
     fn is_told(&mut self) -> Result<bool, ExecuteError> {
         self.runner.settle()?;
         let refused = |(name, error): crate::late::Late| crate::error::refusal(&name, &error);
         let is_told = crate::late::check().map_err(refused)?;
-        Ok(is_told && !self.runner.frames_in_flight.is_pending())
+        let mut counters = self.runner.state.growth_readbacks.iter();
+        let is_counted = !counters.any(GrowthReadback::is_under_way);
+        Ok(is_told && is_counted && !self.runner.frames_in_flight.is_pending())
     }
 
     #[cfg(not(target_arch = "wasm32"))]

@@ -100,6 +100,12 @@ impl GrowthReadback {
         self.is_asked
     }
 
+    /// True while a counter has not arrived, which in a browser may come after its frame's end.
+    #[cfg(target_arch = "wasm32")]
+    pub fn is_under_way(&self) -> bool {
+        self.is_asked && self.staging.is_being_mapped()
+    }
+
     /// Returns the number of items or layers to grow to; `None` if the counter has not arrived or
     /// everything fits.
     pub fn wanted(&mut self) -> Option<u64> {

@@ -28,8 +28,12 @@ thread_local! {
 
 /// Lets the caller go on when all work submitted to `queue` is done, and whenever its future is
 /// polled before. [`block_on`] does so every tenth of a second, and so does a browser's timer.
-#[cfg(not(target_arch = "wasm32"))]
 pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
+    wait_for(device, queue).await;
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+async fn wait_for(device: &wgpu::Device, queue: &wgpu::Queue) {
     let mut is_told = false;
     poll_fn(|context| {
         if is_told {
@@ -48,10 +52,9 @@ pub async fn submitted_work(device: &wgpu::Device, queue: &wgpu::Queue) {
     .await;
 }
 
-/// As outside of a browser. A promise is kept once, so that no timer that comes late wakes a later
-/// wait.
+/// A promise is kept once, so that no timer that comes late wakes a later wait.
 #[cfg(target_arch = "wasm32")]
-pub async fn submitted_work(_: &wgpu::Device, queue: &wgpu::Queue) {
+async fn wait_for(_: &wgpu::Device, queue: &wgpu::Queue) {
     let either = js_sys::Promise::new(&mut |resolve, _| {
         set_timeout(&resolve, INTERVAL.as_millis() as i32);
         queue.on_submitted_work_done(move || drop(resolve.call0(&JsValue::NULL)));

@@ -10,7 +10,7 @@ thread_local! {
     static ERRORS: RefCell<Vec<Late>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Ends the scope of what has this name. Its error, if there is one, is found by [`check`].
+/// Ends the scope of what has this name. Its error, if there is one, is found by [`take`].
 pub(crate) fn note(name: &str, scope: wgpu::ErrorScopeGuard) -> Option<wgpu::Error> {
     let (name, popped) = (name.to_owned(), scope.pop());
     SCOPES.set(SCOPES.get() + 1);
@@ -24,13 +24,12 @@ pub(crate) fn note(name: &str, scope: wgpu::ErrorScopeGuard) -> Option<wgpu::Err
     None
 }
 
-/// Returns true if all ended scopes have told whether they hold an error.
-///
-/// # Errors
-/// The first error of those that have; the others follow from it, and are forgotten.
-pub(crate) fn check() -> Result<bool, Late> {
-    match ERRORS.take().into_iter().next() {
-        Some(error) => Err(error),
-        None => Ok(SCOPES.get() == 0),
-    }
+/// Returns the first error that was told; the others follow from it, and are forgotten.
+pub(crate) fn take() -> Option<Late> {
+    ERRORS.take().into_iter().next()
+}
+
+/// True if all ended scopes have told whether they hold an error.
+pub(crate) fn is_told() -> bool {
+    SCOPES.get() == 0
 }

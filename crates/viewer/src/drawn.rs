@@ -163,11 +163,7 @@ fn difference(
     let wrong = |error: skiagraph_reference::Error| error.to_string();
     let judgement = Judgement::new(&outputs, ground_truth).map_err(wrong)?;
     let truth = &ground_truth.pixels;
-    let image = if judgement.is_hard {
-        Image::error(&outputs.visibility, &outputs.status, truth)
-    } else {
-        Image::difference(&outputs.shown(), &ground_truth.shares(), truth)
-    };
+    let image = judgement.errors(&outputs, ground_truth);
     Ok(Drawn {
         image: Some(image.map_err(wrong)?),
         legend: format!(

@@ -108,11 +108,7 @@ fn judged(truth: &GroundTruth, visibility: Vec<f32>, status: Vec<u32>) -> Answer
     outputs.status = status;
     let judgement = Judgement::new(&outputs, truth).map_err(fault)?;
     let pixels = &truth.pixels;
-    let errors = if judgement.is_hard {
-        Image::error(&outputs.visibility, &outputs.status, pixels)
-    } else {
-        Image::difference(&outputs.shown(), &truth.shares(), pixels)
-    };
+    let errors = judgement.errors(&outputs, truth);
     let reference = Image::shaded(&truth.shares(), pixels);
     let (counts, rmse) = (&judgement.counts, judgement.graded.rmse);
     let (facing, wrong) = (counts.pixels.facing_light, &counts.wrong);

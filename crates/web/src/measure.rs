@@ -40,9 +40,9 @@ thread_local! {
 }
 
 /// Reports progress to the page.
-struct Told;
+struct Reporter;
 
-impl Told {
+impl Reporter {
     fn tell(value: &serde_json::Value) {
         PROGRESS.with_borrow(|progress| {
             if let Some(progress) = progress {
@@ -53,7 +53,7 @@ impl Told {
     }
 }
 
-impl Sink for Told {
+impl Sink for Reporter {
     fn note(&self, text: &str) {
         Self::tell(&json!({"note": text}));
     }
@@ -112,14 +112,21 @@ pub fn stop() {
     STOP.store(true, Ordering::Relaxed);
 }
 
-/// [`Page::conformance`](crate::page::Page::conformance).
-pub async fn conformance(
-    (gpu, adapter): (&Gpu, Adapter),
-    request: &str,
+/// Runs a measurement that reports to the page's function. A wish to stop ends with it.
+pub async fn reported(
     progress: js_sys::Function,
+    measurement: impl Future<Output = Answer<String>>,
 ) -> Answer<String> {
+    PROGRESS.set(Some(progress));
+    let outcome = measurement.await;
+    PROGRESS.take();
+    STOP.store(false, Ordering::Relaxed);
+    outcome
+}
+
+/// [`Page::conformance`](crate::page::Page::conformance).
+pub async fn conformance((gpu, adapter): (&Gpu, Adapter), request: &str) -> Answer<String> {
     let request: Conformance = parsed(request)?;
-    begin(progress);
     let viewport = [request.size; 2];
     let methods = load_methods(&request.methods, &[], &[], &EmbeddedSources).map_err(fault)?;
     let features = gpu.device.features();
@@ -130,7 +137,7 @@ pub async fn conformance(
     let primary = PrimaryVisibility::load(&EmbeddedSources).map_err(fault)?;
     let (cases, session) = (
         cases(&request.cases).map_err(fault)?,
-        Session::new(gpu, &Told),
+        Session::new(gpu, &Reporter),
     );
     plan(session, &primary, &mut methods, &cases, viewport).map_err(fault)?;
     let context = HardCaseContext {
@@ -155,24 +162,19 @@ pub async fn conformance(
                 tell_case(&report, cases.len());
             }
             Err(CompareError::Interrupted { .. }) => break,
-            Err(error) if report.cases.is_empty() => return end(Err(fault(error))),
+            Err(error) if report.cases.is_empty() => return Err(fault(error)),
             Err(error) => {
-                Told.note(&with_causes(&error));
+                Reporter.note(&with_causes(&error));
                 break;
             }
         }
     }
-    end(Ok(to_text(&report)))
+    Ok(to_text(&report))
 }
 
 /// [`Page::measure`](crate::page::Page::measure).
-pub async fn measure(
-    (gpu, adapter): (&Gpu, Adapter),
-    request: &str,
-    progress: js_sys::Function,
-) -> Answer<String> {
+pub async fn measure((gpu, adapter): (&Gpu, Adapter), request: &str) -> Answer<String> {
     let request: Measure = parsed(request)?;
-    begin(progress);
     let (scene, sources) = (loaded()?, sources(&request.files));
     // A built-in method keeps its shaders, whatever the user's own are called.
     let load = |word: &String| {
@@ -191,7 +193,7 @@ pub async fn measure(
     comparison.viewports = vec![request.size];
     comparison.protocol.frames = request.frames.max(1);
     comparison.protocol.regime_frames = request.frames;
-    let session = Session::new(gpu, &Told);
+    let session = Session::new(gpu, &Reporter);
     comparison.check(session).map_err(fault)?;
     let series = Series::new(&comparison, session, None).await;
     let mut series = series.map_err(fault)?;
@@ -200,26 +202,15 @@ pub async fn measure(
     let mut results = series.results;
     match measured {
         Ok(()) | Err(CompareError::Interrupted { .. }) => (),
-        Err(error) if results.runs.is_empty() => return end(Err(fault(error))),
+        Err(error) if results.runs.is_empty() => return Err(fault(error)),
         Err(error) => {
             let note = with_causes(&error);
-            Told.note(&note);
+            Reporter.note(&note);
             results.notes.push(note);
         }
     }
     results.notes.extend(step(&results));
-    end(Ok(to_text(&results)))
-}
-
-fn begin(progress: js_sys::Function) {
-    PROGRESS.set(Some(progress));
-}
-
-/// Forgets the page's function and its wish to stop, which is about the run that ends.
-fn end<T>(outcome: T) -> T {
-    PROGRESS.take();
-    STOP.store(false, Ordering::Relaxed);
-    outcome
+    Ok(to_text(&results))
 }
 
 /// Tells the outcome of the last case: of each cell, or of the case if it has none.
@@ -228,7 +219,7 @@ fn tell_case(report: &Report, total: usize) {
         return;
     };
     let tell = |method: &str, verdict: Verdict, wrong: u64, failed: &Option<String>| {
-        Told::tell(&json!({
+        Reporter::tell(&json!({
             "done": report.cases.len(), "of": total, "case": case.name, "method": method,
             "verdict": verdict, "wrong": wrong, "failed": failed,
         }));

@@ -15,14 +15,13 @@ use skiagraph_gpu::device::{Gpu, Wanted};
 use skiagraph_graph::{Capture, Sources};
 use skiagraph_passes::EmbeddedSources;
 use skiagraph_reference::Image;
-use skiagraph_scene::View;
 use skiagraph_viewer::live::{
     Clock, DesiredMethod, DesiredState, FrameSnapshot, Loaded, MethodSnapshot, Reading, Show, Slot,
     Stage, draw,
 };
 use std::{
     cell::{Cell, RefCell},
-    collections::BTreeMap,
+    collections::BTreeSet,
     sync::Arc,
     time::Duration,
 };
@@ -33,7 +32,7 @@ const TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Adapter as the browser describes it.
 #[derive(Deserialize)]
-struct Told {
+struct Description {
     #[serde(default)]
     vendor: String,
     #[serde(default)]
@@ -45,11 +44,11 @@ struct Told {
 }
 
 /// Request for a frame of a method.
-#[derive(Clone, Deserialize)]
+#[derive(Deserialize)]
 struct Request {
     method: String,
     #[serde(default)]
-    document: Option<Document>,
+    document: Document,
     view: Camera,
     light: Option<usize>,
     size: [u32; 2],
@@ -58,10 +57,9 @@ struct Request {
 }
 
 /// A document of the user's own.
-#[derive(Clone, Deserialize, PartialEq)]
+#[derive(Default, Deserialize)]
 struct Document {
     files: Files,
-    main: String,
 }
 
 /// A scene on the device and a method on it.
@@ -127,7 +125,7 @@ impl Page {
     /// # Errors
     /// The browser has no WebGPU, or gives no device.
     pub async fn open(adapter: &str, lost: js_sys::Function) -> Answer<Page> {
-        let browser: Told = parsed(adapter)?;
+        let browser: Description = parsed(adapter)?;
         let wanted = Wanted::default().with_features(wgpu::Features::all());
         let opened = skiagraph_gpu::device::request(&wanted).await;
         let mut gpu = opened.map_err(fault)?;
@@ -186,10 +184,7 @@ impl Page {
     /// another.
     pub async fn show(&self, request: &str) -> Answer<Shown> {
         let request: Request = parsed(request)?;
-        let Request {
-            document, timed, ..
-        } = request.clone();
-        let files = document.map_or_else(Files::new, |document| document.files);
+        let files = request.document.files;
         let argument = MethodArgument::new(&request.method);
         let scene = loaded()?;
         let desired = DesiredState {
@@ -200,7 +195,7 @@ impl Page {
                 name: argument.preset.clone(),
                 ..DesiredMethod::default()
             }],
-            all_passes: timed,
+            all_passes: request.timed,
             frame: 0,
         };
         let snapshot = self.snapshot(desired, &files, Some(&argument)).await?;
@@ -215,8 +210,8 @@ impl Page {
     /// Nothing was shown; a material that is not there, or has no picture.
     pub async fn material(&self, name: &str) -> Answer<Picture> {
         let of_last = |last: &Last| (last.snapshot.desired.clone(), last.files.clone());
-        let asked = self.last.borrow().as_ref().map(of_last);
-        let (mut desired, files) = asked.ok_or_else(|| fault("no method was shown yet"))?;
+        let before = self.last.borrow().as_ref().map(of_last);
+        let (mut desired, files) = before.ok_or_else(|| fault("no method was shown yet"))?;
         let capture = Capture::new(name);
         desired.methods[0].material = Some(capture.clone());
         let snapshot = self.snapshot(desired, &files, None).await?;
@@ -248,15 +243,16 @@ impl Page {
     }
 
     /// Runs methods on the hard cases and judges them. `request` is JSON with `methods`, `cases`
-    /// and `size`. `progress` gets each cell that is `done`, with the pixels by which it fails
-    /// (`wrong`). Returns the text of a stress.json, as `skiagraph stress` writes it.
+    /// and `size`. `progress` gets the verdict of each cell, with its pixels that are `wrong`
+    /// outside the band, or the reason why it `failed`. Returns the text of a stress.json, as
+    /// `skiagraph stress` writes it.
     ///
     /// # Errors
     /// A method or case that is not there, or a lost device. After a stop, the cases that are done
     /// are returned.
     pub async fn conformance(&self, request: &str, progress: js_sys::Function) -> Answer<String> {
         let device = (&self.gpu, self.checked_adapter().await);
-        measure::conformance(device, request, progress).await
+        measure::reported(progress, measure::conformance(device, request)).await
     }
 
     /// Measures methods on views of the worker's scene, in turns. `request` is JSON with `views`,
@@ -267,7 +263,7 @@ impl Page {
     /// Those of a comparison. After a stop, the runs that are done are returned.
     pub async fn measure(&self, request: &str, progress: js_sys::Function) -> Answer<String> {
         let device = (&self.gpu, self.checked_adapter().await);
-        measure::measure(device, request, progress).await
+        measure::reported(progress, measure::measure(device, request)).await
     }
 
     /// Loses the device, as a driver may: for tests of the page.
@@ -403,18 +399,14 @@ fn described(snapshot: &FrameSnapshot, method: &MethodSnapshot) -> Answer<String
         .iter()
         .map(|pass| json!({"name": pass.name, "gpu_ms": pass.gpu_ms, "skipped": pass.skipped}));
     let written = method.passes.iter().flat_map(|pass| &pass.writes);
-    let materials: BTreeMap<&String, ()> = written.map(|name| (name, ())).collect();
-    let values: BTreeMap<_, _> = method.values.iter().collect();
-    let view: Option<&View> = snapshot.desired.view.as_ref();
+    let materials: BTreeSet<&String> = written.collect();
     json(&json!({
         "method": method.name,
-        "view": view.map(|view| &view.name),
         "size": snapshot.desired.size,
         "ms_gpu": method.gpu_ms,
         "ms_wall": method.wall_ms,
         "memory_bytes": method.memory[0],
-        "params": values,
         "passes": passes.collect::<Vec<_>>(),
-        "materials": materials.into_keys().collect::<Vec<_>>(),
+        "materials": materials,
     }))
 }

@@ -21,7 +21,7 @@ use crate::error::CompareError;
 use crate::graphs::preset::Preset;
 use crate::graphs::shadow_method::Outputs;
 use skiagraph_gpu::Content;
-use skiagraph_reference::{Graded, GroundTruth, Statistics};
+use skiagraph_reference::{Graded, GroundTruth, Image, Statistics};
 use std::collections::BTreeMap;
 
 /// Result of comparing one frame of a method with the ground truth (the exact reference).
@@ -54,6 +54,24 @@ impl Judgement {
             graded: Graded::judged(&outputs.shown(), &ground_truth.shares(), truth)?,
             is_hard: outputs.shares.is_none() && ground_truth.area.is_none(),
         })
+    }
+
+    /// Draws where the frame, of which this is the judgement, is wrong: wrong pixels of a hard
+    /// answer ([`Image::error`]), errors of shares otherwise ([`Image::difference`]).
+    ///
+    /// # Errors
+    /// Outputs that differ in size from the [reference](crate#terms).
+    pub fn errors(
+        &self,
+        outputs: &Outputs,
+        ground_truth: &GroundTruth,
+    ) -> Result<Image, skiagraph_reference::Error> {
+        let truth = &ground_truth.pixels;
+        if self.is_hard {
+            Image::error(&outputs.visibility, &outputs.status, truth)
+        } else {
+            Image::difference(&outputs.shown(), &ground_truth.shares(), truth)
+        }
     }
 
     /// True if this frame is worse than another frame of the same view: by the number of all wrong

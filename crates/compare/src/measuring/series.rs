@@ -11,8 +11,8 @@
 //! # type Done = Result<(), Box<dyn std::error::Error>>;
 //! # async fn measure(comparison: &Comparison, session: Session<'_>) -> Done {
 //! comparison.check(session)?;
-//! let kept = Some((Path::new("out"), Kept::Others));
-//! let mut series = Series::new(comparison, session, kept).await?;
+//! let folder = Some((Path::new("out"), Kept::Others));
+//! let mut series = Series::new(comparison, session, folder).await?;
 //! for view in 0..comparison.views.len() {
 //!     for viewport in 0..comparison.viewports.len() {
 //!         series.measure(view, viewport).await?; // and writes `out/results.json`

@@ -114,11 +114,7 @@ pub fn draw_pictures(
     let own = |kind: &str| place.own(kind);
     let reference = Image::visibility(viewport, shares, &truth.status());
     let shown = Image::visibility(viewport, visibility, status);
-    let error = if judgement.is_hard {
-        Image::error(&outputs.visibility, status, truth)
-    } else {
-        Image::difference(visibility, shares, truth)
-    };
+    let error = judgement.errors(outputs, ground_truth);
     let uncertain = || Image::uncertain(visibility, status, truth);
     let mut images = Images {
         frame: place.frame,

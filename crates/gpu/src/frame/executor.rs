@@ -246,11 +246,14 @@ impl Executor {
     ) -> Result<FrameReport, ExecuteError> {
         let began = Instant::now();
         let waited_for = self.runner.frames_in_flight.oldest_asked();
+        if !self.is_told()? {
+            return Err(self.unfinished(began));
+        }
         // One that is done is not kept waiting by those behind it.
         if let Some(report) = self.poll()? {
             return Ok(report);
         }
-        if !wait(&self.runner.device, timeout)? || !self.is_told()? {
+        if !wait(&self.runner.device, timeout)? {
             return Err(self.unfinished(began));
         }
         // A device that was destroyed is waited for without complaint, but has no query buffers to
@@ -322,11 +325,9 @@ impl Executor {
     #[cfg(target_arch = "wasm32")]
     fn is_told(&mut self) -> Result<bool, ExecuteError> {
         self.runner.settle()?;
-        let refused = |(name, error): crate::late::Late| crate::error::refusal(&name, &error);
-        let is_told = crate::late::check().map_err(refused)?;
         let mut counters = self.runner.state.growth_readbacks.iter();
         let is_counted = !counters.any(GrowthReadback::is_under_way);
-        Ok(is_told && is_counted && !self.runner.frames_in_flight.is_pending())
+        Ok(crate::late::is_told() && is_counted && !self.runner.frames_in_flight.is_pending())
     }
 
     #[cfg(not(target_arch = "wasm32"))]

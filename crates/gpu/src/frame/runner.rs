@@ -246,6 +246,10 @@ impl Runner {
     /// Finds out which frames have run, and takes back what was noted for those that are lost.
     pub fn settle(&mut self) -> Result<(), ExecuteError> {
         poll(&self.device, wgpu::PollType::Poll)?;
+        #[cfg(target_arch = "wasm32")]
+        if let Some((name, error)) = crate::late::take() {
+            return Err(crate::error::refusal(&name, &error));
+        }
         let (frames, state) = (&mut self.frames_in_flight, &mut self.state);
         let setback = frames.settle();
         if let Some(changes) = setback.settled {

@@ -1,13 +1,9 @@
-// Stage to append one shadow ray per uncertain pixel; a workgroup takes 16 tiles of 8 by 8 pixels,
-// a thread a pixel of each. The group numbers its rays by a prefix sum over one bit per pixel and
+// Stage to list the pixels that have a shadow ray; a workgroup takes 16 tiles of 8 by 8 pixels, a
+// thread a pixel of each. The group numbers its rays by a prefix sum over one bit per pixel and
 // claims their places by one atomic, so that the count never leaves the GPU and neighbours stay
 // together.
 
-#import "shared/camera.wgsl"
-#import "shared/light.wgsl"
-#import "shared/ray.wgsl"
-#import "shared/ids.wgsl"
-#import "shared/predicates.wgsl"
+#import "shared/pixel_list.wgsl"
 
 struct Params {
     per_pixel: u32,
@@ -16,12 +12,8 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var primitive: texture_2d<u32>;
-var position: texture_2d<f32>;
 var status: texture_2d<u32>;
 var<storage, read_write> ray_count: atomic<u32>;
-var<storage, read_write> rays: array<Ray>;
-var<storage, read_write> ray_primitives: array<u32>;
 var<storage, read_write> ray_pixels: array<u32>;
 
 const TILES_PER_ROW: u32 = 4u;
@@ -93,14 +85,7 @@ fn is_traced(pixel: vec2<u32>) -> bool {
 }
 
 fn append(slot: u32, pixel: vec2<u32>) {
-    let id = textureLoad(primitive, pixel, 0).x;
-    let receiver = textureLoad(position, pixel, 0).xyz;
-    // The background has no receiver: its ray is empty.
-    let max_distance = select(light_distance(receiver), -1.0, id == NO_PRIMITIVE);
-    let t_min = receiver_error_bound(receiver, camera.eye);
-    rays[slot] = Ray(receiver, t_min, to_light_from(receiver), max_distance);
-    ray_primitives[slot] = id;
-    // Rays of certain pixels cost their time and change no pixel.
     let place = pixel.y * textureDimensions(status).x + pixel.x;
-    ray_pixels[slot] = select(NO_PIXEL, place, is_uncertain(pixel));
+    // Rays of certain pixels cost their time and change no pixel.
+    ray_pixels[slot] = select(place | IGNORED, place, is_uncertain(pixel));
 }

@@ -3,7 +3,7 @@
 // that faces the light.
 
 #import "shared/answer.wgsl"
-#import "shared/receiver.wgsl"
+#import "shared/pixel_receiver.wgsl"
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
@@ -11,7 +11,7 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     if any(pixel >= textureDimensions(primitive)) {
         return;
     }
-    let receiver = textureLoad(position, pixel, 0);
+    let receiver = pixel_receiver(pixel);
     var pixel_status = initial_status(pixel, receiver);
     if pixel_status == STATUS_UNCERTAIN {
         pixel_status = compare(receiver.xyz);

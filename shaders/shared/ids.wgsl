@@ -1,10 +1,9 @@
-// The primitive ids that no triangle has, the pixel of rays whose answer is not used, and the
-// values of `status`. NO_PRIMITIVE is that of background pixels and missed rays.
+// The primitive ids that no triangle has, and the values of `status`. NO_PRIMITIVE is that of
+// background pixels and missed rays.
 
 const NO_PRIMITIVE: u32 = 0xffffffffu;
 // Primitive of a receiver of which only the depth is known.
 const UNKNOWN_PRIMITIVE: u32 = 0xfffffffeu;
-const NO_PIXEL: u32 = 0xffffffffu;
 // Hit of a ray whose way the driver broke off, and the visibility of its pixel.
 const UNANSWERED: u32 = 0xfffffffdu;
 const VISIBILITY_UNANSWERED: u32 = 2u;

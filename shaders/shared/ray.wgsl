@@ -9,6 +9,13 @@ struct Ray {
     t_max: f32,
 }
 
+// A ray that a tracer is asked for.
+struct AskedRay {
+    ray: Ray,
+    // Primitive that it does not see, or NO_PRIMITIVE.
+    skipped: u32,
+}
+
 struct Hit {
     t: f32,
     primitive: u32,

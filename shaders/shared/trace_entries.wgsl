@@ -1,14 +1,12 @@
-// Bindings of every engine of `Trace`, and its entry points: one thread per ray, workgroups spread
-// over two dimensions. The engine has `fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit`.
+// The entry points of every engine of `Trace`: one thread per ray, workgroups spread over two
+// dimensions. The engine has `fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit`; where
+// rays come from and hits go to is the affair of shared/ray_buffers.wgsl or its stand-in.
 
 #import "shared/groups.wgsl"
 #import "shared/ray.wgsl"
 #import "shared/ids.wgsl"
+#import "shared/ray_buffers.wgsl"
 #import "shared/ray_total.wgsl"
-
-var<storage, read> rays: array<Ray>;
-var<storage, read> skip: array<u32>;
-var<storage, read_write> hits: array<Hit>;
 
 // As `MAX_DEPTH` in crates/scene/src/bvh/tree.rs, which builds no deeper hierarchy: a level adds
 // one entry to an engine's stack at most.
@@ -16,20 +14,9 @@ const STACK_SIZE: u32 = 64u;
 
 @compute @workgroup_size(GROUP_SIZE)
 fn any_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
-    let ray = thread_number(group, lane);
-    if ray < ray_total() {
-        hits[ray] = answer(rays[ray], NO_PRIMITIVE, true);
-    }
-}
-
-@compute @workgroup_size(GROUP_SIZE)
-fn any_hit_skip(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let ray = thread_number(group, lane);
-    if ray < ray_total() {
-        hits[ray] = answer(rays[ray], skip[ray], true);
+    let index = thread_number(group, lane);
+    if index < ray_total() {
+        answer(index, true);
     }
 }
 
@@ -38,33 +25,23 @@ fn closest_hit(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let ray = thread_number(group, lane);
-    if ray < ray_total() {
-        hits[ray] = answer(rays[ray], NO_PRIMITIVE, false);
+    let index = thread_number(group, lane);
+    if index < ray_total() {
+        answer(index, false);
     }
 }
 
-@compute @workgroup_size(GROUP_SIZE)
-fn closest_hit_skip(
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-) {
-    let ray = thread_number(group, lane);
-    if ray < ray_total() {
-        hits[ray] = answer(rays[ray], skip[ray], false);
-    }
-}
-
-// A ray's hit, or that it has no answer. Nothing but the scene bounds the rounds of its way, and
-// drivers may end loops without a word.
-fn answer(ray: Ray, skipped: u32, first_found: bool) -> Hit {
-    var hit = trace(ray, skipped, first_found);
+// Takes a ray's hit, or that it has no answer. Nothing but the scene bounds the rounds of its way,
+// and drivers may end loops without a word.
+fn answer(index: u32, first_found: bool) {
+    let asked = ray_of(index);
+    var hit = trace(asked.ray, asked.skipped, first_found);
     let is_open = !first_found || hit.primitive == NO_PRIMITIVE;
     // An empty ray has no way.
-    if loops_are_cut() && is_open && ray.t_min < ray.t_max {
-        hit = Hit(ray.t_max, UNANSWERED, 0.0, 0.0);
+    if loops_are_cut() && is_open && asked.ray.t_min < asked.ray.t_max {
+        hit = Hit(asked.ray.t_max, UNANSWERED, 0.0, 0.0);
     }
-    return hit;
+    take(index, hit);
 }
 
 // Returns true if the driver has ended loops of this thread, which it does with all further ones:
@@ -72,7 +49,7 @@ fn answer(ray: Ray, skipped: u32, first_found: bool) -> Hit {
 // loop after one round. So here, after the traversal, is one of two rounds. Its step, 1, is no
 // constant to the compiler, which would unroll the loop.
 fn loops_are_cut() -> bool {
-    let step = select(1u, 2u, arrayLength(&hits) == 0u);
+    let step = select(1u, 2u, ray_limit() == 0u);
     var rounds = 0u;
     while rounds < 2u {
         rounds += step;
@@ -81,5 +58,5 @@ fn loops_are_cut() -> bool {
 }
 
 fn ray_total() -> u32 {
-    return min(count, min(arrayLength(&rays), arrayLength(&hits)));
+    return min(count, ray_limit());
 }

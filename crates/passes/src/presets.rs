@@ -1,6 +1,6 @@
 //! The presets and their shaders, embedded, and the registry of pass kinds that they need.
 
-use crate::trace::Trace;
+use crate::{names::MASKS, trace::Trace};
 use include_dir::{Dir, include_dir};
 use skiagraph_graph::{Diagnostics, Graph, Registry, Sources};
 use std::{collections::BTreeMap, sync::Arc};
@@ -121,10 +121,19 @@ pub fn load_unit_visibility(
 }
 
 /// Creates a registry of the [standard](Registry::standard) pass kinds and [`Trace`], which
-/// [`Graph::load`](skiagraph_graph::Graph::load) needs to read the presets.
+/// [`Graph::load`](skiagraph_graph::Graph::load) needs to read the presets. In scenes with masked
+/// or double-sided triangles `shared/masks.wgsl` [stands in](Registry::stand_in) for
+/// `shared/solid.wgsl` in the shaders of all documents.
 pub fn registry() -> Registry {
     let mut registry = Registry::standard();
     registry.register::<Trace>("Trace");
+    for (module, is) in [
+        ("shared/solid.wgsl", "shared/masks.wgsl"),
+        // A stage that reads masks has no storage buffer left for the number of rays.
+        ("shared/ray_total.wgsl", "shared/ray_total_uniform.wgsl"),
+    ] {
+        registry.stand_in(module, is, MASKS);
+    }
     #[cfg(feature = "schema")]
     registry.describe::<Trace>("Trace");
     registry

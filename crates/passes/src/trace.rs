@@ -1,9 +1,9 @@
 //! `Trace`: rays in, hits out, by one of several engines. The number of rays stays on the GPU.
 
-use crate::names::{EMBREE, LIGHT, MASKS};
+use crate::names::{EMBREE, LIGHT};
 use serde::Deserialize;
 use skiagraph_graph::{
-    Chosen, Code, Diagnostic, Lowering, PassKind, Reference, Span,
+    Chosen, Code, Diagnostic, Expr, Located, Lowering, PassKind, Reference, Span,
     step::{CpuCall, CpuItems, Dispatch, Groups, Operand, Program, Step, Threads},
 };
 use skiagraph_scene::LightKind;
@@ -48,11 +48,11 @@ pub enum Direction {
     Light,
 }
 
-/// The modules that shaders import in the place of others where triangles are masked.
-const MASKED: [(&str, &str); 2] = [
-    ("shared/solid.wgsl", "shared/masks.wgsl"),
-    ("shared/ray_total.wgsl", "shared/ray_total_uniform.wgsl"),
-];
+/// The module that gives rays and takes hits, unless another one stands in for it.
+const RAYS: &str = "shared/ray_buffers.wgsl";
+
+/// The same where each ray has a primitive that it does not see.
+const RAYS_WITH_SKIP: &str = "shared/skipping_ray_buffers.wgsl";
 
 impl Engine {
     /// Words by which a `Choice` param of a document selects an engine, each with its engine.
@@ -86,13 +86,23 @@ fn hierarchy() -> Chosen<Engine> {
     Chosen::Word(Engine::Hierarchy)
 }
 
-/// Pass kind of graph documents, in the [`registry`](crate::registry), that traces a buffer of rays
-/// through the scene of a [`SceneProvider`](crate::SceneProvider) and writes a buffer of hits:
+/// Pass kind of graph documents, in the [`registry`](crate::registry), that traces rays through the
+/// scene of a [`SceneProvider`](crate::SceneProvider): from a buffer of rays to a buffer of hits,
 ///
 /// ```ron
 /// Trace(
 ///     name: "trace_rays", rays: "rays", hits: "hits", count: "ray_count",
 ///     groups: "ray_groups", skip: "ray_primitives", mode: Any,
+/// )
+/// ```
+///
+/// or rays that a WGSL module makes when they are traced, and hits that it takes, with neither in
+/// memory:
+///
+/// ```ron
+/// Trace(
+///     name: "trace_rays", of: "shared/listed_pixels.wgsl", most: "ray_pixels.count",
+///     count: "ray_count", groups: "ray_groups", mode: Any,
 /// )
 /// ```
 ///
@@ -113,13 +123,21 @@ pub struct Trace {
     /// Buffer of 32-byte items `origin: vec3<f32>, t_min: f32, direction: vec3<f32>, t_max: f32`; a
     /// hit counts if t_min < t ≤ t_max, t in units of `direction`, which need not be of unit
     /// length.
-    rays: Reference,
+    rays: Option<Reference>,
     /// Buffer of 16-byte items `t: f32, primitive: u32, u: f32, v: f32`; u and v are the weights of
     /// the primitive's second and third corner. A ray that hits nothing gets its t_max and the
     /// primitive `0xffffffff`; one without an answer, because the driver ended the shader's loops
     /// before it had passed all triangles on its way, `0xfffffffd`.
-    hits: Reference,
-    /// Buffer of one u32, the number of rays; rays beyond the end of `rays` or `hits` are left out.
+    hits: Option<Reference>,
+    /// In the place of `rays`, `hits` and `skip`, a WGSL module with the functions of
+    /// `shared/ray_buffers.wgsl`: `ray_limit() -> u32`, the number of rays that it has room for;
+    /// `ray_of(index: u32) -> AskedRay`, a ray and the primitive that it does not see; and
+    /// `take(index: u32, hit: Hit)`. It is looked for as shaders are, and its globals are bound by
+    /// name, as those of a shader of the pass's own.
+    of: Option<Located<String>>,
+    /// With `of`, the most rays that there can be: `Embree` gets buffers of so many.
+    most: Option<Expr>,
+    /// Buffer of one u32, the number of rays; rays that there is no room for are left out.
     count: Reference,
     /// Buffer of three u32, the workgroups of 64 rays, folded to two dimensions, that `count` comes
     /// to, as `dispatch_arguments.wgsl` makes them; without it the pass counts them once more.
@@ -140,12 +158,60 @@ pub struct Trace {
 
 impl Trace {
     fn entry_point(&self) -> &'static str {
-        match (self.mode, &self.skip) {
-            (Mode::Any, None) => "any_hit",
-            (Mode::Any, Some(_)) => "any_hit_skip",
-            (Mode::Closest, None) => "closest_hit",
-            (Mode::Closest, Some(_)) => "closest_hit_skip",
+        match self.mode {
+            Mode::Any => "any_hit",
+            Mode::Closest => "closest_hit",
         }
+    }
+
+    /// Returns the module that gives rays and takes hits, in the place of the usual one.
+    fn imports(&self, pass: &Lowering<'_>) -> Vec<(Located<String>, Located<String>)> {
+        let module = match (&self.of, &self.skip) {
+            (Some(module), _) => module.clone(),
+            (None, Some(_)) => pass.named(RAYS_WITH_SKIP),
+            (None, None) => pass.named(RAYS),
+        };
+        vec![(pass.named(RAYS), module)]
+    }
+
+    /// Returns a program of a shader that imports that module.
+    fn program(&self, shader: &str, pass: &Lowering<'_>) -> Program {
+        let mut program = pass.program_of(shader);
+        program.imports = self.imports(pass);
+        bind(pass, &mut program, "count", (&self.count).into());
+        let buffers = [
+            ("rays", &self.rays),
+            ("skip", &self.skip),
+            ("hits", &self.hits),
+        ];
+        for (global, buffer) in buffers {
+            if let Some(buffer) = buffer {
+                bind(pass, &mut program, global, buffer.into());
+            }
+        }
+        program
+    }
+
+    /// Reports buffers beside a module, and neither.
+    fn check_fields(&self, pass: &mut Lowering<'_>) {
+        let buffers = [&self.rays, &self.hits];
+        let is_whole = match &self.of {
+            Some(_) => self.most.is_some() && buffers.iter().all(|it| it.is_none()),
+            None => self.most.is_none() && buffers.iter().all(|it| it.is_some()),
+        };
+        if is_whole && (self.of.is_none() || self.skip.is_none()) {
+            return;
+        }
+        let what = "a `Trace` has either `rays` and `hits`, or `of` and `most`";
+        let place = pass.name().span;
+        let mistake = Diagnostic::error(Code::Unused, what)
+            .at(place, "this one")
+            .help(
+                "write `rays: \"…\", hits: \"…\"` for buffers, with `skip` if rays do not see a \
+             primitive; or `of: \"module.wgsl\", most: \"count\"` for a module that makes rays and \
+             takes hits",
+            );
+        pass.report(mistake);
     }
 
     fn refuse(&self, pass: &mut Lowering<'_>) {
@@ -180,27 +246,56 @@ impl Trace {
         pass.report(mistake);
     }
 
-    /// Has the CPU trace.
+    /// Has the CPU trace; rays of a module are written to memory for it, and their hits handed back.
     fn lower_to_cpu(&self, pass: &mut Lowering<'_>) {
-        let items = |buffer: &Reference, bytes| CpuItems {
-            buffer: buffer.into(),
-            bytes,
+        let items = |buffer, bytes| CpuItems { buffer, bytes };
+        let call = |pass: &Lowering<'_>, reads, writes| {
+            Step::Cpu(CpuCall {
+                work: pass.named(EMBREE),
+                entry: self.entry_point().to_owned(),
+                count: (&self.count).into(),
+                reads,
+                writes,
+            })
         };
-        let mut reads = vec![items(&self.rays, 32)];
-        reads.extend(self.skip.as_ref().map(|skip| items(skip, 4)));
-        pass.step(Step::Cpu(CpuCall {
-            work: pass.named(EMBREE),
-            entry: self.entry_point().to_owned(),
-            count: (&self.count).into(),
-            reads,
-            writes: items(&self.hits, 16),
-        }));
+        if let (Some(rays), Some(hits)) = (&self.rays, &self.hits) {
+            let mut reads = vec![items(rays.into(), 32)];
+            reads.extend(self.skip.as_ref().map(|skip| items(skip.into(), 4)));
+            return pass.step(call(pass, reads, items(hits.into(), 16)));
+        }
+        let most = self.most.as_ref().map_or(0, |most| pass.count(most));
+        let [rays, skip, hits] = [("rays", 32), ("skip", 4), ("hits", 16)].map(|(name, bytes)| {
+            let buffer = pass.scratch(name, most.saturating_mul(bytes));
+            items(buffer.into(), bytes)
+        });
+        let groups = self.groups(pass);
+        let mut write = self.program("write_rays", pass);
+        bind(pass, &mut write, "written_rays", rays.buffer.clone());
+        bind(pass, &mut write, "written_skip", skip.buffer.clone());
+        let mut take = self.program("take_hits", pass);
+        bind(pass, &mut take, "written_hits", hits.buffer.clone());
+        pass.step(dispatch(write, groups.clone()));
+        pass.step(call(pass, vec![rays, skip], hits));
+        pass.step(dispatch(take, groups));
     }
 
-    fn announce(engine: Engine, pass: &mut Lowering<'_>) {
-        if let Some(shader) = engine.shader() {
-            pass.alternative(shader, &[], engine.features());
-            pass.alternative(shader, &MASKED, engine.features());
+    fn announce(&self, engine: Engine, pass: &mut Lowering<'_>) {
+        let imports = self.imports(pass);
+        let shaders = match (engine.shader(), &self.of) {
+            (Some(shader), _) => vec![shader],
+            (None, Some(_)) => vec!["write_rays", "take_hits"],
+            (None, None) => Vec::new(),
+        };
+        for shader in shaders {
+            pass.alternative(shader, &imports, engine.features());
+        }
+    }
+
+    /// Returns the workgroups of a dispatch with a thread for each ray.
+    fn groups(&self, pass: &mut Lowering<'_>) -> Operand {
+        match &self.groups {
+            Some(groups) => Operand::from(groups),
+            None => self.count_groups(pass),
         }
     }
 
@@ -228,10 +323,11 @@ impl Trace {
 
 impl PassKind for Trace {
     fn lower(&self, pass: &mut Lowering<'_>) {
+        self.check_fields(pass);
         // A document that chooses by a param is read with the shaders of all its words.
         if let Chosen::Expr(_) = &self.engine {
             for (_, engine) in Engine::WORDS {
-                Self::announce(engine, pass);
+                self.announce(engine, pass);
             }
         }
         let mut engine = pass.word(&self.engine, &Engine::WORDS);
@@ -242,14 +338,11 @@ impl PassKind for Trace {
         }
         let Some(shader) = engine.shader() else {
             // For hosts without it, as above.
-            Self::announce(Engine::Hierarchy, pass);
+            self.announce(Engine::Hierarchy, pass);
+            self.announce(engine, pass);
             return self.lower_to_cpu(pass);
         };
-        Self::announce(engine, pass);
-        let groups = match &self.groups {
-            Some(groups) => Operand::from(groups),
-            None => self.count_groups(pass),
-        };
+        self.announce(engine, pass);
         if engine == Engine::LightSpace {
             match (self.direction, pass.kind_of(LIGHT)) {
                 (None, _) => self.refuse(pass),
@@ -259,25 +352,18 @@ impl PassKind for Trace {
                 (Some(Direction::Light), _) => {}
             }
         }
-        let mut trace = pass.program_of(shader);
-        if pass.provided_items(MASKS) > 0 {
-            let modules = MASKED.iter();
-            trace.imports = modules
-                .map(|(name, is)| ((*name).to_owned(), (*is).to_owned()))
-                .collect();
-        }
+        let groups = self.groups(pass);
+        let mut trace = self.program(shader, pass);
         trace.compute = Some(pass.named(self.entry_point()));
-        bind(pass, &mut trace, "count", (&self.count).into());
-        bind(pass, &mut trace, "rays", (&self.rays).into());
-        bind(pass, &mut trace, "hits", (&self.hits).into());
-        if let Some(skip) = &self.skip {
-            bind(pass, &mut trace, "skip", skip.into());
-        }
-        pass.step(Step::Dispatch(Dispatch {
-            program: trace,
-            groups: Groups::Indirect(groups),
-        }));
+        pass.step(dispatch(trace, groups));
     }
+}
+
+fn dispatch(program: Program, groups: Operand) -> Step<skiagraph_graph::step::Names> {
+    Step::Dispatch(Dispatch {
+        program,
+        groups: Groups::Indirect(groups),
+    })
 }
 
 fn bind(pass: &Lowering<'_>, program: &mut Program, global: &str, operand: Operand) {

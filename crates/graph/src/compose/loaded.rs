@@ -26,7 +26,7 @@ use crate::{
         unused,
     },
     source::{
-        paths::{escapes, include_candidates},
+        paths::{escapes, include_candidates, module_candidates},
         sources::Sources,
         span::{Located, SourceFile, Span},
     },
@@ -91,13 +91,32 @@ impl Loaded {
             let place = root.file.span(end.saturating_sub(1)..end);
             reports.report(ComposeError::NoOutputs(place));
         }
+        let sources_have = |name: &Located<String>| {
+            let mut paths = module_candidates("", name).into_iter();
+            paths.any(|path| matches!(sources.read(&path), Ok(Some(_))))
+        };
+        let begin = registry.imports();
+        let begin = begin.filter(|entry| sources_have(&entry.of) && sources_have(&entry.is));
+        root.imports.splice(0..0, begin);
         let documents = [&root].into_iter();
         let documents: Vec<&Document> = documents.chain(included.iter().map(|d| &**d)).collect();
         let shaders = store::load(&root, ShaderFiles::new(sources), &mut reports);
+        let imported = shaders.imported();
+        let is_imported = |module| {
+            shaders
+                .module(module)
+                .is_some_and(|it| imported.contains(&**it))
+        };
+        let imports = &root.imports;
+        let needed = imports
+            .iter()
+            .filter(|it| it.items_of.is_none() || is_imported(&it.of));
+        let needed = needed.cloned().collect();
         let pictures = load_pictures(&documents, sources, &mut reports);
         let (required, asked_for) = (required(&documents), asked_for(&documents));
         // The uses of a missing shader are not known.
         let is_known = reports.errors() == 0;
+        root.imports = needed;
         if is_known {
             drop_unused(&mut root, &shaders, &mut HashMap::new(), &mut reports);
         }

@@ -100,6 +100,10 @@ pub(crate) struct ImportEntry {
     /// Condition under which it stands in; always without it.
     #[serde(default, rename = "if")]
     pub condition: Option<Expr>,
+    /// Provided resource without which the entry is ignored: one of the
+    /// [registry](crate::Registry::stand_in).
+    #[serde(skip)]
+    pub items_of: Option<&'static str>,
 }
 
 /// A promise of a method: `(if: "n >= 0.5", because: "…")`, or its condition alone.

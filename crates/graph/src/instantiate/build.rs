@@ -5,6 +5,7 @@ use super::{
     flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
     include::{self, Call},
     merge::{Content, Site},
+    modules,
     params::Params,
     scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
     state::{Declared, DeclaredValue, ValueState},
@@ -16,7 +17,7 @@ use crate::{
     document::{
         materials::{Input, InputKind},
         raw::Invalid,
-        typed::{Document, Entry, Include, Pass, Run as RunEntry, What},
+        typed::{Document, Entry, ImportEntry, Include, Pass, Run as RunEntry, What},
     },
     errors::instantiate::InterfaceError,
     expressions::eval,
@@ -42,11 +43,13 @@ pub(super) struct Builder<'a> {
     pub(super) passes: Vec<FlatPass<'a>>,
     first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
-    plan_inputs: PlanInputs,
+    pub(super) plan_inputs: PlanInputs,
     /// True if includes of the same content are merged.
     pub(super) merges: bool,
     pub(super) sites: Vec<Site>,
     pub(super) merged: Vec<Merge>,
+    /// Modules that wait for a value of their condition, with the scope of their document.
+    pub(super) waiting: Vec<(ScopeId, &'a ImportEntry)>,
     /// Settings of groups: name of the group, name of the setting, and true if an entry in the
     /// group uses it.
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
@@ -72,6 +75,7 @@ pub(crate) fn flatten<'a>(
         merges,
         sites: Vec::new(),
         merged: Vec::new(),
+        waiting: Vec::new(),
         said: Vec::new(),
         spent: 0,
         full: None,
@@ -199,8 +203,9 @@ impl<'a> Builder<'a> {
             self.symbols.scopes.declare(scope, &name.value, symbol);
         }
         self.needs(document, scope);
-        self.replace_modules(document, scope);
+        modules::replace(self, document, scope);
         self.entries(&document.entries, context);
+        modules::replace_waiting(self, Some(scope));
     }
 
     /// Reports the conditions that a document needs and that do not hold.
@@ -219,21 +224,6 @@ impl<'a> Builder<'a> {
                 });
             }
         }
-    }
-
-    /// Finds the modules that stand in for others in a document's shaders.
-    fn replace_modules(&mut self, document: &Document, scope: ScopeId) {
-        let instance = self.symbols.scopes.instance_of(scope);
-        let mut replaced = self.symbols.scopes.instance(instance).replaced.clone();
-        for entry in &document.imports {
-            // A condition without a value was reported.
-            let mut at = self.symbols.at(scope.begin(), None);
-            if self.plan_inputs.is_there(entry.condition.as_ref(), &mut at) == Ok(true) {
-                let shaders = &self.symbols.graph.shaders;
-                shaders.replace(&mut replaced, &entry.of, &entry.is);
-            }
-        }
-        self.symbols.scopes.instance_mut(instance).replaced = replaced;
     }
 
     fn incomplete(&mut self, scope: ScopeId, reported: ErrorGuaranteed) {
@@ -441,8 +431,10 @@ impl<'a> Builder<'a> {
         let scopes = &mut self.symbols.scopes;
         if let Some(site) = site {
             self.merged.push(site.merge(self.passes.len(), include));
-            call.give(&site.names, scopes)?;
-            return Ok(site.names.clone());
+            let names = site.names.clone();
+            call.give(&names, scopes)?;
+            modules::replace_waiting(self, None);
+            return Ok(names);
         }
         let first_resource = self.symbols.resources.len();
         let outer = call.outer(context);
@@ -476,6 +468,7 @@ impl<'a> Builder<'a> {
             });
         }
         call.give(&names, &mut self.symbols.scopes)?;
+        modules::replace_waiting(self, None);
         Ok(names)
     }
 

@@ -11,6 +11,7 @@ pub(crate) mod include;
 pub(crate) mod lower;
 mod materials;
 pub(crate) mod merge;
+mod modules;
 pub(crate) mod params;
 mod parts;
 mod resolve;

@@ -138,16 +138,18 @@ impl<'a> Lowering<'a> {
     /// Announces a shader that the pass runs with some values of its expressions and not with
     /// others, whether this call appends a step with it or not. So it is loaded with the document,
     /// and a plan with other values finds it. `shader` is the name of a WGSL file that comes with
-    /// the pass kind, without folder and ending. Each pair in `imports` is the path that an
-    /// `#import` names and the path of the module that is imported instead. `features` are device
+    /// the pass kind, without folder and ending. `imports` are those of
+    /// [`Program::imports`]. `features` are device
     /// features that the pass uses if the device has them.
-    pub fn alternative(&mut self, shader: &str, imports: &[(&str, &str)], features: wgt::Features) {
-        let imports = imports.iter();
+    pub fn alternative(
+        &mut self,
+        shader: &str,
+        imports: &[(Located<String>, Located<String>)],
+        features: wgt::Features,
+    ) {
         self.alternatives.push(ShaderUse {
             name: self.named(shader),
-            imports: imports
-                .map(|(module, replacement)| ((*module).to_owned(), (*replacement).to_owned()))
-                .collect(),
+            imports: imports.to_vec(),
         });
         self.features |= features;
     }

@@ -174,8 +174,9 @@ pub struct Program {
     /// planning reports an error for `None`, the default.
     pub shader: Option<Located<String>>,
     /// Modules that replace others in the shader's imports: pairs of the path that an `#import`
-    /// names and the path of the module that is imported instead.
-    pub imports: Vec<(String, String)>,
+    /// names and the path of the module that is imported instead. Each is looked for from the
+    /// document in which it stands.
+    pub imports: Vec<(Located<String>, Located<String>)>,
     /// Name of the vertex entry point. `None` takes the only one in the shader; planning reports an
     /// error if there are several, or none where a draw needs it.
     pub vertex: Option<Located<String>>,
@@ -209,7 +210,7 @@ pub(crate) struct ShaderUse {
     /// Name of the WGSL file without folder and ending.
     pub name: Located<String>,
     /// Modules that replace others in the shader's imports: pairs `(of, is)`.
-    pub imports: Vec<(String, String)>,
+    pub imports: Vec<(Located<String>, Located<String>)>,
 }
 
 impl Program {

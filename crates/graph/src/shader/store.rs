@@ -139,8 +139,7 @@ impl Shaders {
     fn with_own(&self, around: &Replaced, shader: &ShaderUse) -> Replaced {
         let mut replaced = around.clone();
         for (module, is) in &shader.imports {
-            let place = |name: &str| Located::new(name.to_owned(), shader.name.span.clone());
-            self.replace(&mut replaced, &place(module), &place(is));
+            self.replace(&mut replaced, module, is);
         }
         replaced
     }
@@ -243,8 +242,8 @@ impl Loader<'_> {
         around: &Replaced,
     ) {
         for (module, is) in &shader.imports {
-            for name in [module, is] {
-                self.module(&Located::new(name.clone(), shader.name.span.clone()));
+            if let (Some(module), Some(path)) = (self.module(module), self.module(is)) {
+                self.check(is, &module, &path);
             }
         }
         let replaced = self.shaders.with_own(around, shader);

@@ -1,7 +1,7 @@
 // Stage to write the receiver of each pixel: its position, and dot(n, l) of its interpolated normal
 // in w; one thread per pixel.
 
-#import "shared/drawn_receiver.wgsl"
+#import "shared/drawn_pixel_receiver.wgsl"
 
 var position: texture_storage_2d<rgba32float, write>;
 

@@ -1,12 +1,9 @@
-// In the place of shared/pixel_receiver.wgsl: the receiver of a pixel, found from the primitive
-// that was drawn there. The ray through the pixel's centre is met with the primitive anew instead
+// The receiver of a pixel, found from the primitive that was drawn there. The ray through the pixel's centre is met with the primitive anew instead
 // of interpolating rasterised attributes, whose precision is the adapter's affair, and stays within
 // it: the edge functions of Davidovic et al., "3D Rasterization", TUGraz 2012.
 
 #import "shared/camera.wgsl"
-#import "shared/facing.wgsl"
 #import "shared/geometry.wgsl"
-#import "shared/light.wgsl"
 #import "shared/pixel_weights.wgsl"
 #import "shared/solid.wgsl"
 
@@ -20,8 +17,7 @@ struct DrawnReceiver {
     from_behind: bool,
 }
 
-fn drawn_receiver(pixel: vec2<u32>, id: u32) -> DrawnReceiver {
-    let viewport = textureDimensions(primitive);
+fn drawn_receiver(pixel: vec2<u32>, viewport: vec2<u32>, id: u32) -> DrawnReceiver {
     let world = corner_position(3u * id);
     let a = relative_to_eye(world);
     let b = relative_to_eye(corner_position(3u * id + 1u));
@@ -42,30 +38,12 @@ fn drawn_receiver(pixel: vec2<u32>, id: u32) -> DrawnReceiver {
     return DrawnReceiver(place, weights, at.from_behind);
 }
 
-fn receiver_place(pixel: vec2<u32>, id: u32) -> vec3<f32> {
-    return drawn_receiver(pixel, id).place;
-}
-
-// dot(n, l) is of the interpolated normal; 0 outside of a spot light's cone. All 0 without a
-// primitive.
-fn pixel_receiver(pixel: vec2<u32>) -> vec4<f32> {
-    let id = textureLoad(primitive, pixel, 0).x;
-    if id == NO_PRIMITIVE {
-        return vec4(0.0);
-    }
-    let at = drawn_receiver(pixel, id);
-    var normal = at.weights.x * corner_normal(3u * id)
+// The interpolated normal, of any length; of a double-sided primitive that of the side that is seen.
+fn interpolated_normal(at: DrawnReceiver, id: u32) -> vec3<f32> {
+    let normal = at.weights.x * corner_normal(3u * id)
         + at.weights.y * corner_normal(3u * id + 1u)
         + at.weights.z * corner_normal(3u * id + 2u);
-    if at.from_behind && is_double_sided(id) {
-        normal = -normal;
-    }
-    let length_squared = dot(normal, normal);
-    var n_dot_l = 0.0;
-    if length_squared > 0.0 && light_shines_on(at.place) {
-        n_dot_l = dot(normal, to_light_from(at.place)) * inverseSqrt(length_squared);
-    }
-    return vec4(at.place, n_dot_l);
+    return select(normal, -normal, at.from_behind && is_double_sided(id));
 }
 
 fn corner_normal(corner: u32) -> vec3<f32> {

@@ -1,5 +1,5 @@
 // The receiver of a pixel: its position, and dot(n, l) in w. `position` holds it;
-// shared/drawn_receiver.wgsl finds it anew, for methods that read it once or twice.
+// shared/drawn_pixel_receiver.wgsl finds it anew, for methods that read it once or twice.
 
 #import "shared/receiver.wgsl"
 

@@ -12,7 +12,7 @@ use crate::{
     },
     document::{
         materials::{Material, TextureEntry},
-        typed::Document,
+        typed::{Document, ImportEntry},
     },
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     kinds::registry::Registry,
@@ -107,16 +107,15 @@ impl Loaded {
                 .module(module)
                 .is_some_and(|it| imported.contains(&**it))
         };
-        let imports = &root.imports;
-        let needed = imports
-            .iter()
-            .filter(|it| it.items_of.is_none() || is_imported(&it.of));
-        let needed = needed.cloned().collect();
+        let is_default = |entry: &ImportEntry| entry.items_of.is_some();
+        let mut defaults = root.imports.iter().filter(|it| is_default(it));
+        let takes_defaults = defaults.any(|it| is_imported(&it.of));
         let pictures = load_pictures(&documents, sources, &mut reports);
         let (required, asked_for) = (required(&documents), asked_for(&documents));
         // The uses of a missing shader are not known.
         let is_known = reports.errors() == 0;
-        root.imports = needed;
+        // All of them or none: shaders were compiled so.
+        root.imports.retain(|it| takes_defaults || !is_default(it));
         if is_known {
             drop_unused(&mut root, &shaders, &mut HashMap::new(), &mut reports);
         }

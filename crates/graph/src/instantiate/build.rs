@@ -4,7 +4,7 @@
 use super::{
     flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
     include::{self, Call},
-    merge::{Content, Site},
+    merge::{Asks, Content, Site},
     modules,
     params::Params,
     scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
@@ -30,7 +30,7 @@ use crate::{
     source::span::{Located, Span},
 };
 use std::{
-    collections::{BTreeMap, BTreeSet},
+    collections::{BTreeMap, BTreeSet, HashMap},
     sync::Arc,
 };
 
@@ -47,6 +47,8 @@ pub(super) struct Builder<'a> {
     /// True if includes of the same content are merged.
     pub(super) merges: bool,
     pub(super) sites: Vec<Site>,
+    /// By address of the document.
+    asks: HashMap<*const Document, Asks>,
     pub(super) merged: Vec<Merge>,
     /// Modules that wait for a value of their condition, with the scope of their document.
     pub(super) waiting: Vec<(ScopeId, &'a ImportEntry)>,
@@ -74,6 +76,7 @@ pub(crate) fn flatten<'a>(
         plan_inputs: PlanInputs::default(),
         merges,
         sites: Vec::new(),
+        asks: HashMap::new(),
         merged: Vec::new(),
         waiting: Vec::new(),
         said: Vec::new(),
@@ -423,7 +426,10 @@ impl<'a> Builder<'a> {
             let mut bound = self.symbols.scopes.bound_scene(around);
             bound.extend(scene.clone());
             let run = context.run.clone();
-            Content::new(document, &params, &inputs, bound, &replaced, run)
+            let shaders = &self.symbols.graph.shaders;
+            let asks = self.asks.entry(Arc::as_ptr(document));
+            let asks = asks.or_insert_with(|| Asks::new(document, shaders));
+            Content::new((document, asks), &params, &inputs, bound, &replaced, run)
         });
         let content = content.flatten();
         let mut sites = self.sites.iter();

@@ -8,9 +8,10 @@ use super::{
 use crate::{
     diagnostics::reports::Reported,
     document::typed::{Document, Include},
+    language::{name::wgsl_identifier, syntax::Leaf},
     param::ParamValue,
     resource::Target,
-    shader::expand::Replaced,
+    shader::{expand::Replaced, store::Shaders},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -27,8 +28,10 @@ pub(super) struct Content {
     params: Vec<ParamContent>,
     /// Targets that are bound to the inputs of the document, in the order of the inputs.
     pub inputs: Vec<Target>,
-    /// Targets of names of the scene; the innermost include that binds a name decides.
+    /// Targets of names of the scene that the document asks for; the innermost include that binds a
+    /// name decides.
     scene: BTreeMap<String, Target>,
+    /// Modules that replace others which its shaders import.
     replaced: Replaced,
     run: Option<(Run, bool)>,
 }
@@ -65,7 +68,7 @@ impl Site {
 impl Content {
     /// Creates the content of an include; `None` if a part of it has a mistake.
     pub fn new(
-        document: &Arc<Document>,
+        (document, asks): (&Arc<Document>, &Asks),
         params: &super::params::Params,
         inputs: &[Reported<Target>],
         scene: BTreeMap<String, Reported<Target>>,
@@ -76,15 +79,76 @@ impl Content {
             let value = bound.value.clone().ok()?;
             Some((value, bound.root.clone(), bound.roots.clone()))
         });
-        let scene = scene.into_iter();
+        let scene = scene.into_iter().filter(|(name, _)| asks.asks_for(name));
         let scene = scene.map(|(name, target)| Some((name, target.ok()?)));
         Some(Self {
             document: Arc::as_ptr(document),
             params: params.collect::<Option<_>>()?,
             inputs: inputs.iter().cloned().collect::<Result<_, _>>().ok()?,
             scene: scene.collect::<Option<_>>()?,
-            replaced: replaced.clone(),
+            replaced: (replaced.iter())
+                .filter(|(module, _)| asks.modules.contains(*module))
+                .map(|(module, is)| (module.clone(), is.clone()))
+                .collect(),
             run,
         })
+    }
+}
+
+/// Names outside of a document that the document and its includes ask for.
+#[derive(Debug, Default)]
+pub(super) struct Asks {
+    /// Globals and overrides of shaders.
+    identifiers: BTreeSet<String>,
+    /// Names in expressions and bindings.
+    paths: BTreeSet<String>,
+    /// Paths of imported modules.
+    modules: BTreeSet<String>,
+    /// True if a pass kind of the host may ask for any name.
+    is_open: bool,
+}
+
+impl Asks {
+    pub fn new(document: &Document, shaders: &Shaders) -> Self {
+        let mut asks = Self::default();
+        asks.add(document, shaders);
+        asks
+    }
+
+    fn add(&mut self, document: &Document, shaders: &Shaders) {
+        document.visit(&mut |leaf| {
+            if let Leaf::Material(reference) = leaf {
+                self.paths.insert(reference.path());
+            }
+        });
+        for pass in document.passes() {
+            self.is_open |=
+                !["Raster", "Fullscreen", "Compute", "Copy", "Clear"].contains(&pass.kind);
+            let variants = pass.shaders.iter();
+            for shader in variants.flat_map(|shader| shaders.variants(document, shader)) {
+                let names = shader.global_names().map(str::to_owned);
+                let overrides = shader.overrides().map(|(name, ..)| name.to_owned());
+                self.identifiers.extend(names.chain(overrides));
+                let lines = shader.source.imports.iter();
+                self.modules.extend(lines.map(|line| line.path.to_string()));
+            }
+        }
+        for (_, _, inner) in document.includes() {
+            self.add(inner, shaders);
+        }
+    }
+
+    /// True if the document can ask for the provided resource `name`, its version of the frame
+    /// before or its kind.
+    fn asks_for(&self, name: &str) -> bool {
+        let identifier = wgsl_identifier(name);
+        let endings = ["", "_previous", "_kind"];
+        let is_in_shader =
+            |ending: &&str| self.identifiers.contains(&format!("{identifier}{ending}"));
+        let is_path = |path: &String| {
+            let rest = path.strip_prefix(name);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        };
+        self.is_open || endings.iter().any(is_in_shader) || self.paths.iter().any(is_path)
     }
 }

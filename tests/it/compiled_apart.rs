@@ -137,11 +137,11 @@ const ALTERED: [(&str, &[(&str, &str)]); 4] = [
     ),
     // Receivers themselves.
     (
-        "shaders/surface.wgsl",
+        "shaders/shared/drawn_receiver.wgsl",
         &[
             (
-                "var receiver = world + (weights.y * (b - a) + weights.z * (c - a));",
-                "var receiver = either_plus_of(world, weights.y * (b - a) + weights.z * (c - a));",
+                "var place = world + (weights.y * (b - a) + weights.z * (c - a));",
+                "var place = either_plus_of(world, weights.y * (b - a) + weights.z * (c - a));",
             ),
             (
                 "corner_position(3u * id + 1u) + (weights.z * (c - b) + weights.x * (a - b));",

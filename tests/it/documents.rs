@@ -1,7 +1,7 @@
 //! The presets as documents: what they declare, and what a plan makes of them. No GPU.
 
 use glam::{DVec3, Vec3};
-use skiagraph_graph::{Graph, Plan, PlanRequest};
+use skiagraph_graph::{Graph, MemorySources, Plan, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, presets, registry};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene};
 use std::sync::Arc;
@@ -95,11 +95,14 @@ fn presets_keep_the_contract() {
         let plan = plan(&preset.path, None);
         let culled = plan.culled().iter().map(|pass| &pass.name);
         let culled: Vec<_> = culled
-            .filter(|name| !name.ends_with("fit_map.texel_density"))
+            .filter(|name| {
+                let on_request = ["fit_map.texel_density", "visibility_buffer.shading_normal"];
+                !on_request.iter().any(|pass| name.ends_with(pass))
+            })
             .collect();
         // `position` is not kept where passes find receivers anew, and rays are written for whom asks.
         let is_needed =
-            |name: &&&str| !name.ends_with("gbuffer.surface") && !name.ends_with(".write_rays");
+            |name: &&&String| !name.ends_with("gbuffer.surface") && !name.ends_with(".write_rays");
         let culled: Vec<_> = culled.iter().filter(is_needed).collect();
         assert!(
             plan.warnings().is_empty() && culled.is_empty(),
@@ -140,7 +143,7 @@ fn passes_run_in_the_order_of_the_file() {
 #[test]
 fn the_steps_of_a_frame_are_passes() {
     let rt = [
-        "gbuffer.primitive",
+        "gbuffer.visibility_buffer.primitive",
         "detect_facing",
         "turn[0].fill_rays.compact",
         "turn[0].fill_rays.dispatch_arguments",
@@ -149,7 +152,7 @@ fn the_steps_of_a_frame_are_passes() {
     ];
     assert_eq!(live(&plan("pipelines/rt.ron", None)), rt);
     let nsm = [
-        "gbuffer.primitive",
+        "gbuffer.visibility_buffer.primitive",
         "gbuffer.surface",
         "create_shadow_map.fit_map.over_scene",
         "create_shadow_map.draw[0]",
@@ -158,10 +161,10 @@ fn the_steps_of_a_frame_are_passes() {
     assert_eq!(live(&plan("pipelines/nsm.ron", None)), nsm);
     assert_eq!(
         live(&plan("pipelines/shared/gbuffer.ron", Some(&["primitive"]))),
-        ["primitive"]
+        ["visibility_buffer.primitive"]
     );
     let crsma = [
-        "gbuffer.primitive",
+        "gbuffer.visibility_buffer.primitive",
         "fit_map.over_scene",
         "create_shadow_map.layer[0].outer",
         "create_shadow_map.layer[0].turn[0].select",
@@ -227,7 +230,7 @@ fn what_no_output_needs_is_culled() {
     assert_eq!(
         live(&plan),
         [
-            "gbuffer.primitive",
+            "gbuffer.visibility_buffer.primitive",
             "detect_facing",
             "turn[0].fill_rays.compact"
         ]
@@ -236,6 +239,7 @@ fn what_no_output_needs_is_culled() {
     assert_eq!(
         culled,
         [
+            "gbuffer.visibility_buffer.shading_normal",
             "gbuffer.surface",
             "turn[0].fill_rays.dispatch_arguments",
             "turn[0].write_rays",
@@ -259,5 +263,63 @@ fn more_rays_than_every_device_binds_are_traced_in_turns() {
             .filter(|pass| pass.kind == "Trace")
             .count();
         assert_eq!(traces, turns, "{viewport:?}");
+    }
+}
+
+/// Mebibytes at 1024² pixels, with maps of 1024² texels, without what the scene takes.
+#[test]
+fn methods_take_the_memory_that_they_need() {
+    let bytes = |name: &str| {
+        let provider = SceneProvider::new(Arc::new(empty()));
+        let plan =
+            load(&format!("pipelines/{name}.ron")).plan(&PlanRequest::new([1024; 2], &provider));
+        plan.unwrap_or_else(|errors| panic!("{errors}"))
+            .memory_bytes()
+    };
+    for (name, most) in [
+        ("nsm", 30),
+        ("rt", 20),
+        ("hybrid_pcf", 24),
+        ("crsm", 28),
+        ("light_buffer", 40),
+        ("rt_area", 40),
+        ("hybrid_pcf_area", 72),
+    ] {
+        let mebibytes = bytes(name) as f64 / f64::from(1 << 20);
+        let most = f64::from(most);
+        assert!(
+            (most - 0.5..most + 0.05).contains(&mebibytes),
+            "{name}: {mebibytes}"
+        );
+    }
+}
+
+#[test]
+fn primitives_are_drawn_once_for_all_lights() {
+    let document = r#"(
+        format: 3,
+        description: "two lights",
+        materials: [Texture(name: "visibility", format: R32Uint, layers: "lights.count"),
+            Texture(name: "status", format: R32Uint, layers: "lights.count")],
+        passes: [Include(graph: "METHOD", name: "lit", repeat: "lights.count", bind: {"light": "lights[index]",
+            "visibility": "visibility[index]", "status": "status[index]"})],
+        outputs: ["visibility", "status"],
+        lights: [directional, spot, point],
+    )"#;
+    let mut scene = empty();
+    scene
+        .lights
+        .push(DirectionalLight::new(DVec3::NEG_Y).into());
+    let provider = SceneProvider::new(Arc::new(scene));
+    for (method, primitives, surfaces) in [("rt.ron", 1, 0), ("light_buffer.ron", 1, 2)] {
+        let document = document.replace("METHOD", method);
+        let files = MemorySources::new([("pipelines/two.ron", &*document)]).over(EmbeddedSources);
+        let graph = Graph::load("pipelines/two.ron", &registry(), &files);
+        let graph = graph.unwrap_or_else(|errors| panic!("{errors}"));
+        let plan = graph.plan(&PlanRequest::new([64, 64], &provider));
+        let passes = live(&plan.unwrap_or_else(|errors| panic!("{errors}")));
+        let count = |ending| passes.iter().filter(|name| name.ends_with(ending)).count();
+        assert_eq!(count("buffer.primitive"), primitives, "{passes:?}");
+        assert_eq!(count("gbuffer.surface"), surfaces, "{passes:?}");
     }
 }

@@ -145,7 +145,7 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
     let first = next(&mut executor);
     assert_eq!(first.skipped, [""; 0]);
     let everything = [
-        "gbuffer.primitive",
+        "gbuffer.visibility_buffer.primitive",
         "gbuffer.surface",
         "create_shadow_map.fit_map.over_scene",
         "create_shadow_map.draw[0]",
@@ -174,7 +174,7 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
         (
             "map_size",
             ParamValue::U32(64),
-            &["gbuffer.primitive", "gbuffer.surface"],
+            &["gbuffer.visibility_buffer.primitive", "gbuffer.surface"],
         ),
     ] {
         executor.set_param(param, value, &mut provider).unwrap();
@@ -182,7 +182,10 @@ fn a_new_camera_renews_what_depends_on_the_camera() {
         assert_eq!(next(&mut executor).skipped, everything, "{param}");
     }
     executor.touch("light").unwrap();
-    assert_eq!(next(&mut executor).skipped, ["gbuffer.primitive"]);
+    assert_eq!(
+        next(&mut executor).skipped,
+        ["gbuffer.visibility_buffer.primitive"]
+    );
 }
 
 /// Everything that depends on the light follows a view that has one of its own, also if it is used

@@ -44,7 +44,7 @@ fn json(path: &Path) -> Value {
 
 const NSM: &str = "profile nsm --size 32x24 --map-size 32 --frames 6 --warmup 1";
 const PASSES: [&str; 5] = [
-    "gbuffer.primitive",
+    "gbuffer.visibility_buffer.primitive",
     "gbuffer.surface",
     "create_shadow_map.fit_map.over_scene",
     "create_shadow_map.draw[0]",

@@ -45,6 +45,7 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
         assert!(differences.contains(&expected), "{differences:?}");
     }
     let of_nsm = [
+        "gbuffer.surface",
         "create_shadow_map.fit_map.over_scene",
         "create_shadow_map.draw[0]",
         "shadow_lookup",
@@ -63,7 +64,7 @@ fn a_baseline_stands_beside_and_other_conditions_are_called_out() {
         .iter()
         .map(|pass| pass.name.as_str())
         .collect();
-    assert_eq!(names, ["gbuffer.primitive", "gbuffer.surface"]);
+    assert_eq!(names, ["gbuffer.visibility_buffer.primitive"]);
     for pass in &beside.passes {
         let [low, ratio, high] = [pass.cpu.low, pass.cpu.ratio, pass.cpu.high].map(Option::unwrap);
         assert!(low <= ratio && ratio <= high, "{pass:?}");

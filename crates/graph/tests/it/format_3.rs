@@ -1,8 +1,9 @@
 //! Values, `expose: All`, `narrow`, `imports`, `Remove`, parts behind conditions; without a GPU.
 
-use crate::support::{Files, checked, codes, load, names, plan, right, wrong};
+use crate::support::{Files, Triangle, checked, codes, load, names, plan, right, wrong};
 use skiagraph_graph::{
-    Code, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry, ResourceKind, step::Step,
+    Code, Describe, Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry, ResourceKind,
+    step::Step,
 };
 use std::collections::BTreeMap;
 
@@ -567,6 +568,61 @@ fn the_nearest_import_wins() {
     let inner = r#"imports: [(of: "shared/solid.wgsl", is: "shared/solid.wgsl")], inputs"#;
     let files = files.edited("pipelines/inner.ron", "inputs", inner);
     assert_eq!(names(&planned(&files, 8)), ["inner.fill"]);
+}
+
+/// The include stands below; what it says of itself decides which module the passes behind it get.
+#[test]
+fn a_condition_of_imports_may_name_a_value_of_an_include() {
+    let files = |says: &str| {
+        let imports = r#"imports: [(of: "shared/solid.wgsl", is: "shared/masked.wgsl", if: "needs")],
+            values: {"needs": "is_masked && viewport.width > 4"},"#;
+        let files = modules(imports).document(
+            "pipelines/says.ron",
+            &format!(
+                r#"values: {{"is_masked": "{says}"}},
+                materials: [Buffer(name: "one", data: [1])],
+                passes: [], outputs: ["one", "is_masked"]"#
+            ),
+        );
+        let include = r#"Include(graph: "says.ron"), Include(graph: "inner.ron"),"#;
+        files.edited(
+            "pipelines/graph.ron",
+            r#"Include(graph: "inner.ron"),"#,
+            include,
+        )
+    };
+    assert_eq!(names(&planned(&files("false"), 8)), ["inner.fill"]);
+    assert_eq!(names(&planned(&files("true"), 8)), ["clear", "inner.fill"]);
+    assert_eq!(names(&planned(&files("true"), 4)), ["inner.fill"]);
+    // Without the include nothing has the value.
+    let lacking = files("true").edited("pipelines/graph.ron", r#"Include(graph: "says.ron"),"#, "");
+    let graph = Graph::load("pipelines/graph.ron", &Registry::standard(), &lacking);
+    let plan = graph.and_then(|graph| graph.plan(&PlanRequest::new([8, 8], &NoProvider)));
+    assert!(wrong(plan).to_string().contains("`is_masked`"));
+}
+
+/// `scene.indices` has items in the provider `Triangle`, and `NoProvider` does not know it.
+#[test]
+fn a_registry_has_a_module_stand_in_where_the_provider_has_items() {
+    let mut registry = Registry::standard();
+    registry.stand_in("shared/solid.wgsl", "shared/masked.wgsl", "scene.indices");
+    registry.stand_in("shared/solid.wgsl", "shared/lacking.wgsl", "scene.indices");
+    let files = modules("");
+    let graph = right(Graph::load("pipelines/graph.ron", &registry, &files));
+    assert!(graph.warnings().is_empty());
+    let passes =
+        |provider: &dyn Describe| names(&right(graph.plan(&PlanRequest::new([8, 8], provider))));
+    assert_eq!(passes(&Triangle), ["clear", "inner.fill"]);
+    assert_eq!(passes(&NoProvider), ["inner.fill"]);
+    // A document's own word counts more.
+    let imports = r#"imports: [(of: "shared/solid.wgsl", is: "shared/solid.wgsl")],"#;
+    let graph = right(Graph::load(
+        "pipelines/graph.ron",
+        &registry,
+        &modules(imports),
+    ));
+    let plan = right(graph.plan(&PlanRequest::new([8, 8], &Triangle)));
+    assert_eq!(names(&plan), ["inner.fill"]);
 }
 
 /// A module that stands in for another one imports it: then it is the module itself.

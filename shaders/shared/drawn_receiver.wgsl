@@ -1,6 +1,7 @@
-// The receiver of a pixel, found from the primitive that was drawn there. The ray through the pixel's centre is met with the primitive anew instead
-// of interpolating rasterised attributes, whose precision is the adapter's affair, and stays within
-// it: the edge functions of Davidovic et al., "3D Rasterization", TUGraz 2012.
+// The receiver of a pixel, found from the primitive that was drawn there. The ray through the
+// pixel's centre is met with the primitive anew instead of interpolating rasterised attributes,
+// whose precision is the adapter's affair, and stays within it: the edge functions of Davidovic et
+// al., "3D Rasterization", TUGraz 2012.
 
 #import "shared/camera.wgsl"
 #import "shared/geometry.wgsl"
@@ -12,7 +13,7 @@ var<storage, read> scene_normal_indices: array<u32>;
 
 struct DrawnReceiver {
     place: vec3<f32>,
-    // Of the primitive's corners.
+    // Weights of the primitive's corners.
     weights: vec3<f32>,
     from_behind: bool,
 }
@@ -38,7 +39,8 @@ fn drawn_receiver(pixel: vec2<u32>, viewport: vec2<u32>, id: u32) -> DrawnReceiv
     return DrawnReceiver(place, weights, at.from_behind);
 }
 
-// The interpolated normal, of any length; of a double-sided primitive that of the side that is seen.
+// Returns the interpolated normal, of any length: of a double-sided primitive for the side that is
+// seen.
 fn interpolated_normal(at: DrawnReceiver, id: u32) -> vec3<f32> {
     let normal = at.weights.x * corner_normal(3u * id)
         + at.weights.y * corner_normal(3u * id + 1u)

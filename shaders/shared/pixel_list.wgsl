@@ -10,7 +10,7 @@ const HAS_NO_ANSWER: u32 = 0x80000000u;
 // Both bits: the ray is traced, and changes no pixel.
 const IGNORED: u32 = 0xc0000000u;
 
-// What a hit adds to the entry of its ray; an ignored one stays so.
+// Returns the bits that a hit adds to the entry of its ray; an ignored entry stays so.
 fn outcome_bits(primitive: u32) -> u32 {
     let bits = select(HAS_HIT, 0u, primitive == NO_PRIMITIVE);
     return select(bits, HAS_NO_ANSWER, primitive == UNANSWERED);

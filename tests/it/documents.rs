@@ -100,7 +100,7 @@ fn presets_keep_the_contract() {
                 !on_request.iter().any(|pass| name.ends_with(pass))
             })
             .collect();
-        // `position` is not kept where passes find receivers anew, and rays are written for whom asks.
+        // `position` is not kept where passes find receivers anew; rays are written on request.
         let is_needed =
             |name: &&&String| !name.ends_with("gbuffer.surface") && !name.ends_with(".write_rays");
         let culled: Vec<_> = culled.iter().filter(is_needed).collect();
@@ -301,8 +301,9 @@ fn primitives_are_drawn_once_for_all_lights() {
         description: "two lights",
         materials: [Texture(name: "visibility", format: R32Uint, layers: "lights.count"),
             Texture(name: "status", format: R32Uint, layers: "lights.count")],
-        passes: [Include(graph: "METHOD", name: "lit", repeat: "lights.count", bind: {"light": "lights[index]",
-            "visibility": "visibility[index]", "status": "status[index]"})],
+        passes: [Include(graph: "METHOD", name: "lit", repeat: "lights.count", bind: {
+            "light": "lights[index]", "visibility": "visibility[index]",
+            "status": "status[index]"})],
         outputs: ["visibility", "status"],
         lights: [directional, spot, point],
     )"#;

@@ -246,7 +246,7 @@ impl Trace {
         pass.report(mistake);
     }
 
-    /// Has the CPU trace; rays of a module are written to memory for it, and their hits handed back.
+    /// Has the CPU trace. Rays of a module are written to memory for it, and hits handed back.
     fn lower_to_cpu(&self, pass: &mut Lowering<'_>) {
         let items = |buffer, bytes| CpuItems { buffer, bytes };
         let call = |pass: &Lowering<'_>, reads, writes| {

@@ -15,7 +15,8 @@ use crate::{
         typed::{Document, ImportEntry},
     },
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
-    kinds::registry::Registry,
+    expressions::parser,
+    kinds::registry::{Registry, StandIn},
     language::syntax::Leaf,
     param::{Param, ParamError, find},
     picture::Picture,
@@ -91,30 +92,22 @@ impl Loaded {
             let place = root.file.span(end.saturating_sub(1)..end);
             reports.report(ComposeError::NoOutputs(place));
         }
-        let sources_have = |name: &Located<String>| {
-            let mut paths = module_candidates("", name).into_iter();
-            paths.any(|path| matches!(sources.read(&path), Ok(Some(_))))
-        };
-        let begin = registry.imports();
-        let begin = begin.filter(|entry| sources_have(&entry.of) && sources_have(&entry.is));
-        root.imports.splice(0..0, begin);
+        root.imports
+            .splice(0..0, default_imports(registry, sources));
         let documents = [&root].into_iter();
         let documents: Vec<&Document> = documents.chain(included.iter().map(|d| &**d)).collect();
         let shaders = store::load(&root, ShaderFiles::new(sources), &mut reports);
+        // All of the registry's or none: shaders were compiled so.
         let imported = shaders.imported();
-        let is_imported = |module| {
-            shaders
-                .module(module)
-                .is_some_and(|it| imported.contains(&**it))
-        };
         let is_default = |entry: &ImportEntry| entry.items_of.is_some();
-        let mut defaults = root.imports.iter().filter(|it| is_default(it));
-        let takes_defaults = defaults.any(|it| is_imported(&it.of));
+        let takes_defaults = root.imports.iter().any(|entry| {
+            let module = shaders.module(&entry.of);
+            is_default(entry) && module.is_some_and(|it| imported.contains(&**it))
+        });
         let pictures = load_pictures(&documents, sources, &mut reports);
         let (required, asked_for) = (required(&documents), asked_for(&documents));
         // The uses of a missing shader are not known.
         let is_known = reports.errors() == 0;
-        // All of them or none: shaders were compiled so.
         root.imports.retain(|it| takes_defaults || !is_default(it));
         if is_known {
             drop_unused(&mut root, &shaders, &mut HashMap::new(), &mut reports);
@@ -248,6 +241,27 @@ impl Loaded {
         }
         unused_items
     }
+}
+
+/// Returns the imports of a registry of which the sources have both modules.
+fn default_imports(registry: &Registry, sources: &dyn Sources) -> Vec<ImportEntry> {
+    let is_there = |name: &str| {
+        let mut paths = module_candidates("", name).into_iter();
+        paths.any(|path| matches!(sources.read(&path), Ok(Some(_))))
+    };
+    let stand_ins = registry.stand_ins().iter();
+    let stand_ins = stand_ins.filter(|it| is_there(it.module) && is_there(it.is));
+    let entry = |it: &StandIn| {
+        let file = SourceFile::new("", format!("{}.count > 0", it.items_of));
+        let named = |name: &str| Located::new(name.to_owned(), file.span(0..0));
+        Some(ImportEntry {
+            of: named(it.module),
+            is: named(it.is),
+            condition: Some(parser::expression(&file, 0..file.text.len()).ok()?),
+            items_of: Some(it.items_of),
+        })
+    };
+    stand_ins.filter_map(entry).collect()
 }
 
 fn required(documents: &[&Document]) -> wgt::Features {

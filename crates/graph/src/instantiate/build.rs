@@ -5,7 +5,7 @@ use super::{
     flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
     include::{self, Call},
     merge::{Asks, Content, Site},
-    modules,
+    modules::WaitingModules,
     params::Params,
     scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
     state::{Declared, DeclaredValue, ValueState},
@@ -17,7 +17,7 @@ use crate::{
     document::{
         materials::{Input, InputKind},
         raw::Invalid,
-        typed::{Document, Entry, ImportEntry, Include, Pass, Run as RunEntry, What},
+        typed::{Document, Entry, Include, Pass, Run as RunEntry, What},
     },
     errors::instantiate::InterfaceError,
     expressions::eval,
@@ -43,15 +43,14 @@ pub(super) struct Builder<'a> {
     pub(super) passes: Vec<FlatPass<'a>>,
     first_invalid: Option<usize>,
     pub interfaces: Vec<Interface>,
-    pub(super) plan_inputs: PlanInputs,
+    plan_inputs: PlanInputs,
     /// True if includes of the same content are merged.
     pub(super) merges: bool,
     pub(super) sites: Vec<Site>,
     /// By address of the document.
     asks: HashMap<*const Document, Asks>,
     pub(super) merged: Vec<Merge>,
-    /// Modules that wait for a value of their condition, with the scope of their document.
-    pub(super) waiting: Vec<(ScopeId, &'a ImportEntry)>,
+    waiting: WaitingModules<'a>,
     /// Settings of groups: name of the group, name of the setting, and true if an entry in the
     /// group uses it.
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
@@ -78,7 +77,7 @@ pub(crate) fn flatten<'a>(
         sites: Vec::new(),
         asks: HashMap::new(),
         merged: Vec::new(),
-        waiting: Vec::new(),
+        waiting: WaitingModules::default(),
         said: Vec::new(),
         spent: 0,
         full: None,
@@ -206,9 +205,11 @@ impl<'a> Builder<'a> {
             self.symbols.scopes.declare(scope, &name.value, symbol);
         }
         self.needs(document, scope);
-        modules::replace(self, document, scope);
+        let at = self.symbols.at(scope.begin(), None);
+        self.waiting.add(document, scope, &at);
+        self.replace_modules(None);
         self.entries(&document.entries, context);
-        modules::replace_waiting(self, Some(scope));
+        self.replace_modules(Some(scope));
     }
 
     /// Reports the conditions that a document needs and that do not hold.
@@ -225,6 +226,21 @@ impl<'a> Builder<'a> {
                     need: Located::new(need.text().to_owned(), need.span.clone()),
                     evaluated,
                 });
+            }
+        }
+    }
+
+    /// Has the modules take effect that stand in for others in shaders of documents: those whose
+    /// conditions have their values, and at the `end` of a document all of its own.
+    fn replace_modules(&mut self, end: Option<ScopeId>) {
+        for (scope, entry) in self.waiting.ready(end, &self.symbols) {
+            let mut at = self.symbols.at(scope.begin(), None);
+            // A condition without a value was reported.
+            if self.plan_inputs.is_there(entry.condition.as_ref(), &mut at) == Ok(true) {
+                let instance = self.symbols.scopes.instance_of(scope);
+                let replaced = &mut self.symbols.scopes.instance_mut(instance).replaced;
+                let shaders = &self.symbols.graph.shaders;
+                shaders.replace(replaced, &entry.of, &entry.is);
             }
         }
     }
@@ -439,7 +455,7 @@ impl<'a> Builder<'a> {
             self.merged.push(site.merge(self.passes.len(), include));
             let names = site.names.clone();
             call.give(&names, scopes)?;
-            modules::replace_waiting(self, None);
+            self.replace_modules(None);
             return Ok(names);
         }
         let first_resource = self.symbols.resources.len();
@@ -474,7 +490,7 @@ impl<'a> Builder<'a> {
             });
         }
         call.give(&names, &mut self.symbols.scopes)?;
-        modules::replace_waiting(self, None);
+        self.replace_modules(None);
         Ok(names)
     }
 

@@ -1,8 +1,8 @@
 //! Modules that stand in for others in a document's shaders.
 
 use super::{
-    build::Builder,
     scopes::{Instance, ScopeId},
+    symbols::{At, SymbolTable},
 };
 use crate::{
     document::typed::{Document, ImportEntry},
@@ -10,55 +10,41 @@ use crate::{
     language::syntax::Leaf,
 };
 
-/// Finds the modules that replace others in the shaders of a document. Those whose condition needs
-/// a value of an include wait for it.
-pub(super) fn replace<'a>(builder: &mut Builder<'a>, document: &'a Document, scope: ScopeId) {
-    for entry in &document.imports {
-        let at = builder.symbols.at(scope.begin(), None);
-        if entry.items_of.is_some_and(|name| !at.is_provided(name)) {
-            continue;
-        }
-        if waits(builder, entry, scope) {
-            builder.waiting.push((scope, entry));
-        } else {
-            replace_one(builder, entry, scope);
-        }
-    }
-}
+/// Modules that have not taken effect, each with the scope of its document: its condition may need
+/// a value of an include that is not walked yet.
+#[derive(Default)]
+pub(super) struct WaitingModules<'a>(Vec<(ScopeId, &'a ImportEntry)>);
 
-/// Finds the modules whose conditions have got their values from an include; at the `end` of a
-/// document all of its modules that are left.
-pub(super) fn replace_waiting(builder: &mut Builder<'_>, end: Option<ScopeId>) {
-    for (scope, entry) in std::mem::take(&mut builder.waiting) {
-        if end != Some(scope) && waits(builder, entry, scope) {
-            builder.waiting.push((scope, entry));
-        } else {
-            replace_one(builder, entry, scope);
-        }
+impl<'a> WaitingModules<'a> {
+    /// Adds the modules of a document, but those for which the provider lacks the resource.
+    pub fn add(&mut self, document: &'a Document, scope: ScopeId, at: &At<'_, '_>) {
+        let is_there = |entry: &&ImportEntry| entry.items_of.is_none_or(|it| at.is_provided(it));
+        let entries = document.imports.iter().filter(is_there);
+        self.0.extend(entries.map(|entry| (scope, entry)));
     }
-}
 
-fn replace_one(builder: &mut Builder<'_>, entry: &ImportEntry, scope: ScopeId) {
-    let mut at = builder.symbols.at(scope.begin(), None);
-    let condition = entry.condition.as_ref();
-    // A condition without a value was reported.
-    if builder.plan_inputs.is_there(condition, &mut at) == Ok(true) {
-        let symbols = &mut builder.symbols;
-        let instance = symbols.scopes.instance_of(scope);
-        let replaced = &mut symbols.scopes.instance_mut(instance).replaced;
-        let shaders = &symbols.graph.shaders;
-        shaders.replace(replaced, &entry.of, &entry.is);
+    /// Takes out the modules whose conditions have their values; of the document whose `end` it is
+    /// all that are left.
+    pub fn ready(
+        &mut self,
+        end: Option<ScopeId>,
+        symbols: &SymbolTable<'_>,
+    ) -> Vec<(ScopeId, &'a ImportEntry)> {
+        let is_ready = |(scope, entry): &mut (ScopeId, &ImportEntry)| {
+            end == Some(*scope) || !waits(entry, *scope, symbols)
+        };
+        self.0.extract_if(.., is_ready).collect()
     }
 }
 
 /// True if the condition of a module needs a value that an include of the document gives and has
 /// not given yet.
-fn waits(builder: &Builder<'_>, entry: &ImportEntry, scope: ScopeId) -> bool {
+fn waits(entry: &ImportEntry, scope: ScopeId, symbols: &SymbolTable<'_>) -> bool {
     let mut waits = false;
     let mut check = |scope: ScopeId, leaf: Leaf<'_>| {
         let Instance {
             document, params, ..
-        } = builder.symbols.scopes.document(scope);
+        } = symbols.scopes.document(scope);
         let name = leaf.named().filter(|name| params.bound(name).is_none());
         let gives = |name: &str| {
             let mut includes = document.includes();
@@ -67,7 +53,7 @@ fn waits(builder: &Builder<'_>, entry: &ImportEntry, scope: ScopeId) -> bool {
         waits |= name.is_some_and(gives);
     };
     if let Some(condition) = &entry.condition {
-        builder.symbols.visit(scope, condition, &mut check);
+        symbols.visit(scope, condition, &mut check);
     }
     waits
 }

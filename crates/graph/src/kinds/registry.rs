@@ -8,12 +8,7 @@ use super::{
     kind::{OF_PASS, PassKind},
     raster::Raster,
 };
-use crate::{
-    diagnostics::diagnostic::Diagnostic,
-    document::typed::ImportEntry,
-    expressions::parser,
-    source::span::{Located, SourceFile, Span},
-};
+use crate::{diagnostics::diagnostic::Diagnostic, source::span::Span};
 use serde::de::DeserializeOwned;
 use skiagraph_located_ron::{fields::from_some_fields, reader::Field};
 use std::{fmt, sync::Arc};
@@ -46,10 +41,10 @@ pub struct Registry {
 
 /// A module that all shaders import in the place of another one while the provider has items of a
 /// resource.
-struct StandIn {
-    module: &'static str,
-    is: &'static str,
-    items_of: &'static str,
+pub(crate) struct StandIn {
+    pub module: &'static str,
+    pub is: &'static str,
+    pub items_of: &'static str,
 }
 
 impl Registry {
@@ -95,9 +90,9 @@ impl Registry {
 
     /// Has the shaders of every document import the module `is` in the place of `module` where the
     /// host's [provider](crate#terms) has items of the resource `items_of`: as if each loaded
-    /// document began its `imports` with `(of: module, is: is, if: "items_of.count > 0")`. A document
-    /// whose shaders do not import `module`, a provider that does not know the resource and sources
-    /// that lack one of the modules are left as they are.
+    /// document began its `imports` with `(of: module, is: is, if: "items_of.count > 0")`.
+    /// Documents whose shaders do not import `module`, providers that do not know the resource and
+    /// sources that lack one of the modules are left as they are.
     pub fn stand_in(&mut self, module: &'static str, is: &'static str, items_of: &'static str) {
         self.stand_ins.push(StandIn {
             module,
@@ -106,22 +101,8 @@ impl Registry {
         });
     }
 
-    /// Returns the imports that all documents begin with.
-    pub(crate) fn imports(&self) -> impl Iterator<Item = ImportEntry> {
-        self.stand_ins.iter().filter_map(|it| {
-            let condition = format!("{}.count > 0", it.items_of);
-            let file = SourceFile::new("", format!("{} {} {condition}", it.module, it.is));
-            let begin = it.module.len() + it.is.len() + 2;
-            let named = |name: &str, at: usize| {
-                Located::new(name.to_owned(), file.span(at..at + name.len()))
-            };
-            Some(ImportEntry {
-                of: named(it.module, 0),
-                is: named(it.is, it.module.len() + 1),
-                condition: Some(parser::expression(&file, begin..begin + condition.len()).ok()?),
-                items_of: Some(it.items_of),
-            })
-        })
+    pub(crate) fn stand_ins(&self) -> &[StandIn] {
+        &self.stand_ins
     }
 
     #[cfg(feature = "schema")]

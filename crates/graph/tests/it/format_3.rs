@@ -574,7 +574,8 @@ fn the_nearest_import_wins() {
 #[test]
 fn a_condition_of_imports_may_name_a_value_of_an_include() {
     let files = |says: &str| {
-        let imports = r#"imports: [(of: "shared/solid.wgsl", is: "shared/masked.wgsl", if: "needs")],
+        let imports = r#"
+            imports: [(of: "shared/solid.wgsl", is: "shared/masked.wgsl", if: "needs")],
             values: {"needs": "is_masked && viewport.width > 4"},"#;
         let files = modules(imports).document(
             "pipelines/says.ron",

@@ -11,8 +11,8 @@ pub struct Drawing {
     /// Heading of the picture, for example the graph's path and the viewport.
     /// [`from_plan`](crate::from_plan) leaves it empty.
     pub title: String,
-    /// All passes in the order of the document, including those that do not run and the copy passes
-    /// of captures.
+    /// All passes, each behind those that it depends on, including those that do not run and the
+    /// copy passes of captures.
     pub passes: Vec<Pass>,
     /// All materials: declared, provided, imported, and those made for passes and captures. They
     /// have the order of [`Plan::resources`](skiagraph_graph::Plan::resources).

@@ -68,6 +68,12 @@ impl Resource {
         }
     }
 
+    /// True if the resource has content before the first pass of a frame runs. Samplers count as
+    /// such.
+    pub(crate) fn has_content(&self) -> bool {
+        self.keep || self.origin != Origin::Own || matches!(self.kind, ResourceKind::Sampler(_))
+    }
+
     /// True if the host's provider describes the resource, and makes it.
     pub(crate) fn is_provided(&self) -> bool {
         self.origin == Origin::Host

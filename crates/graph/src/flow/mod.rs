@@ -3,6 +3,8 @@
 
 pub(crate) mod view;
 
+pub(crate) mod arrange;
+
 pub(crate) mod order;
 
 pub(crate) mod cull;

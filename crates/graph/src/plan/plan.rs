@@ -69,8 +69,9 @@ impl Plan {
         used.map(|id| self.resource(*id))
     }
 
-    /// Returns every pass in the order of the document, with the passes that planning adds for
-    /// captures, and those that do not run included. [`PassId::index`] is the index in this list.
+    /// Returns every pass, each behind the passes that it depends on, with the passes that planning
+    /// adds for captures, and those that do not run included. [`PassId::index`] is the index in this
+    /// list.
     pub fn all_passes(&self) -> &[LinkedPass] {
         &self.0.passes
     }
@@ -311,7 +312,7 @@ impl Plan {
     }
 
     /// Returns the passes that do not run because they are not [live](crate#terms), each with the
-    /// reason, in the order of the document. Entries whose `if` is false are no passes of the plan
+    /// reason, in the order of [`all_passes`](Self::all_passes). Entries whose `if` is false are no passes of the plan
     /// and not listed.
     pub fn culled(&self) -> &[CulledPass] {
         &self.0.culled

@@ -10,7 +10,6 @@ use crate::{
 use petgraph::{
     algo::{astar, kosaraju_scc},
     graph::{DiGraph, Edge, NodeIndex},
-    visit::EdgeRef,
 };
 use std::{
     cmp::Reverse,

@@ -50,7 +50,6 @@ pub(crate) fn link<'a>(
     lowered: Lowered<'a>,
     arrange: impl FnOnce(&[LinkedPass], &[Resource], usize, &mut Reports) -> Vec<usize>,
 ) -> Linked<'a> {
-    let request = lowered.symbols.request;
     let mut scope = PassScope::new(lowered.symbols);
     let (mut in_file, mut instances_in_file) = (Vec::new(), Vec::new());
     // The writes of a pass with a mistake are not known.
@@ -85,25 +84,10 @@ pub(crate) fn link<'a>(
     if first_invalid.is_some() {
         sequence.sort_unstable();
     }
-    let (mut passes, mut instances) = (Vec::new(), Vec::new());
-    let mut places = vec![0; in_file.len()];
-    let mut in_file: Vec<Option<LinkedPass>> = in_file.into_iter().map(Some).collect();
-    for index in sequence {
-        let Some(pass) = in_file[index].take() else {
-            continue;
-        };
-        let after = |capture: &&Capture| capture.after.as_ref() == Some(&pass.name.value);
-        let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
-        places[index] = passes.len();
-        passes.push(pass);
-        instances.push(Some(instances_in_file[index]));
-        for capture in captures {
-            // A capture that cannot be was reported, and nothing needs it.
-            if let Ok(captured) = capture::link(capture, &passes, &mut scope) {
-                passes.push(captured);
-                instances.push(None);
-            }
-        }
+    let (passes, places) = with_captures(in_file, &sequence, &mut scope);
+    let mut instances = vec![None; passes.len()];
+    for (place, instance) in places.iter().zip(instances_in_file) {
+        instances[*place] = Some(instance);
     }
     let place = |index: usize| places.get(index).copied().unwrap_or(passes.len());
     let numbers = numbers.into_iter().map(place).collect();
@@ -135,6 +119,33 @@ pub(crate) fn link<'a>(
         interfaces: lowered.interfaces,
         plan_inputs: lowered.plan_inputs,
     }
+}
+
+/// Brings passes into the order of `sequence`, each with the captures after it. Returns the place
+/// of each pass, too.
+fn with_captures(
+    in_file: Vec<LinkedPass>,
+    sequence: &[usize],
+    scope: &mut PassScope<'_>,
+) -> (Vec<LinkedPass>, Vec<usize>) {
+    let (mut passes, mut places) = (Vec::new(), vec![0; in_file.len()]);
+    let mut in_file: Vec<Option<LinkedPass>> = in_file.into_iter().map(Some).collect();
+    for &index in sequence {
+        let Some(pass) = in_file[index].take() else {
+            continue;
+        };
+        let after = |capture: &&Capture| capture.after.as_ref() == Some(&pass.name.value);
+        let captures: BTreeSet<&Capture> = scope.request().captures.iter().filter(after).collect();
+        places[index] = passes.len();
+        passes.push(pass);
+        for capture in captures {
+            // A capture that cannot be was reported, and nothing needs it.
+            if let Ok(captured) = capture::link(capture, &passes, scope) {
+                passes.push(captured);
+            }
+        }
+    }
+    (passes, places)
 }
 
 fn link_pass<'a>(mut pass: LoweredPass<'a>, scope: &mut PassScope<'a>) -> Reported<LinkedPass> {

@@ -1,7 +1,7 @@
 //! [`Drawing`]: a plan as plain, serialisable values.
 
 use serde::Serialize;
-use skiagraph_graph::Hazard;
+use skiagraph_graph::{Alone, Hazard};
 use std::{collections::HashMap, ops::Range};
 
 /// A graph's plan as plain values, for display and serialisation. Passes and materials (textures,
@@ -162,8 +162,11 @@ pub struct Material {
     /// outputs and captures.
     pub outputs: Vec<String>,
     /// Number of the allocation that the material shares: materials with the same number use the
-    /// same memory one after another. `None` if the material shares no memory.
+    /// same memory one after another, or lie side by side in it. `None` if the material shares no
+    /// memory.
     pub memory: Option<usize>,
+    /// Reason for which the material shares no memory; `None` if it does, or is not allocated.
+    pub alone: Option<Alone>,
 }
 
 /// Use of a material, or of a part of it, by a pass.

@@ -311,7 +311,7 @@ pub struct SubresourceRange {
 
 impl SubresourceRange {
     /// The whole of a buffer, or of a resource without parts.
-    pub(crate) const WHOLE: Self = Self {
+    pub const WHOLE: Self = Self {
         mips: 0..1,
         layers: 0..u32::MAX,
         aspect: wgt::TextureAspect::All,

@@ -213,7 +213,8 @@ fn schedule(
         .chain(previous.values().copied())
         .chain(counters(&lifetimes, view))
         .collect();
-    let aliases = aliases(view, &sequence, &lifetimes, &kept);
+    let largest = request.limits.max_buffer_size;
+    let aliases = aliases(view, &sequence, &lifetimes, &kept, largest);
     let culled = culled(view, &live);
     let relies_on = unbound(asked, &lifetimes, view);
     let is_own = |base: &&ResourceId| view.resource(**base).origin == Origin::Own;

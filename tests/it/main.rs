@@ -63,6 +63,7 @@ mod readme;
 mod receivers;
 mod shaders;
 mod sheets;
+mod shuffled;
 mod splits;
 mod spot_layers;
 mod texels;

@@ -1,7 +1,7 @@
 //! [`Drawing`]: a plan as plain, serialisable values.
 
 use serde::Serialize;
-use skiagraph_graph::Hazard;
+use skiagraph_graph::{Alone, Hazard};
 use std::{collections::HashMap, ops::Range};
 
 /// A graph's plan as plain values, for display and serialisation. Passes and materials (textures,
@@ -11,8 +11,8 @@ pub struct Drawing {
     /// Heading of the picture, for example the graph's path and the viewport.
     /// [`from_plan`](crate::from_plan) leaves it empty.
     pub title: String,
-    /// All passes in the order of the document, including those that do not run and the copy passes
-    /// of captures.
+    /// All passes, each behind those that it depends on, including those that do not run and the
+    /// copy passes of captures.
     pub passes: Vec<Pass>,
     /// All materials: declared, provided, imported, and those made for passes and captures. They
     /// have the order of [`Plan::resources`](skiagraph_graph::Plan::resources).
@@ -162,8 +162,11 @@ pub struct Material {
     /// outputs and captures.
     pub outputs: Vec<String>,
     /// Number of the allocation that the material shares: materials with the same number use the
-    /// same memory one after another. `None` if the material shares no memory.
+    /// same memory one after another, or lie side by side in it. `None` if the material shares no
+    /// memory.
     pub memory: Option<usize>,
+    /// Reason for which the material shares no memory; `None` if it does, or is not allocated.
+    pub alone: Option<Alone>,
 }
 
 /// Use of a material, or of a part of it, by a pass.

@@ -81,6 +81,9 @@ fn materials(plan: &Plan) -> Vec<Material> {
     for (name, target) in plan.readable() {
         materials[target.id.index()].outputs.push(name.clone());
     }
+    for (id, alone) in &schedule.aliases.alone {
+        materials[id.index()].alone = Some(*alone);
+    }
     for (id, allocation) in &schedule.aliases.of {
         if schedule.aliases.list[*allocation].aliases.len() > 1 {
             materials[id.index()].memory = Some(*allocation);
@@ -121,6 +124,7 @@ fn material(resource: &Resource) -> Material {
         lifetime: None,
         outputs: Vec::new(),
         memory: None,
+        alone: None,
     };
     match &resource.kind {
         ResourceKind::Texture(texture) => {

@@ -42,6 +42,7 @@ fn chain(passes: usize) -> Drawing {
             lifetime: runs.then_some([position, position]),
             outputs: Vec::new(),
             memory: (runs && index % 2 == 0).then_some(0),
+            alone: None,
         });
         drawing.accesses.push(Access {
             pass: drawing.passes[index].name.clone(),

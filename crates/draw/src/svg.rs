@@ -190,7 +190,15 @@ fn story(column: &Column<'_>, chart: &Chart<'_>) -> String {
         Some([first, last]) => format!("; used from {} to {}", name(first), name(last)),
         None => "; no pass that runs uses it".to_owned(),
     };
-    format!("{}: {}{life}", material.name, words::detail(material))
+    let alone = material
+        .alone
+        .map(|alone| format!("; shares no memory: {}", alone.text()));
+    let alone = alone.unwrap_or_default();
+    format!(
+        "{}: {}{life}{alone}",
+        material.name,
+        words::detail(material)
+    )
 }
 
 fn head(canvas: &mut Canvas, column: &Column<'_>, top: f64) {

@@ -90,7 +90,8 @@ pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
 pub use document::{Address, Filter};
 pub use fields::Chosen;
 pub use flow::{
-    Aliases, Allocation, Conditions, Dependences, Hazard, Lifetime, Lifetimes, Schedule, When,
+    Aliases, Allocation, Alone, Conditions, Dependences, Hazard, Lifetime, Lifetimes, Schedule,
+    When,
 };
 pub use graph::Graph;
 pub use instantiate::{Claim, Run};

@@ -68,6 +68,12 @@ impl Resource {
         }
     }
 
+    /// True if the resource has content before the first pass of a frame runs. Samplers count as
+    /// such.
+    pub(crate) fn has_content(&self) -> bool {
+        self.keep || self.origin != Origin::Own || matches!(self.kind, ResourceKind::Sampler(_))
+    }
+
     /// True if the host's provider describes the resource, and makes it.
     pub(crate) fn is_provided(&self) -> bool {
         self.origin == Origin::Host
@@ -305,7 +311,7 @@ pub struct SubresourceRange {
 
 impl SubresourceRange {
     /// The whole of a buffer, or of a resource without parts.
-    pub(crate) const WHOLE: Self = Self {
+    pub const WHOLE: Self = Self {
         mips: 0..1,
         layers: 0..u32::MAX,
         aspect: wgt::TextureAspect::All,

@@ -595,6 +595,9 @@ pub enum DrawingFormat {
     Dot,
     /// The plan as data, for scripts.
     Json,
+    /// The largest textures and buffers, those that share memory in one line, and for each of the
+    /// others the reason why it shares none.
+    Memory,
 }
 
 /// Arguments of `skiagraph view`.

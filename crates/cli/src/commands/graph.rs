@@ -6,7 +6,8 @@ use crate::terminal::{Terminal, console::print};
 use skiagraph_compare::files::write::write_whole;
 use skiagraph_compare::graphs::planning::{Capabilities, placeholder};
 use skiagraph_compare::graphs::preset;
-use skiagraph_draw::{Drawing, from_plan, to_dot, to_svg};
+use skiagraph_draw::{from_plan, to_dot, to_svg};
+use skiagraph_graph::Plan;
 use std::{ffi::OsStr, path::Path};
 
 /// Plans a graph for the limits and features of the most capable adapters, and draws the plan.
@@ -22,7 +23,7 @@ pub fn graph(args: &GraphArgs) -> Result<(), CliError> {
     request.outputs = (!args.outputs.is_empty()).then(|| args.outputs.clone());
     let plan = preset.plan(&request, &Terminal)?;
     let title = format!("{}, viewport {}", preset.name, args.method.size);
-    let text = text(&from_plan(&plan).titled(title), format(args))?;
+    let text = text(&plan, title, format(args))?;
     match &args.out {
         Some(file) => Ok(write_whole(file, text.as_bytes())?),
         None => print(&text),
@@ -40,11 +41,13 @@ fn format(args: &GraphArgs) -> DrawingFormat {
     })
 }
 
-fn text(drawing: &Drawing, format: DrawingFormat) -> Result<String, CliError> {
+fn text(plan: &Plan, title: String, format: DrawingFormat) -> Result<String, CliError> {
+    let drawing = || from_plan(plan).titled(title.clone());
     match format {
-        DrawingFormat::Svg => Ok(to_svg(drawing)),
-        DrawingFormat::Dot => Ok(to_dot(drawing)),
-        DrawingFormat::Json => match serde_json::to_string_pretty(drawing) {
+        DrawingFormat::Memory => Ok(format!("{title}\n{}\n", plan.memory_table())),
+        DrawingFormat::Svg => Ok(to_svg(&drawing())),
+        DrawingFormat::Dot => Ok(to_dot(&drawing())),
+        DrawingFormat::Json => match serde_json::to_string_pretty(&drawing()) {
             Ok(json) => Ok(json + "\n"),
             Err(error) => {
                 let text = format!("the plan cannot be written as JSON: {error}");

@@ -117,13 +117,19 @@ fn tells(drawing: &Drawing, expected: &[&str]) {
 #[test]
 fn a_material_is_told_by_all_that_makes_it_what_it_is() {
     let expected = [
-        "fog: Rgba16Float 16×8 × 4 slices, 2 mips, 4.5 KiB; used from sample[0].fill to blend",
-        "fine: Rgba8Unorm 64×32, 4 samples, 32.0 KiB; used by blend",
-        "image: Rgba8Unorm 64×32, 2 versions, 16.0 KiB; used by blend",
+        "fog: Rgba16Float 16×8 × 4 slices, 2 mips, 4.5 KiB; used from sample[0].fill to blend; \
+         shares no memory: may be written in part",
+        "fine: Rgba8Unorm 64×32, 4 samples, 32.0 KiB; used by blend; \
+         shares no memory: overlaps all others",
+        "image: Rgba8Unorm 64×32, 2 versions, 16.0 KiB; used by blend; \
+         shares no memory: outlives the frame",
         "image.previous: Rgba8Unorm 64×32, of the frame before; used by blend",
-        "maps: R8Unorm 64×32 × 3 layers, 6.0 KiB; used from map[1] to blend",
-        "noise: R8Unorm 2×2, constant, 4 B; used by blend",
-        "kernel: buffer, constant, 12 B; used by blend",
+        "maps: R8Unorm 64×32 × 3 layers, 6.0 KiB; used from map[1] to blend; \
+         shares no memory: may be written in part",
+        "noise: R8Unorm 2×2, constant, 4 B; used by blend; \
+         shares no memory: outlives the frame",
+        "kernel: buffer, constant, 12 B; used by blend; \
+         shares no memory: outlives the frame",
         "tint: Rgba8Unorm 64×32, imported; used by blend",
         "frame: buffer, the frame's number and time; used by aim",
         "camera: buffer, provided; used by mark",

@@ -13,8 +13,8 @@ pub(super) fn earliest(plan: &Plan) -> Vec<Option<usize>> {
     for (at, &pass) in passes.iter().enumerate() {
         let earliest = cleared(plan, plan.pass(pass)).map(|cleared| {
             let is_cleared = |id| {
-                let memory = allocation(plan, id);
-                memory.is_some_and(|it| cleared.contains(&it)) || is_import(plan, id)
+                let mut cleared = cleared.iter();
+                cleared.any(|it| share(plan, *it, id)) || is_import(plan, id)
             };
             let uses = |before: &LinkedPass| {
                 let mut used = before.accesses.iter();
@@ -30,9 +30,9 @@ pub(super) fn earliest(plan: &Plan) -> Vec<Option<usize>> {
     positions
 }
 
-/// Returns the allocations that a pass clears before other steps of it use them; `None` if it has
-/// other steps than dispatches and such clears of the plan's buffers.
-fn cleared(plan: &Plan, pass: &LinkedPass) -> Option<Vec<usize>> {
+/// Returns the buffers that a pass clears before other steps of it use their memory; `None` if it
+/// has other steps than dispatches and such clears of the plan's buffers.
+fn cleared(plan: &Plan, pass: &LinkedPass) -> Option<Vec<ResourceId>> {
     let mut cleared = Vec::new();
     for (index, step) in pass.steps.iter().enumerate() {
         let id = match step {
@@ -40,14 +40,14 @@ fn cleared(plan: &Plan, pass: &LinkedPass) -> Option<Vec<usize>> {
             Step::Clear { target, .. } => target.id,
             Step::Draw(_) | Step::Copy { .. } | Step::Cpu(_) => return None,
         };
-        // A buffer of the host has none: two of its names may stand for one buffer.
-        let memory = allocation(plan, id)?;
+        // A buffer of the host has no allocation: two of its names may stand for one buffer.
+        plan.schedule().aliases.of.get(&id)?;
         let mut before = pass.accesses.iter().filter(|access| access.step < index);
-        let is_used = before.any(|access| allocation(plan, access.resource) == Some(memory));
+        let is_used = before.any(|access| share(plan, id, access.resource));
         if is_used || !matches!(plan.resource(id).kind, ResourceKind::Buffer(_)) {
             return None;
         }
-        cleared.push(memory);
+        cleared.push(id);
     }
     Some(cleared)
 }
@@ -59,13 +59,13 @@ fn is_import(plan: &Plan, id: ResourceId) -> bool {
     resource.origin == Origin::Host && matches!(resource.kind, ResourceKind::Buffer(_))
 }
 
-/// Returns the index of the allocation that holds a resource; with two versions both have one.
-fn allocation(plan: &Plan, id: ResourceId) -> Option<usize> {
-    let base = match plan.resource(id).origin {
+/// True if two resources, or those that they are the `.previous` of, have bytes in common.
+fn share(plan: &Plan, a: ResourceId, b: ResourceId) -> bool {
+    let base = |id| match plan.resource(id).origin {
         Origin::Previous(base) => base,
         _ => id,
     };
-    plan.schedule().aliases.of.get(&base).copied()
+    plan.schedule().aliases.overlap(base(a), base(b))
 }
 
 #[cfg(test)]

@@ -248,8 +248,8 @@ pub(super) fn clear_view(
     let stencil = format.has_stencil_aspect().then_some(value[1] as u32);
     let depth_stencil = is_depth.then(|| wgpu::RenderPassDepthStencilAttachment {
         view: &target.view,
-        depth_ops: operations(depth, false),
-        stencil_ops: operations(stencil, false),
+        depth_ops: operations(depth, false, target.store),
+        stencil_ops: operations(stencil, false, target.store),
     });
     render_pass(name, encoder, color.as_slice(), depth_stencil, query);
 }
@@ -286,18 +286,22 @@ fn color_attachment<'v>(
         resolve_target: resolve.map(|resolve| &resolve.view),
         ops: wgpu::Operations {
             load,
-            store: wgpu::StoreOp::Store,
+            store: target.store,
         },
     })
 }
 
 /// Effects of a draw on depths or stencils. Without operations the attachment is read-only, and the
 /// pass may sample it too.
-fn operations<V: Default>(clear: Option<V>, write: bool) -> Option<wgpu::Operations<V>> {
+fn operations<V: Default>(
+    clear: Option<V>,
+    write: bool,
+    store: wgpu::StoreOp,
+) -> Option<wgpu::Operations<V>> {
     let is_written = write || clear.is_some();
     is_written.then(|| wgpu::Operations {
         load: clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear),
-        store: wgpu::StoreOp::Store,
+        store,
     })
 }
 
@@ -346,10 +350,10 @@ fn encode_draw(
         .or(stencil.map(|stencil| &stencil.target));
     let target = target.map(|target| wgpu::RenderPassDepthStencilAttachment {
         view: &target.view,
-        depth_ops: depth.and_then(|depth| operations(depth.clear, depth.write)),
+        depth_ops: depth.and_then(|depth| operations(depth.clear, depth.write, depth.target.store)),
         stencil_ops: stencil.and_then(|stencil| {
             let is_read_only = stencil.state.is_read_only(draw.primitive.cull_mode);
-            operations(stencil.clear, !is_read_only)
+            operations(stencil.clear, !is_read_only, stencil.target.store)
         }),
     });
     {

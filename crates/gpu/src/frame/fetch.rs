@@ -4,15 +4,11 @@
 use super::read_buffer::ReadBuffer;
 use crate::{
     error::ExecuteError,
-    memory::{
-        allocation::extent,
-        memory::{Memory, bytes as byte_range},
-        physical::PingPong,
-    },
+    memory::{allocation::extent, memory::Memory, physical::PingPong},
     readback::{Content, Readback},
     signal::Progress,
 };
-use skiagraph_graph::{Plan, Resource, ResourceKind, SubresourceRange, Target, Texture};
+use skiagraph_graph::{Plan, ResourceKind, SubresourceRange, Target, Texture};
 use std::{ops::Range, sync::Arc};
 
 /// An output or capture of a plan, and the copies that read it back.
@@ -81,7 +77,7 @@ impl Readable {
 
     fn source(
         &self,
-        resource: &Resource,
+        plan: &Plan,
         memory: &Memory,
         ping_pong: &PingPong,
     ) -> Result<Source, ExecuteError> {
@@ -91,19 +87,18 @@ impl Readable {
             usage,
         };
         let id = self.target.id;
-        if let ResourceKind::Texture(_) = &resource.kind {
+        if let ResourceKind::Texture(_) = &plan.resource(id).kind {
             let texture = memory.texture(id, ping_pong)?.clone();
             if !texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
                 return Err(refuse("TextureUsages::COPY_SRC"));
             }
             return Ok(Source::Texture(texture));
         }
-        let buffer = memory.buffer(id, ping_pong)?.clone();
+        let (buffer, bytes) = memory.bytes(plan, &self.target, ping_pong)?;
         if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
             return Err(refuse("BufferUsages::COPY_SRC"));
         }
-        let bytes = byte_range(resource, &self.target.part, buffer.size());
-        Ok(Source::Buffer(buffer, bytes))
+        Ok(Source::Buffer(buffer.clone(), bytes))
     }
 }
 
@@ -154,7 +149,7 @@ impl Fetch {
                 known: names.join(", "),
             });
         };
-        let source = readable.source(plan.resource(readable.target.id), memory, ping_pong)?;
+        let source = readable.source(plan, memory, ping_pong)?;
         let size = match &source {
             Source::Texture(_) => readable.mips.iter().map(MipCopy::bytes).sum(),
             Source::Buffer(_, bytes) => copied(bytes).end - copied(bytes).start,

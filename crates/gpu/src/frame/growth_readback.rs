@@ -5,10 +5,7 @@
 use super::read_buffer::ReadBuffer;
 use crate::{
     error::ExecuteError,
-    memory::{
-        memory::{Memory, bytes},
-        physical::PingPong,
-    },
+    memory::{memory::Memory, physical::PingPong},
     signal::Progress,
 };
 use skiagraph_graph::{Growth, Plan, ResourceId, ResourceKind};
@@ -84,10 +81,9 @@ impl GrowthReadback {
         if self.is_asked {
             return self.counted == Some(change);
         }
-        let Ok(buffer) = memory.buffer(counter.id, ping_pong) else {
+        let Ok((buffer, part)) = memory.bytes(plan, counter, ping_pong) else {
             return false;
         };
-        let part = bytes(plan.resource(counter.id), &counter.part, buffer.size());
         encoder.copy_buffer_to_buffer(buffer, part.start, &self.staging.buffer, 0, COUNTER);
         self.staging.map(encoder);
         self.is_asked = true;

@@ -110,6 +110,7 @@ impl GpuPass {
             plan,
             memory,
             ping_pong,
+            discarded: &plan.discarded(at),
         };
         let refused = |error| named(error, pass);
         let steps = scoped(device, &pass.name, || {

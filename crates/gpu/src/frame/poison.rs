@@ -14,7 +14,8 @@ use crate::{
     },
     pipelines::{bind::Binder, handles::GpuAttachment},
 };
-use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind, Target, Texture};
+use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind, SubresourceRange, Target, Texture};
+use std::ops::Range;
 
 /// Fills of the resources: the position in the schedule before which each is filled, and a fill for
 /// each of its allocations.
@@ -25,7 +26,7 @@ pub(super) struct Poison {
 
 /// How a resource is filled.
 enum Fill {
-    Buffer(wgpu::Buffer),
+    Buffer(wgpu::Buffer, Range<u64>),
     /// A texture with all layers of each mip.
     Texture(wgpu::Texture, Vec<MipCopy>),
     /// Attachments that nothing can be copied to are cleared: depths, and texels of several
@@ -37,7 +38,7 @@ impl Fill {
     /// Bytes of the pattern that are needed.
     fn bytes(&self) -> u64 {
         match self {
-            Self::Buffer(buffer) => buffer.size(),
+            Self::Buffer(_, place) => place.end - place.start,
             Self::Texture(_, mips) => mips.iter().map(MipCopy::bytes).max().unwrap_or(0),
             Self::Views(..) => 0,
         }
@@ -45,8 +46,8 @@ impl Fill {
 
     fn encode(&self, pattern: &wgpu::Buffer, encoder: &mut wgpu::CommandEncoder) {
         match self {
-            Self::Buffer(buffer) => {
-                encoder.copy_buffer_to_buffer(pattern, 0, buffer, 0, buffer.size());
+            Self::Buffer(buffer, place) => {
+                encoder.copy_buffer_to_buffer(pattern, 0, buffer, place.start, self.bytes());
             }
             Self::Texture(texture, mips) => {
                 for copy in mips {
@@ -90,6 +91,7 @@ impl Poison {
                     plan,
                     memory,
                     ping_pong: &ping_pong,
+                    discarded: &[],
                 };
                 fill(&binder, id, byte)
             });
@@ -123,7 +125,12 @@ impl Poison {
 fn fill(binder: &Binder<'_>, id: ResourceId, byte: u8) -> Result<Option<Fill>, ExecuteError> {
     Ok(Some(match &binder.plan.resource(id).kind {
         ResourceKind::Buffer(_) => {
-            Fill::Buffer(binder.memory.buffer(id, binder.ping_pong)?.clone())
+            let part = SubresourceRange::WHOLE;
+            let target = Target { id, part };
+            let (buffer, place) = binder
+                .memory
+                .bytes(binder.plan, &target, binder.ping_pong)?;
+            Fill::Buffer(buffer.clone(), place)
         }
         ResourceKind::Texture(texture) => {
             let part = texture.whole();

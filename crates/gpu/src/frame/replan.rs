@@ -226,7 +226,11 @@ impl<'a> Reused<'a> {
                 && self.memory.host(id) == self.old.memory.host(former)
         });
         let same_steps = pass.steps == old.steps && has_same_params(old, pass);
-        self.positions[at].filter(|_| same_steps && same_numbers)
+        let stores_alike = |former: &usize| {
+            let now = self.plan.discarded(at);
+            same_steps && same_numbers && now == self.old.plan.discarded(*former)
+        };
+        self.positions[at].filter(stores_alike)
     }
 
     /// Returns the versions of the inputs that the pass at the position `former` of the former plan

@@ -5,7 +5,7 @@ use crate::{
     buffer,
     error::{ExecuteError, scoped},
 };
-use skiagraph_graph::{Origin, Plan, Resource, ResourceId, ResourceKind, Texture};
+use skiagraph_graph::{Allocation, Origin, Plan, Resource, ResourceKind, Texture};
 use std::collections::HashMap;
 
 /// One texture or buffer that resources share, or two for a resource that is also read as
@@ -23,21 +23,22 @@ pub(crate) struct GpuAllocation {
 pub(super) type Known<'a> = HashMap<&'a str, (&'a Plan, &'a GpuAllocation)>;
 
 impl GpuAllocation {
-    /// Creates an allocation for the resources `aliases`, or reuses the one with this label.
+    /// Creates an allocation of a plan, or reuses the one with the same label.
     pub fn new(
         plan: &Plan,
-        aliases: &[ResourceId],
+        allocation: &Allocation,
         old: &mut Known<'_>,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<Self, ExecuteError> {
-        let id = aliases[0];
+        let id = allocation.aliases[0];
         let resource = plan.resource(id);
         let lifetime = &plan.schedule().lifetimes[&id];
-        let aliases = aliases.iter();
+        let aliases = allocation.aliases.iter();
         let names: Vec<&str> = aliases.map(|id| plan.resource(*id).name.as_str()).collect();
         let label = names.join(" / ");
-        let usage = (lifetime.textures, lifetime.buffers);
+        let usage = (lifetime.textures, allocation.buffers);
+        let bytes = allocation.bytes;
         let count = plan.versions(id);
         let kept = old.remove(label.as_str()).filter(|(old_plan, allocation)| {
             allocation.usage == usage
@@ -46,10 +47,10 @@ impl GpuAllocation {
         });
         let reused = kept.filter(|(old_plan, allocation)| {
             let mut versions = allocation.versions.iter();
-            versions.all(|version| is_made(version, resource))
+            versions.all(|version| is_made(version, resource, bytes))
                 && (resource.origin != Origin::Constant || holds_the_same(old_plan, resource))
         });
-        let make = || make(resource, &label, usage, device);
+        let make = || make((resource, bytes), &label, usage, device);
         let (versions, grown_from) = match reused {
             Some((_, allocation)) => (allocation.versions.clone(), None),
             None => {
@@ -72,7 +73,7 @@ impl GpuAllocation {
 }
 
 fn make(
-    resource: &Resource,
+    (resource, bytes): (&Resource, u64),
     label: &str,
     (textures, buffers): (wgpu::TextureUsages, wgpu::BufferUsages),
     device: &wgpu::Device,
@@ -91,8 +92,8 @@ fn make(
             };
             Ok(Physical::Texture(device.create_texture(&descriptor)))
         }
-        ResourceKind::Buffer(buffer) => {
-            let made = buffer::make(device, label, buffer.bytes, buffers);
+        ResourceKind::Buffer(_) => {
+            let made = buffer::make(device, label, bytes, buffers);
             Ok(Physical::Buffer(made))
         }
         _ => Err(ExecuteError::Internal(
@@ -185,8 +186,8 @@ fn holds_the_same(old_plan: &Plan, resource: &Resource) -> bool {
     }
 }
 
-/// Returns true if a texture or buffer matches a plan's resource.
-fn is_made(physical: &Physical, resource: &Resource) -> bool {
+/// Returns true if a texture matches a plan's resource, or a buffer its size in bytes.
+fn is_made(physical: &Physical, resource: &Resource, bytes: u64) -> bool {
     match (physical, &resource.kind) {
         (Physical::Texture(made), ResourceKind::Texture(wanted)) => {
             made.format() == wanted.format
@@ -196,7 +197,7 @@ fn is_made(physical: &Physical, resource: &Resource) -> bool {
                 && made.sample_count() == wanted.samples
                 && (made.dimension() == wgpu::TextureDimension::D3) == wanted.is_3d
         }
-        (Physical::Buffer(buffer), ResourceKind::Buffer(wanted)) => buffer.size() == wanted.bytes,
+        (Physical::Buffer(buffer), ResourceKind::Buffer(_)) => buffer.size() == bytes,
         _ => false,
     }
 }

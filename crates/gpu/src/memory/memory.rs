@@ -12,8 +12,8 @@ use crate::{
     provider::{Provider, ProviderError},
 };
 use skiagraph_graph::{
-    Address, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId, ResourceKind,
-    Sampler, SubresourceRange, Target,
+    Address, Aliases, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId,
+    ResourceKind, Sampler, SubresourceRange, Target,
 };
 use std::{collections::BTreeMap, ops::Range};
 
@@ -21,7 +21,7 @@ use std::{collections::BTreeMap, ops::Range};
 #[derive(Default)]
 pub(crate) struct Memory {
     allocations: Vec<GpuAllocation>,
-    of: BTreeMap<ResourceId, usize>,
+    aliases: Aliases,
     /// The resource that each `.previous` resource belongs to, if its two allocations alternate.
     bases: BTreeMap<ResourceId, ResourceId>,
     /// Provided resources, their `.previous` copies, the uniform `frame`, and the imports that the
@@ -78,7 +78,7 @@ impl Memory {
     ) -> Result<Self, ExecuteError> {
         check_relied_on(plan, factory.provider)?;
         let mut memory = Self {
-            of: plan.schedule().aliases.of.clone(),
+            aliases: plan.schedule().aliases.clone(),
             ..Self::default()
         };
         let mut reusable = Known::new();
@@ -87,9 +87,8 @@ impl Memory {
             reusable.extend(allocations.map(|made| (made.label.as_str(), (plan, made))));
         }
         for allocation in &plan.schedule().aliases.list {
-            let aliases = &allocation.aliases;
-            let made =
-                GpuAllocation::new(plan, aliases, &mut reusable, factory.device, factory.queue)?;
+            let (device, queue) = (factory.device, factory.queue);
+            let made = GpuAllocation::new(plan, allocation, &mut reusable, device, queue)?;
             memory.allocations.push(made);
         }
         let mut lifetimes = plan.schedule().lifetimes.keys();
@@ -199,7 +198,7 @@ impl Memory {
             Some(base) => (*base, ping_pong.get(base)?.previous),
             None => (id, ping_pong.get(&id).map_or(0, |version| version.current)),
         };
-        let allocation = self.allocations.get(*self.of.get(&base)?)?;
+        let allocation = self.allocations.get(*self.aliases.of.get(&base)?)?;
         allocation.versions.get(version)
     }
 
@@ -227,6 +226,32 @@ impl Memory {
                 "a buffer that a live pass uses was not made",
             )),
         }
+    }
+
+    /// Returns the bytes that a resource has in its allocation; `None` for one of the host.
+    fn place(&self, id: ResourceId) -> Option<Range<u64>> {
+        let base = self.bases.get(&id).unwrap_or(&id);
+        self.aliases.places.get(base).cloned()
+    }
+
+    /// Returns the buffer that holds a part of a plan's buffer in a frame, and the part's bytes.
+    pub fn bytes(
+        &self,
+        plan: &Plan,
+        target: &Target,
+        ping_pong: &PingPong,
+    ) -> Result<(&wgpu::Buffer, Range<u64>), ExecuteError> {
+        let buffer = self.buffer(target.id, ping_pong)?;
+        let place = self.place(target.id).unwrap_or(0..buffer.size());
+        let stride = match &plan.resource(target.id).kind {
+            ResourceKind::Buffer(buffer) => buffer.stride,
+            ResourceKind::Provided(provided) => provided.stride,
+            _ => 0,
+        };
+        let at = |item: u32| place.start + u64::from(item) * stride;
+        let items = target.part.items();
+        let bytes = items.map(|items| at(items.start)..at(items.end));
+        Ok((buffer, bytes.unwrap_or(place)))
     }
 
     pub fn acceleration_structure(&self, id: ResourceId) -> Result<&wgpu::Tlas, ExecuteError> {
@@ -395,7 +420,7 @@ impl Memory {
 
     /// True if a resource is larger than in the former plan, with the same content.
     pub fn is_grown(&self, id: ResourceId) -> bool {
-        let allocation = self.of.get(&id).map(|at| &self.allocations[*at]);
+        let allocation = self.aliases.of.get(&id).map(|at| &self.allocations[*at]);
         allocation.is_some_and(|allocation| allocation.grown_from.is_some())
     }
 
@@ -411,12 +436,13 @@ impl Memory {
     /// True if a resource has the very same memory, and so the same content, in two states of an
     /// executor.
     pub fn same(&self, id: ResourceId, other: &Memory, of_other: ResourceId) -> bool {
-        let versions = |memory: &Memory, id: ResourceId| -> Option<Vec<Physical>> {
+        let versions = |memory: &Memory, id: ResourceId| {
             if let Some(host) = memory.host.get(&id) {
-                return Some(vec![host.clone()]);
+                return Some((vec![host.clone()], None));
             }
             let base = memory.bases.get(&id).unwrap_or(&id);
-            Some(memory.allocations[*memory.of.get(base)?].versions.clone())
+            let (slot, place) = (memory.aliases.of.get(base)?, memory.place(id));
+            Some((memory.allocations[*slot].versions.clone(), place))
         };
         let (a, b) = (versions(self, id), versions(other, of_other));
         a.is_some() && a == b
@@ -474,17 +500,6 @@ fn is_copyable(built: &Physical) -> bool {
 fn is_read_as_before(id: ResourceId, plan: &Plan) -> bool {
     plan.used()
         .any(|other| other.origin == Origin::Previous(id))
-}
-
-/// Returns the byte range of a part of a buffer; `whole` is the size of the buffer in bytes.
-pub(crate) fn bytes(resource: &Resource, part: &SubresourceRange, whole: u64) -> Range<u64> {
-    let stride = match &resource.kind {
-        ResourceKind::Buffer(buffer) => buffer.stride,
-        ResourceKind::Provided(provided) => provided.stride,
-        _ => 0,
-    };
-    let range = |items: Range<u32>| u64::from(items.start) * stride..u64::from(items.end) * stride;
-    part.items().map_or(0..whole, range)
 }
 
 /// Returns an import that the host set for a former plan, if its description is unchanged.

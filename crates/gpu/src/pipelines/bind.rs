@@ -7,11 +7,7 @@ use super::{
 use crate::{
     buffer,
     error::ExecuteError,
-    memory::{
-        allocation::extent,
-        memory::{Memory, bytes},
-        physical::PingPong,
-    },
+    memory::{allocation::extent, memory::Memory, physical::PingPong},
 };
 use skiagraph_graph::{
     Attachment, BindTarget, Ids, LinkedProgram, Plan, ResourceKind, SubresourceRange, Target,
@@ -43,6 +39,8 @@ pub(crate) struct Binder<'a> {
     pub plan: &'a Plan,
     pub memory: &'a Memory,
     pub ping_pong: &'a PingPong,
+    /// Attachments that are not stored.
+    pub discarded: &'a [Target],
 }
 
 impl Binder<'_> {
@@ -156,20 +154,23 @@ impl Binder<'_> {
         Ok(GpuAttachment {
             view: self.memory.view(&whole, dimension, self.ping_pong)?,
             slice: is_3d.then_some(target.part.layers.start),
+            store: match self.discarded.contains(target) {
+                true => wgpu::StoreOp::Discard,
+                false => wgpu::StoreOp::Store,
+            },
         })
     }
 
     fn arguments(&self, target: &Target) -> Result<(wgpu::Buffer, u64), ExecuteError> {
-        let buffer = self.memory.buffer(target.id, self.ping_pong)?.clone();
-        let range = bytes(self.plan.resource(target.id), &target.part, buffer.size());
-        Ok((buffer, range.start))
+        let (buffer, range) = self.memory.bytes(self.plan, target, self.ping_pong)?;
+        Ok((buffer.clone(), range.start))
     }
 
     fn operand(&self, target: &Target, is_cleared: bool) -> Result<GpuOperand, ExecuteError> {
         let resource = self.plan.resource(target.id);
         let ResourceKind::Texture(texture) = &resource.kind else {
-            let buffer = self.memory.buffer(target.id, self.ping_pong)?.clone();
-            let range = bytes(resource, &target.part, buffer.size());
+            let (buffer, range) = self.memory.bytes(self.plan, target, self.ping_pong)?;
+            let buffer = buffer.clone();
             return Ok(GpuOperand::Buffer { buffer, range });
         };
         let layers = target.part.layers.len() as u32;
@@ -275,9 +276,8 @@ impl Binder<'_> {
     ) -> Result<Bound, ExecuteError> {
         Ok(match target {
             BindTarget::Buffer(target) => {
-                let buffer = self.memory.buffer(target.id, self.ping_pong)?.clone();
-                let range = bytes(self.plan.resource(target.id), &target.part, buffer.size());
-                Bound::Buffer(buffer, range)
+                let (buffer, range) = self.memory.bytes(self.plan, target, self.ping_pong)?;
+                Bound::Buffer(buffer.clone(), range)
             }
             BindTarget::Texture { target, dimension } => {
                 Bound::View(self.memory.view(target, *dimension, self.ping_pong)?)

@@ -18,11 +18,12 @@ impl Stage for Handles {
     type Canvas = GpuAttachment;
 }
 
-/// Attachment of a draw: a view, and the slice if the texture is 3D.
+/// Attachment of a draw: a view, the slice if the texture is 3D, and if the content is stored.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct GpuAttachment {
     pub view: wgpu::TextureView,
     pub slice: Option<u32>,
+    pub store: wgpu::StoreOp,
 }
 
 /// Source or target of a copy or a clear.

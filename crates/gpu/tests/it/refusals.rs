@@ -234,8 +234,9 @@ fn more_memory_than_there_is() {
             assert_eq!(name, "image");
             let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
             let gib = (u64::from(edge).pow(2) * u64::from(layers) * 16) >> 30;
+            let size = format!("{edge}×{edge}, {layers} layers");
             let rows = [
-                format!("image {edge}×{edge}, {layers} layers Rgba32Float {gib}.00 GiB"),
+                format!("image {size} Rgba32Float {gib}.00 GiB outlives the frame"),
                 format!("all together {gib}.00 GiB"),
             ];
             assert_eq!(table.lines().map(words).collect::<Vec<_>>(), rows);

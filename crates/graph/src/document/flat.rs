@@ -39,7 +39,9 @@ pub(crate) fn flat(document: &RawDocument) -> String {
 /// Removes the params, values, inputs and materials from `raw` that `document` does not have;
 /// `document` was read from `raw`.
 pub(crate) fn keep(raw: &mut RawDocument, document: &Document) {
-    let params: Vec<&str> = document.params.iter().map(|it| it.name.as_str()).collect();
+    // Those that an include exposes stand there.
+    let params = document.params[..document.declared].iter();
+    let params: Vec<&str> = params.map(|it| it.name.as_str()).collect();
     let materials = document.materials.iter().map(|it| it.name().as_str());
     let inputs = document.inputs.iter().map(|it| it.name.as_str());
     let values = document.values.iter().map(|(name, _)| name.as_str());

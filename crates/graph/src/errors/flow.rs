@@ -49,7 +49,7 @@ mistakes! {
                  `\"{target}.previous\"` and read that; say `overwrites: [\"{target}\"]`, if the \
                  pass itself writes all that it reads"
             ),
-            None => "let a pass above write it, or name another material".to_owned(),
+            None => "let a pass write it, or name another material".to_owned(),
         });
 
     /// A pass that writes nothing that anything else in its document names.
@@ -64,22 +64,45 @@ mistakes! {
              the pass out",
         );
 
-    Cycle { name: String, pass: Located<String>, writer: Located<String>, path: Vec<String> } =>
-        Cycle("passes need each other's results: {} → {pass}", path.join(" → "))
-        .at(&pass, format!("reads `{name}`"))
-        .at(writer, format!("writes `{name}`, and needs what `{pass}` made"))
+    Cycle {
+        /// The passes, each with what makes it come behind the one before; the first comes behind
+        /// the last.
+        ring: Vec<(Located<String>, String)>,
+        /// Material that the first pass reads.
+        previous: String,
+        /// Two passes that keep the order of the file, and the material for which they do.
+        moves: Option<[String; 3]>,
+    } =>
+        Cycle("passes need each other's results: {}", {
+            let passes = ring.iter().chain(ring.first());
+            let passes: Vec<&str> = passes.map(|(pass, _)| pass.value.as_str()).collect();
+            passes.join(" → ")
+        })
+        .at_all(ring)
         .help(format!(
-            "break the cycle: write a second material, move the read into a pass below, or read \
-             what the frame before left, `\"{}.previous\"`",
-            name_within(&pass, &name)
-        ));
+            "break the cycle: write a second material, or read what the frame before left, \
+             `\"{previous}.previous\"`"
+        ))
+        .help_any(moves.map(|[below, above, name]| format!(
+            "or move `{below}` above `{above}`: where several passes write one part of `{name}`, \
+             all that use it run in the order of the file"
+        )));
 
-    WrittenBelow { name: String, pass: Located<String>, read: Span, writer: Located<String> } =>
-        ReadBeforeWrite("pass `{pass}` reads `{name}` before it is written")
-        .at(&read, "read here").at(&pass, "by this pass").at(&writer, "written only here, below")
+    WrittenBelow {
+        name: String,
+        pass: Located<String>,
+        read: Span,
+        writers: Vec<Located<String>>,
+    } =>
+        ReadBeforeWrite(
+            "pass `{pass}` reads `{name}` above all that write it: {}",
+            listed(&writers)
+        )
+        .at(&read, "read here").at(&pass, "by this pass")
+        .at_all(writers.iter().map(|writer| (writer, "written here, below")))
         .help(format!(
-            "move `{writer}` above `{pass}`: the file reads as a sequential program; give `{name}` \
-             `keep: true` to read here what the frame before left"
+            "move `{pass}` below the pass whose content it needs: where several passes write one \
+             part of `{name}`, the order of the file decides which content is read"
         ))
         .help(read_previous(name_within(&pass, &name), &read));
 
@@ -111,6 +134,15 @@ fn verb(changes: bool, partly: bool) -> &'static str {
         (true, false) => "reads and changes",
         (false, true) => "reads a part of",
         (false, false) => "reads",
+    }
+}
+
+/// Joins the names of passes for a sentence.
+fn listed(passes: &[Located<String>]) -> String {
+    let names: Vec<String> = passes.iter().map(|pass| format!("`{pass}`")).collect();
+    match &names[..] {
+        [first, second, _, _, ..] => format!("{first}, {second} and {} more", names.len() - 2),
+        _ => names.join(" and "),
     }
 }
 

@@ -125,9 +125,11 @@ pub(crate) fn conditions(
         }
     }
     // The first pass of a group is its number.
-    let joint = joint.into_labeling();
-    let first = |label: &usize| joint.iter().position(|other| other == label);
-    let group: Vec<usize> = joint.iter().filter_map(first).collect();
+    let mut first = vec![None; schedule.len()];
+    let labels = joint.into_labeling().into_iter().enumerate();
+    let group: Vec<usize> = labels
+        .map(|(at, label)| *first[label].get_or_insert(at))
+        .collect();
     let mut writers = vec![None; view.resources.len()];
     for (id, uses) in &uses {
         let writer = uses.iter().find(|(_, access)| access.writes);

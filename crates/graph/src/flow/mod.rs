@@ -3,6 +3,8 @@
 
 pub(crate) mod view;
 
+pub(crate) mod arrange;
+
 pub(crate) mod order;
 
 pub(crate) mod cull;
@@ -13,12 +15,16 @@ pub(crate) mod lifetimes;
 
 pub(crate) mod conditions;
 
+mod placing;
+
 pub(crate) mod aliases;
+
+pub(crate) mod discard;
 
 #[cfg(test)]
 mod tests;
 
-pub use aliases::{Aliases, Allocation};
+pub use aliases::{Aliases, Allocation, Alone};
 pub use conditions::{Conditions, When};
 pub use lifetimes::{Lifetime, Lifetimes};
 pub use order::{Dependences, Hazard};

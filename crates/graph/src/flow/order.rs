@@ -1,18 +1,20 @@
-//! Dependences between passes. The document reads as a sequential program: each access uses the
-//! content that the passes above it left, which gives the edges of the dependency graph.
+//! Dependences between passes. The passes as they are [arranged](super::arrange) are a sequential
+//! program: each access uses the content that the passes before it left, which gives the edges of
+//! the dependency graph.
 
-use super::view::{GraphView, Subresources};
+use super::{
+    arrange::writers,
+    view::{GraphView, Subresources},
+};
 use crate::{
     diagnostics::reports::Reports,
     errors::flow::OrderError,
     kinds::step::Step,
     link::pass::{Access, LinkedPass, PassId},
-    resource::{Origin, ResourceId, ResourceKind, Target, name_within},
+    resource::{ResourceId, ResourceKind, Target, name_within},
+    source::span::Located,
 };
-use petgraph::{
-    graph::{DiGraph, NodeIndex},
-    visit::EdgeFiltered,
-};
+use petgraph::graph::{DiGraph, NodeIndex};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Reason for which one pass of a plan must run before another one that uses the same part of a
@@ -33,12 +35,11 @@ pub enum Hazard {
 /// that cause the dependence, never empty.
 pub type Dependences = BTreeMap<(PassId, PassId, Hazard), BTreeSet<ResourceId>>;
 
-/// Dependency graph of passes: node i is pass i of the document, and an edge runs from the earlier
-/// to the later pass.
+/// Dependency graph of passes: node i is pass i, and an edge runs from the earlier to the later
+/// pass.
 #[derive(Debug)]
 pub(crate) struct Order {
-    /// The edges between passes, each with its reason. The index of a node is the index of the pass
-    /// in the document's order.
+    /// The edges between passes, each with its reason. The index of a node is that of the pass.
     pub edges: DiGraph<(), Hazard>,
     /// The edges together with the resources that cause them, for drawings.
     pub dependences: Dependences,
@@ -49,7 +50,7 @@ pub(crate) struct Order {
 
 impl Order {
     /// Returns the passes that write a part of a resource last: of each mip, layer or range of
-    /// items in the part, the last pass in the order of the document that writes it.
+    /// items in the part, the last pass that writes it.
     pub fn final_writers(&self, target: &Target) -> BTreeSet<PassId> {
         let parts = self.subresources.within(target.id, &target.part);
         let writers = parts.filter_map(|part| self.last.get(&(target.id, part)));
@@ -63,14 +64,18 @@ struct State {
     readers: BTreeSet<PassId>,
 }
 
-/// Finds the dependences of all passes, which decide later which passes are live. A read before any
-/// write is reported only for the first `first_invalid` passes: below a pass with a mistake, that
-/// pass might have written the content.
+/// Finds the dependences of all passes, which decide later which passes are live, and reports reads
+/// before any write. Of a document with mistakes only the first `first_invalid` passes are read so,
+/// and only as far as no pass with a mistake can have written the content.
 pub(crate) fn order(view: GraphView<'_>, first_invalid: usize, reports: &mut Reports) -> Order {
-    let (order, mut uninitialized) = walk(view, |_| true);
-    uninitialized.retain(|(pass, _)| pass.0 < first_invalid);
-    for (pass, access) in uninitialized {
-        reports.report(explain(pass, access, view, &order));
+    let (order, uninitialized) = walk(view, |_| true);
+    let (_, in_file_order) = writers(view, &order.subresources);
+    let is_complete = first_invalid == view.passes.len();
+    for (reader, access) in uninitialized {
+        let error = explain(reader, access, view, &in_file_order, is_complete);
+        if let Some(error) = error.filter(|_| reader.0 < first_invalid) {
+            reports.report(error);
+        }
     }
     order
 }
@@ -92,10 +97,7 @@ pub(super) fn walk<'p>(
     let mut uninitialized: Vec<(PassId, &Access)> = Vec::new();
     for (index, pass) in view.ids().filter(|(index, _)| runs(*index)) {
         for access in &pass.accesses {
-            let resource = view.resource(access.resource);
-            let has_content = resource.keep
-                || resource.origin != Origin::Own
-                || matches!(resource.kind, ResourceKind::Sampler(_));
+            let has_content = view.resource(access.resource).has_content();
             for part in subresources.within(access.resource, &access.part) {
                 let state = states.entry((access.resource, part)).or_default();
                 let mut edge = |from: PassId, hazard| {
@@ -152,9 +154,16 @@ pub(super) fn walk<'p>(
     (order, uninitialized)
 }
 
-/// Returns the error for a read with no write above it: the resource is written never, or below, or
-/// below by a pass that needs the reader.
-fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) -> OrderError {
+/// Returns the error for a read with no write before it: the resource is written never, or only
+/// behind the reader. `None` for a reader in a cycle, which is reported, and where a pass with a
+/// mistake may be the writer.
+fn explain(
+    reader: PassId,
+    access: &Access,
+    view: GraphView<'_>,
+    in_file_order: &BTreeSet<ResourceId>,
+    is_complete: bool,
+) -> Option<OrderError> {
     let name = view.resource(access.resource).name.clone();
     let pass = view.pass(reader);
     let writes = |pass: &LinkedPass| {
@@ -167,48 +176,34 @@ fn explain(reader: PassId, access: &Access, view: GraphView<'_>, order: &Order) 
     let mut accesses = pass.accesses.iter();
     let itself =
         access.writes || accesses.any(|other| other.writes && other.resource == access.resource);
-    let below = view.ids().skip(reader.0 + 1).find(|(_, pass)| writes(pass));
+    let below = view.passes[reader.0 + 1..].iter();
+    let below = below.filter(|pass| writes(pass)).map(|pass| &pass.name);
+    let below: Vec<&Located<String>> = below.collect();
+    let partly = view.passes[..reader.0].iter().any(writes);
     if pass.is_capture() {
-        return OrderError::Capture {
+        return is_complete.then(|| OrderError::Capture {
             name: pass.name.value.clone(),
-            first: below.map(|(_, writer)| writer.name.value.clone()),
-            partly: view.passes[..reader.0].iter().any(writes),
-        };
+            first: below.first().map(|writer| writer.value.clone()),
+            partly,
+        });
     }
     let (read, pass_name) = (access.span.clone(), pass.name.clone());
-    let Some((writer, below)) = below.filter(|_| !itself) else {
-        return OrderError::Unwritten {
-            name,
-            clear: itself.then(|| clear_above(pass, access, view)),
-            pass: pass_name,
-            read,
-            partly: view.passes[..reader.0].iter().any(writes),
-        };
-    };
-    // Only what a pass needs makes it depend on another; an overwrite could be moved.
-    let needs = EdgeFiltered::from_fn(&order.edges, |edge| {
-        *edge.weight() == Hazard::ReadAfterWrite
-    });
-    let from = NodeIndex::new(reader.0);
-    let is_writer = |node: NodeIndex| node.index() == writer.0;
-    let path = petgraph::algo::astar(&needs, from, is_writer, |_| 1u64, |_| 0);
-    match path {
-        Some((_, path)) => {
-            let name_of = |node: &NodeIndex| view.passes[node.index()].name.value.clone();
-            OrderError::Cycle {
-                name,
-                pass: pass_name,
-                writer: below.name.clone(),
-                path: path.iter().map(name_of).collect(),
-            }
-        }
-        None => OrderError::WrittenBelow {
+    if !itself && !below.is_empty() && in_file_order.contains(&access.resource) {
+        return Some(OrderError::WrittenBelow {
             name,
             pass: pass_name,
             read,
-            writer: below.name.clone(),
-        },
+            writers: below.into_iter().cloned().collect(),
+        });
     }
+    let is_sure = itself || is_complete && below.is_empty();
+    is_sure.then(|| OrderError::Unwritten {
+        name,
+        clear: itself.then(|| clear_above(pass, access, view)),
+        pass: pass_name,
+        read,
+        partly,
+    })
 }
 
 /// Returns the `Clear` that a document can put above a pass, for what an access of the pass

@@ -1,5 +1,5 @@
 //! Order of the live passes that respects every dependence. Dependences run from a pass to one
-//! below it, so this is the order of the document.
+//! behind it in the order that was [derived](super::arrange), so this is that order.
 
 use super::{aliases::Aliases, conditions::Conditions, lifetimes::Lifetimes};
 use crate::{link::pass::PassId, resource::ResourceId};
@@ -28,7 +28,7 @@ pub struct Schedule {
     pub ping_pong: BTreeSet<ResourceId>,
 }
 
-/// Returns the live passes in the order of the document: each depends on passes above it alone.
+/// Returns the live passes in their order: each depends on passes before it alone.
 pub(crate) fn sequence(live: &[bool]) -> Vec<PassId> {
     let passes = (0..live.len()).filter(|pass| live[*pass]);
     passes.map(PassId).collect()

@@ -1,6 +1,7 @@
 //! Order, culling and schedule on bare lists of accesses: each graph is drawn above its case.
 
 use super::{
+    arrange::arrange,
     cull,
     order::{Hazard, Order, order, walk},
     schedule::sequence,
@@ -38,6 +39,9 @@ fn whole(resource: usize, how: How) -> Use {
 
 const RESOURCES: usize = 4;
 
+/// Resources of cases with one writer for most of them.
+const MANY: usize = 8;
+
 struct Case {
     passes: Vec<LinkedPass>,
     resources: Vec<Resource>,
@@ -62,7 +66,7 @@ fn resources() -> Vec<Resource> {
         growth: None,
         keep: false,
     };
-    (0..RESOURCES).map(buffer).collect()
+    (0..MANY).map(buffer).collect()
 }
 
 fn part(mips: &std::ops::Range<u32>, layers: &std::ops::Range<u32>) -> SubresourceRange {
@@ -103,9 +107,15 @@ fn case(uses: &[Vec<Use>]) -> Case {
             enabled: true,
         }
     };
-    let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
+    let in_file: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();
     let mut reports = Reports::default();
     let resources = resources();
+    let view = GraphView {
+        passes: &in_file,
+        resources: &resources,
+    };
+    let sequence = arrange(view, in_file.len(), &mut reports);
+    let passes: Vec<LinkedPass> = sequence.into_iter().map(|at| in_file[at].clone()).collect();
     let view = GraphView {
         passes: &passes,
         resources: &resources,
@@ -364,9 +374,19 @@ fn reads_of_nothing() {
             vec![vec![whole(0, Change)]],
             vec![Code::ReadBeforeWrite],
         ),
+        // One writer: the order is derived.
         (
             "r0 ─▶ p0 ; p1 ─▶ r0",
             vec![vec![whole(0, Read)], vec![whole(0, Write)]],
+            vec![],
+        ),
+        (
+            "r0 ─▶ p0 ; p1 ─▶ r0 ; p2 ─▶ r0",
+            vec![
+                vec![whole(0, Read)],
+                vec![whole(0, Write)],
+                vec![whole(0, Write)],
+            ],
             vec![Code::ReadBeforeWrite],
         ),
         // p0 ─▶ r1 ─▶ p1 ─▶ r0 ─▶ p0
@@ -378,14 +398,14 @@ fn reads_of_nothing() {
             ],
             vec![Code::Cycle],
         ),
-        // An overwrite is no need: p1 could run first.
+        // p0 needs p1, and both write r1 in the order of the file.
         (
             "p0: r0 ─▶ r1 ; p1 ─▶ r1, r0",
             vec![
                 vec![whole(0, Read), whole(1, Write)],
                 vec![whole(1, Write), whole(0, Write)],
             ],
-            vec![Code::ReadBeforeWrite],
+            vec![Code::Cycle],
         ),
         // Neither needs the other's result: both lack a beginning.
         (
@@ -435,6 +455,69 @@ fn a_cycle_is_told_with_its_path() {
         "{}",
         case.diagnostics[0].message
     );
+    let labels = case.diagnostics[0].labels.iter();
+    let labels: Vec<&str> = labels.map(|label| label.text.as_str()).collect();
+    let expected = [
+        "reads `r0` of `p2`",
+        "reads `r1` of `p0`",
+        "reads `r2` of `p1`",
+    ];
+    assert_eq!(labels, expected);
+}
+
+#[test]
+fn a_reader_comes_behind_its_writer() {
+    type Table = (&'static str, Vec<Vec<Use>>, Vec<&'static str>);
+    let table: Vec<Table> = vec![
+        (
+            "p0: r1 ─▶ r2 ; p1: r0 ─▶ r1 ; p2 ─▶ r0",
+            vec![
+                vec![whole(1, Read), whole(2, Write)],
+                vec![whole(0, Read), whole(1, Write)],
+                vec![whole(0, Write)],
+            ],
+            vec!["p2", "p1", "p0"],
+        ),
+        (
+            "p1 waits for p3; nothing orders the others, so the file does",
+            vec![
+                vec![whole(1, Write)],
+                vec![whole(0, Read), whole(2, Write)],
+                vec![whole(1, Read)],
+                vec![whole(0, Write)],
+            ],
+            vec!["p0", "p2", "p3", "p1"],
+        ),
+        (
+            "p0 reads the mips that p1 and p2 write, each one",
+            vec![
+                vec![(0, Read, 0..2, 0..1)],
+                vec![(0, Write, 1..2, 0..1), (0, Read, 0..1, 0..1)],
+                vec![(0, Write, 0..1, 0..1)],
+            ],
+            vec!["p2", "p1", "p0"],
+        ),
+        (
+            "p1, p2 and p3 use r0, which two of them write; p0 reads what p3 makes of it",
+            vec![
+                vec![whole(1, Read)],
+                vec![whole(0, Write)],
+                vec![whole(0, Change)],
+                vec![whole(0, Read), whole(1, Write)],
+            ],
+            vec!["p1", "p2", "p3", "p0"],
+        ),
+    ];
+    for (graph, uses, expected) in table {
+        let case = case(&uses);
+        assert!(
+            case.diagnostics.is_empty(),
+            "{graph}: {:?}",
+            case.diagnostics
+        );
+        let names = case.passes.iter().map(|pass| pass.name.value.as_str());
+        assert_eq!(names.collect::<Vec<_>>(), expected, "{graph}");
+    }
 }
 
 /// A chain as long as no document has it: neither recursion nor quadratic work.
@@ -566,5 +649,84 @@ proptest! {
                 }
             }
         }
+    }
+}
+
+/// Some other order of the file in which passes that use a resource with several writers keep
+/// theirs.
+fn rearranged(uses: &[Vec<Use>], rank: &[u32]) -> Vec<usize> {
+    let written = |uses: &Vec<Use>, id: usize| uses.iter().any(|it| it.0 == id && it.1 != Read);
+    let several: Vec<usize> = (0..MANY)
+        .filter(|id| uses.iter().filter(|uses| written(uses, *id)).count() > 1)
+        .collect();
+    let is_tied = |one: &Vec<Use>, other: &Vec<Use>| {
+        let both = |id: &&usize| {
+            [one, other]
+                .iter()
+                .all(|it| it.iter().any(|it| it.0 == **id))
+        };
+        several.iter().any(|id| both(&id))
+    };
+    let mut open: Vec<usize> = (0..uses.len()).collect();
+    let mut sequence = Vec::new();
+    while !open.is_empty() {
+        let is_ready = |at: &usize| {
+            !open
+                .iter()
+                .any(|above| above < at && is_tied(&uses[*above], &uses[*at]))
+        };
+        let ready = open.iter().copied().filter(is_ready);
+        let Some(next) = ready.max_by_key(|at| rank[*at]) else {
+            break;
+        };
+        open.retain(|at| *at != next);
+        sequence.push(next);
+    }
+    sequence
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Each pass sees the same content, in whichever order the file has its passes.
+    #[test]
+    fn the_order_of_the_file_does_not_matter(
+        reads in prop::collection::vec(prop::collection::vec(0..MANY, 0..3), 12),
+        again in prop::collection::vec((0..12usize, 0..MANY), 0..3),
+        rank in prop::collection::vec(any::<u32>(), 12),
+    ) {
+        // Pass i writes resource i, and reads what passes above it write.
+        let uses = reads.iter().enumerate().map(|(at, reads)| {
+            let reads = reads.iter().filter(|read| **read < at).map(|read| whole(*read, Read));
+            reads.chain((at < MANY).then(|| whole(at, Write))).collect()
+        });
+        let mut uses: Vec<Vec<Use>> = uses.collect();
+        for (at, id) in again {
+            if at > id {
+                uses[at].push(whole(id, Write));
+            }
+        }
+        let file = case(&uses);
+        prop_assert!(file.diagnostics.is_empty());
+        let in_order: Vec<usize> = (0..uses.len()).collect();
+        let (seen, end) = interpret(&file.passes, &in_order);
+        let sequence = rearranged(&uses, &rank);
+        prop_assert_eq!(sequence.len(), uses.len());
+        let other = case(&sequence.iter().map(|at| uses[*at].clone()).collect::<Vec<_>>());
+        prop_assert!(other.diagnostics.is_empty(), "{:?}", other.diagnostics);
+        // By the numbers that the passes have in the first file.
+        let number = |pass: usize| -> usize {
+            let name = &other.passes[pass].name.value;
+            sequence[name[1..].parse::<usize>().unwrap()]
+        };
+        let (other_seen, other_end) = interpret(&other.passes, &in_order);
+        let other_seen: Seen = other_seen
+            .into_iter()
+            .map(|((pass, cell), writer)| ((number(pass), cell), writer.map(number)))
+            .collect();
+        let other_end: BTreeMap<Cell, usize> =
+            other_end.into_iter().map(|(cell, pass)| (cell, number(pass))).collect();
+        prop_assert_eq!(seen, other_seen);
+        prop_assert_eq!(end, other_end);
     }
 }

@@ -7,7 +7,7 @@ use super::{
     steps,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::reports::{Reported, Reports},
     errors::{instantiate::InterfaceError, layout::LayoutError, link::LinkError},
     instantiate::{
         flat::{Interface, Merge, PlanInputs},
@@ -17,7 +17,7 @@ use crate::{
     },
     language::syntax::Reference,
     request::Capture,
-    resource::{Origin, ResourceId, ResourceKind, SubresourceRange},
+    resource::{Origin, Resource, ResourceId, ResourceKind, SubresourceRange},
 };
 use std::collections::BTreeSet;
 
@@ -25,7 +25,7 @@ use std::collections::BTreeSet;
 pub(crate) struct Linked<'a> {
     /// Resources of the graph, with their sizes, and the meanings of names.
     pub symbols: SymbolTable<'a>,
-    /// The linked passes and captures, in the order of the documents.
+    /// The linked passes and captures, in the order in which they run.
     pub passes: Vec<LinkedPass>,
     /// Use of a document (the loaded one or an include) that each pass belongs to, parallel to
     /// `passes`; `None` for a capture.
@@ -34,8 +34,8 @@ pub(crate) struct Linked<'a> {
     pub numbers: Vec<usize>,
     /// Includes that are replaced by an earlier include of the same content.
     pub merged: Vec<Merge>,
-    /// Number of passes above the first mistake; `None` without a mistake. Writes of passes below
-    /// the mistake are not known.
+    /// Number of passes above the first mistake; `None` without a mistake. After a mistake all
+    /// passes are in the order of the documents, and writes of those below it are not known.
     pub first_invalid: Option<usize>,
     /// Inputs and outputs of each use of a document: of the loaded document and of every include.
     pub interfaces: Vec<Interface>,
@@ -43,45 +43,55 @@ pub(crate) struct Linked<'a> {
     pub plan_inputs: PlanInputs,
 }
 
-/// Links all passes, and adds the passes of the request's captures.
-pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
-    let request = lowered.symbols.request;
+/// Links all passes, brings them into the order that `arrange` returns, and adds the passes of the
+/// request's captures. `arrange` is given the passes, the resources, and the number of passes above
+/// the first mistake.
+pub(crate) fn link<'a>(
+    lowered: Lowered<'a>,
+    arrange: impl FnOnce(&[LinkedPass], &[Resource], usize, &mut Reports) -> Vec<usize>,
+) -> Linked<'a> {
     let mut scope = PassScope::new(lowered.symbols);
-    let (mut passes, mut instances) = (Vec::new(), Vec::new());
+    let (mut in_file, mut instances_in_file) = (Vec::new(), Vec::new());
     // The writes of a pass with a mistake are not known.
     let mut first_invalid: Option<usize> = None;
     let mut numbers = Vec::new();
     for (index, pass) in lowered.passes.into_iter().enumerate() {
-        numbers.push(passes.len());
+        numbers.push(in_file.len());
         // For each mistake all names are searched for what was meant.
         if scope.reports().has_enough() {
-            first_invalid.get_or_insert(passes.len());
+            first_invalid.get_or_insert(in_file.len());
             break;
         }
         if lowered.first_invalid == Some(index) {
-            first_invalid.get_or_insert(passes.len());
+            first_invalid.get_or_insert(in_file.len());
         }
-        let (name, instance, is_broken) = (pass.flat.name.clone(), pass.instance, pass.is_broken);
+        let (instance, is_broken) = (pass.instance, pass.is_broken);
         match link_pass(pass, &mut scope) {
             Ok(linked) if !is_broken => {
-                passes.push(linked);
-                instances.push(Some(instance));
+                in_file.push(linked);
+                instances_in_file.push(instance);
             }
-            _ => drop(first_invalid.get_or_insert(passes.len())),
-        }
-        let after = |capture: &&Capture| capture.after.as_deref() == Some(name.as_str());
-        let captures: BTreeSet<&Capture> = request.captures.iter().filter(after).collect();
-        for capture in captures {
-            // A capture that cannot be was reported, and nothing needs it.
-            if let Ok(captured) = capture::link(capture, &passes, &mut scope) {
-                passes.push(captured);
-                instances.push(None);
-            }
+            _ => drop(first_invalid.get_or_insert(in_file.len())),
         }
     }
     if lowered.first_invalid.is_some() {
-        first_invalid.get_or_insert(passes.len());
+        first_invalid.get_or_insert(in_file.len());
     }
+    let above = first_invalid.unwrap_or(in_file.len());
+    let mut reports = std::mem::take(scope.reports());
+    let mut sequence = arrange(&in_file, &scope.symbols().resources, above, &mut reports);
+    *scope.reports() = reports;
+    if first_invalid.is_some() {
+        sequence.sort_unstable();
+    }
+    let (passes, places) = with_captures(in_file, &sequence, &mut scope);
+    let mut instances = vec![None; passes.len()];
+    for (place, instance) in places.iter().zip(instances_in_file) {
+        instances[*place] = Some(instance);
+    }
+    let place = |index: usize| places.get(index).copied().unwrap_or(passes.len());
+    let numbers = numbers.into_iter().map(place).collect();
+    let first_invalid = first_invalid.map(place);
     let layouts = std::mem::take(&mut scope.layouts);
     let mut symbols = scope.into_symbols();
     let (buffers, errors) = layouts.sized(&symbols);
@@ -109,6 +119,33 @@ pub(crate) fn link(lowered: Lowered<'_>) -> Linked<'_> {
         interfaces: lowered.interfaces,
         plan_inputs: lowered.plan_inputs,
     }
+}
+
+/// Brings passes into the order of `sequence`, each with the captures after it. Returns the place
+/// of each pass, too.
+fn with_captures(
+    in_file: Vec<LinkedPass>,
+    sequence: &[usize],
+    scope: &mut PassScope<'_>,
+) -> (Vec<LinkedPass>, Vec<usize>) {
+    let (mut passes, mut places) = (Vec::new(), vec![0; in_file.len()]);
+    let mut in_file: Vec<Option<LinkedPass>> = in_file.into_iter().map(Some).collect();
+    for &index in sequence {
+        let Some(pass) = in_file[index].take() else {
+            continue;
+        };
+        let after = |capture: &&Capture| capture.after.as_ref() == Some(&pass.name.value);
+        let captures: BTreeSet<&Capture> = scope.request().captures.iter().filter(after).collect();
+        places[index] = passes.len();
+        passes.push(pass);
+        for capture in captures {
+            // A capture that cannot be was reported, and nothing needs it.
+            if let Ok(captured) = capture::link(capture, &passes, scope) {
+                passes.push(captured);
+            }
+        }
+    }
+    (passes, places)
 }
 
 fn link_pass<'a>(mut pass: LoweredPass<'a>, scope: &mut PassScope<'a>) -> Reported<LinkedPass> {

@@ -15,6 +15,7 @@ use crate::{
     },
     flow::{
         aliases::aliases,
+        arrange::arrange,
         conditions::conditions,
         cull,
         lifetimes::{Lifetime, Lifetimes, lifetimes},
@@ -116,7 +117,9 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
         let mut lowered = lower(flat);
         let symbols = &mut lowered.symbols;
         check_captures(request, &lowered.passes, &mut symbols.reports);
-        let linked = link(lowered);
+        let linked = link(lowered, |passes, resources, above, reports| {
+            arrange(GraphView { passes, resources }, above, reports)
+        });
         let Some(copies) = linked.two_copies() else {
             break linked;
         };
@@ -210,7 +213,8 @@ fn schedule(
         .chain(previous.values().copied())
         .chain(counters(&lifetimes, view))
         .collect();
-    let aliases = aliases(view, &sequence, &lifetimes, &kept);
+    let largest = request.limits.max_buffer_size;
+    let aliases = aliases(view, &sequence, &lifetimes, &kept, largest);
     let culled = culled(view, &live);
     let relies_on = unbound(asked, &lifetimes, view);
     let is_own = |base: &&ResourceId| view.resource(**base).origin == Origin::Own;

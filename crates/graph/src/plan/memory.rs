@@ -3,7 +3,10 @@
 use super::text;
 use crate::{
     errors::plan::OutputError,
-    flow::{aliases::Allocation, schedule::Schedule},
+    flow::{
+        aliases::{Allocation, Alone},
+        schedule::Schedule,
+    },
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind},
     source::span::Span,
 };
@@ -33,9 +36,11 @@ pub struct MemoryEntry {
     /// size also if the memory is shared. Doubled if a pass also reads the resource as it was in
     /// the frame before (`.previous`).
     pub bytes: u64,
-    /// [Full names](crate#terms) of the other materials that use the same memory at other times of
-    /// the frame, in the order of their first use; empty if the memory is not shared.
+    /// [Full names](crate#terms) of the other materials that use bytes of the same memory at other
+    /// times of the frame, in the order of their first use; empty if the memory is not shared.
     pub shared_with: Vec<String>,
+    /// Reason for which the memory is not shared; `None` if it may be.
+    pub alone: Option<Alone>,
 }
 
 /// Resources of a plan, and the schedule with their allocations.
@@ -49,7 +54,8 @@ impl Memory<'_> {
     pub fn entries(&self) -> Vec<MemoryEntry> {
         let entry = |id: &ResourceId| {
             let resource = &self.resources[id.0];
-            let slot = self.schedule.aliases.of.get(id)?;
+            let placed = &self.schedule.aliases;
+            let slot = placed.of.get(id)?;
             let (format, size, mips, layers) = match &resource.kind {
                 ResourceKind::Texture(texture) => (
                     Some(texture.format),
@@ -62,7 +68,7 @@ impl Memory<'_> {
                     (None, [edge, 1], 1, 1)
                 }
             };
-            let aliases = self.schedule.aliases.list[*slot].aliases.iter();
+            let aliases = placed.list[*slot].aliases.iter();
             Some(MemoryEntry {
                 name: resource.name.clone(),
                 format,
@@ -71,9 +77,10 @@ impl Memory<'_> {
                 layers,
                 bytes: self.bytes_of(*id),
                 shared_with: aliases
-                    .filter(|other| *other != id)
+                    .filter(|other| *other != id && placed.overlap(*id, **other))
                     .map(|other| self.resources[other.0].name.clone())
                     .collect(),
+                alone: placed.alone.get(id).copied(),
             })
         };
         self.schedule.lifetimes.keys().filter_map(entry).collect()
@@ -107,17 +114,14 @@ impl Memory<'_> {
     }
 
     pub fn saved_bytes(&self) -> u64 {
-        let saved = |allocation: &Allocation| {
-            let spared = allocation.aliases.len() as u64 - 1;
-            spared.saturating_mul(self.allocation_bytes(allocation))
-        };
-        let allocations = self.schedule.aliases.list.iter();
-        allocations.map(saved).fold(0, u64::saturating_add)
+        let own = self.schedule.aliases.of.keys().map(|id| self.bytes_of(*id));
+        own.fold(0, u64::saturating_add)
+            .saturating_sub(self.bytes())
     }
 
     pub fn table(&self) -> String {
         let allocations = self.schedule.aliases.list.iter();
-        let mut rows: Vec<(u64, [String; 3])> = allocations
+        let mut rows: Vec<(u64, [String; 4])> = allocations
             .map(|allocation| (self.allocation_bytes(allocation), self.row(allocation)))
             .collect();
         rows.sort_by_key(|(bytes, _)| std::cmp::Reverse(*bytes));
@@ -125,28 +129,27 @@ impl Memory<'_> {
         if !rest.is_empty() {
             let bytes = rest.iter().map(|(bytes, _)| *bytes);
             let sum = bytes.fold(0, u64::saturating_add);
-            let name = format!("{} more", rest.len());
-            rows.push((sum, [name, String::new(), String::new()]));
+            rows.push((sum, named(format!("{} more", rest.len()))));
         }
-        let total = ["all together".to_owned(), String::new(), String::new()];
-        rows.push((self.bytes(), total));
+        rows.push((self.bytes(), named("all together".to_owned())));
         let width = |column: usize| {
             let cells = rows.iter().map(|(_, cells)| cells[column].chars().count());
             cells.max().unwrap_or_default()
         };
         let [name, size, format] = [0, 1, 2].map(width);
-        let line = |(bytes, cells): &(u64, [String; 3])| {
+        let line = |(bytes, cells): &(u64, [String; 4])| {
             let bytes = text::bytes(*bytes);
-            format!(
-                "{:name$}  {:size$}  {:format$}  {bytes:>10}",
-                cells[0], cells[1], cells[2]
-            )
+            let [names, sizes, formats, alone] = cells;
+            let line =
+                format!("{names:name$}  {sizes:size$}  {formats:format$}  {bytes:>10}  {alone}");
+            line.trim_end().to_owned()
         };
         rows.iter().map(line).collect::<Vec<_>>().join("\n")
     }
 
-    /// Returns the names of the resources, the size and the format of an allocation, as text.
-    fn row(&self, allocation: &Allocation) -> [String; 3] {
+    /// Returns the names of the resources, the size and the format of an allocation, and the reason
+    /// for which it is not shared, as text.
+    fn row(&self, allocation: &Allocation) -> [String; 4] {
         let name = |alias: &ResourceId| self.resources[alias.0].name.as_str();
         let names: Vec<&str> = allocation.aliases.iter().map(name).collect();
         let versions = match self.versions(allocation.aliases[0]) {
@@ -177,7 +180,9 @@ impl Memory<'_> {
             [_] | [] => names.join(""),
             _ => format!("{} in turn", names.join(", ")),
         };
-        [text::cut(&names, 40), size + &versions, format]
+        let alone = self.schedule.aliases.alone.get(&allocation.aliases[0]);
+        let alone = alone.map_or("", |alone| alone.text()).to_owned();
+        [text::cut(&names, 40), size + &versions, format, alone]
     }
 
     /// Returns the error for a plan whose textures and buffers take more than `limit` bytes
@@ -202,7 +207,8 @@ impl Memory<'_> {
     }
 
     fn allocation_bytes(&self, allocation: &Allocation) -> u64 {
-        self.bytes_of(allocation.aliases[0])
+        let versions = self.versions(allocation.aliases[0]);
+        allocation.bytes.saturating_mul(versions as u64)
     }
 
     fn bytes_of(&self, id: ResourceId) -> u64 {
@@ -213,6 +219,11 @@ impl Memory<'_> {
     pub fn versions(&self, id: ResourceId) -> usize {
         1 + usize::from(self.schedule.ping_pong.contains(&id))
     }
+}
+
+/// A row of the table with nothing but a name.
+fn named(name: String) -> [String; 4] {
+    [name, String::new(), String::new(), String::new()]
 }
 
 /// Returns the resources that grow, with their growth. Last frame's version of a growing resource

@@ -13,6 +13,7 @@ use crate::{
     compose::loaded::Loaded,
     diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
     flow::{
+        discard::discarded,
         order::{Dependences, dependences},
         schedule::Schedule,
         view::GraphView,
@@ -69,8 +70,9 @@ impl Plan {
         used.map(|id| self.resource(*id))
     }
 
-    /// Returns every pass in the order of the document, with the passes that planning adds for
-    /// captures, and those that do not run included. [`PassId::index`] is the index in this list.
+    /// Returns every pass, each behind the passes that it depends on, with the passes that planning
+    /// adds for captures, and those that do not run included. [`PassId::index`] is the index in
+    /// this list.
     pub fn all_passes(&self) -> &[LinkedPass] {
         &self.0.passes
     }
@@ -104,11 +106,23 @@ impl Plan {
     /// Finds the dependences between the passes for which `runs` returns true, as if the plan had
     /// no other passes: the pairs of passes whose order matters.
     pub fn dependences(&self, runs: impl Fn(PassId) -> bool) -> Dependences {
-        let view = GraphView {
+        dependences(self.view(), runs)
+    }
+
+    /// Returns the attachments of the pass at position `at` of the [`Schedule`] whose content a
+    /// device need not store: nothing uses it after the pass.
+    ///
+    /// # Panics
+    /// If the schedule has no such position.
+    pub fn discarded(&self, at: usize) -> Vec<Target> {
+        discarded(self.view(), &self.0.schedule, at)
+    }
+
+    fn view(&self) -> GraphView<'_> {
+        GraphView {
             passes: &self.0.passes,
             resources: &self.0.resources,
-        };
-        dependences(view, runs)
+        }
     }
 
     /// Returns the named expressions in the section `values` of the documents, in the order of the
@@ -311,8 +325,8 @@ impl Plan {
     }
 
     /// Returns the passes that do not run because they are not [live](crate#terms), each with the
-    /// reason, in the order of the document. Entries whose `if` is false are no passes of the plan
-    /// and not listed.
+    /// reason, in the order of [`all_passes`](Self::all_passes). Entries whose `if` is false are no
+    /// passes of the plan and not listed.
     pub fn culled(&self) -> &[CulledPass] {
         &self.0.culled
     }

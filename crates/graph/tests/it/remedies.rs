@@ -125,12 +125,12 @@ pub const REMEDIES: &[(Code, &str)] = &[
     ),
     (
         Code::ReadBeforeWrite,
-        "Move the writer above the reader, clear the material first, or read `….previous` if \
-         last frame's content is meant.",
+        "Let a pass write the material, clear it first, move the reader below one of several \
+         writers, or read `….previous` if last frame's content is meant.",
     ),
     (
         Code::Cycle,
-        "Write a second material, read `….previous`, or move the read into a pass below.",
+        "Write a second material, or read `….previous`.",
     ),
     (
         Code::FeedbackLoop,

@@ -66,6 +66,8 @@ impl Pass {
         if adds {
             sum.push_str(" + 13u * out[i]");
         }
+        // A shader sees its own part of the memory alone.
+        let _ = write!(sum, " + arrayLength(&out) - {}u", count(target));
         let overwrites = if self.whole && !adds {
             format!("overwrites: [\"m{target}\"],")
         } else {
@@ -104,8 +106,16 @@ pub struct Program {
     pub poison: Option<u8>,
 }
 
-const MATERIALS: usize = 4;
+const MATERIALS: usize = 6;
+/// Items of a material that passes write and read.
 pub const ITEMS: usize = 4;
+
+/// Number of items of a material: each has another size, so that several lie side by side in the
+/// memory of one.
+fn count(material: usize) -> usize {
+    ITEMS + 70 * material
+}
+
 const RUNS: [&str; 4] = ["Always", "OnChange", "Once", "When(\"flag\")"];
 /// Those of passes that write what is kept: that `OnChange` saves work is seen there, since what a
 /// pass adds to is no reason to run it.
@@ -153,7 +163,8 @@ impl Program {
         let materials: String = (0..MATERIALS)
             .map(|material| {
                 let keep = self.kept[material];
-                format!("Buffer(name: \"m{material}\", count: {ITEMS}, keep: {keep}), ")
+                let count = count(material);
+                format!("Buffer(name: \"m{material}\", count: {count}, keep: {keep}), ")
             })
             .collect();
         let outputs: Vec<String> = self.outputs.iter().map(|at| format!("m{at}")).collect();

@@ -4,6 +4,7 @@
 // tiles in turns. So no thread looks at more than 2,048 texels, however large a triangle is.
 
 #import "shared/groups.wgsl"
+#import "shared/all_cast.wgsl"
 #import "shared/bin_texels.wgsl"
 #import "shared/large_casters.wgsl"
 
@@ -20,10 +21,11 @@ struct Thread {
 
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_small(thread: Thread) {
-    let primitive = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
-    if 3u * primitive >= arrayLength(&scene_indices) {
+    let number = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
+    if number >= caster_count() {
         return;
     }
+    let primitive = caster_primitive(number);
     let caster = caster_of(primitive);
     if any(caster.last < caster.first) {
         return;

@@ -1,5 +1,6 @@
 // Stage to find the receiver of each pixel: its position, and dot(n, l) of its interpolated normal
-// in w, 0 outside of a spot light's cone; one thread per pixel. The ray through the pixel's centre
+// in w, 0 outside of a spot light's cone, UNSHADOWED where it receives no shadow; one thread per
+// pixel. The ray through the pixel's centre
 // is met with the pixel's primitive anew instead of interpolating rasterised attributes, whose
 // precision is the adapter's affair, and stays within it: the edge functions of Davidovic et al.,
 // "3D Rasterization", TUGraz 2012.
@@ -10,6 +11,7 @@
 #import "shared/ids.wgsl"
 #import "shared/pixel_weights.wgsl"
 #import "shared/solid.wgsl"
+#import "shared/all_roles.wgsl"
 
 var<storage, read> scene_normals: array<vec4<f32>>;
 var<storage, read> scene_normal_indices: array<u32>;
@@ -58,7 +60,8 @@ fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     if length_squared > 0.0 && light_shines_on(receiver) {
         n_dot_l = dot(normal, to_light_from(receiver)) * inverseSqrt(length_squared);
     }
-    textureStore(position, pixel, vec4(receiver, n_dot_l));
+    let w = select(UNSHADOWED, n_dot_l, receives_shadow(id));
+    textureStore(position, pixel, vec4(receiver, w));
 }
 
 fn corner_normal(corner: u32) -> vec3<f32> {

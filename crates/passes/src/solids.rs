@@ -1,4 +1,5 @@
-//! The triangles of a mesh as solids: one for each piece whose triangles lie together.
+//! The casters of a mesh as solids: one for each run of them in a piece whose triangles lie
+//! together.
 
 use crate::piece::{Content, Piece};
 use skiagraph_scene::Mesh;
@@ -7,36 +8,37 @@ use std::ops::Range;
 /// Triangles that a tracer other than ours has in a structure of their own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Solid {
-    /// The piece that they are; `None` for pieces whose triangles lie among those of others, which
-    /// are one solid together.
-    pub piece: Option<usize>,
-    /// The range of the mesh that holds them, and no others if they are a piece.
+    /// The piece that they are of, and the first of them; `None` for pieces whose triangles lie
+    /// among those of others, which are one solid together.
+    pub piece: Option<[usize; 2]>,
+    /// The range of the mesh that holds them, and no others if they are of a piece.
     pub triangles: Range<usize>,
     /// Number of the last change of their corners.
     pub changed: u64,
 }
 
-/// Returns the solids of the mesh: all of its triangles but those that no part has. They are
-/// `most` at most, and the numbers of their first triangles have 24 bits.
+/// Most runs of casters in a piece: one of more runs is joined with others.
+const MOST_RUNS: usize = 64;
+
+/// Returns the solids of the mesh: all of its casters but those that no part has. They are `most`
+/// at most, and the numbers of their first triangles have 24 bits.
 pub(crate) fn solids(pieces: &[Piece], mesh: &Mesh, most: u32) -> Vec<Solid> {
     let mut solids = Vec::new();
     let (mut together, mut changed) = (0..0, 0);
     for (number, piece) in pieces.iter().enumerate() {
-        let (triangles, of_piece) = (piece.triangles(mesh), piece.moved.max(piece.turned));
-        if is_solid(pieces, piece, mesh, most) {
-            let (piece, changed) = (Some(number), of_piece);
-            solids.push(Solid {
-                piece,
+        let of_piece = piece.moved.max(piece.turned);
+        if let Some(runs) = runs(pieces, piece, mesh, most) {
+            solids.extend(runs.into_iter().map(|triangles| Solid {
+                piece: Some([number, triangles.start]),
                 triangles,
-                changed,
-            });
+                changed: of_piece,
+            }));
         } else {
             // Those of a piece that is gone may have been among these.
             changed = changed.max(of_piece);
-            together.end = together.end.max(triangles.end);
+            together.end = together.end.max(piece.triangles(mesh).end);
         }
     }
-    solids.retain(|solid| !solid.triangles.is_empty());
     let together = Solid {
         piece: None,
         triangles: together,
@@ -46,17 +48,32 @@ pub(crate) fn solids(pieces: &[Piece], mesh: &Mesh, most: u32) -> Vec<Solid> {
     solids
 }
 
-/// True if a piece is a solid by itself.
-fn is_solid(pieces: &[Piece], piece: &Piece, mesh: &Mesh, most: u32) -> bool {
+/// The runs of casters of a piece, if they are solids by themselves.
+fn runs(pieces: &[Piece], piece: &Piece, mesh: &Mesh, most: u32) -> Option<Vec<Range<usize>>> {
     let triangles = piece.triangles(mesh);
     let count = match &piece.content {
         Content::Part(part) => part.of.triangles(part.number).len(),
         Content::Outside(outside) => outside.triangles.len(),
         Content::Whole => triangles.len(),
-        Content::Gone => return false,
+        Content::Gone => return None,
     };
-    let is_named = triangles.start < 1 << 24 && pieces.len() < most as usize;
-    count == triangles.len() && is_named
+    if count != triangles.len() {
+        return None;
+    }
+    let mut runs = Vec::new();
+    if mesh.surfaces.have_roles() {
+        for caster in triangles.filter(|id| mesh.casts(*id as u32)) {
+            match runs.last_mut() {
+                Some(Range { end, .. }) if *end == caster => *end += 1,
+                _ => runs.push(caster..caster + 1),
+            }
+        }
+    } else if !triangles.is_empty() {
+        runs.push(triangles);
+    }
+    let last = runs.last().map_or(0, |run| run.start);
+    let is_named = last < 1 << 24 && pieces.len() * runs.len().max(1) < most as usize;
+    (is_named && runs.len() <= MOST_RUNS).then_some(runs)
 }
 
 /// Returns the corners of the solid of those pieces that are none by themselves: those of other
@@ -70,8 +87,9 @@ pub(crate) fn joined_corners(
     let mut corners = vec![[0; 3]; solid.triangles.len()];
     let joined = pieces
         .iter()
-        .filter(|piece| !is_solid(pieces, piece, mesh, most));
-    for primitive in joined.flat_map(|piece| piece.primitives(mesh)) {
+        .filter(|piece| runs(pieces, piece, mesh, most).is_none());
+    let joined = joined.flat_map(|piece| piece.primitives(mesh));
+    for primitive in joined.filter(|id| mesh.casts(*id)) {
         corners[primitive as usize] = mesh.triangles[primitive as usize];
     }
     corners

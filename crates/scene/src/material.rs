@@ -203,8 +203,8 @@ impl Surfaces {
         }
         let mut copies = HashMap::new();
         for primitive in primitives {
-            let of = &mut self.of[primitive as usize];
-            let own = self.materials.get(*of as usize);
+            let index = &mut self.of[primitive as usize];
+            let own = self.materials.get(*index as usize);
             let Some(own) = own.filter(|own| own.shadows != shadows) else {
                 continue;
             };
@@ -212,7 +212,7 @@ impl Surfaces {
                 shadows,
                 ..own.clone()
             };
-            *of = *copies.entry(*of).or_insert_with(|| {
+            *index = *copies.entry(*index).or_insert_with(|| {
                 self.materials.push(copy);
                 self.materials.len() as u32 - 1
             });

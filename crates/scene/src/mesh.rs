@@ -110,8 +110,10 @@ impl Mesh {
 
     /// Returns the primitive ids of all triangles that cast a shadow, ascending.
     pub fn casters(&self) -> Vec<u32> {
-        let all = 0..self.triangles.len() as u32;
-        all.filter(|primitive| self.casts(*primitive)).collect()
+        let primitives = 0..self.triangles.len() as u32;
+        primitives
+            .filter(|primitive| self.casts(*primitive))
+            .collect()
     }
 
     /// Iterates over the corner positions of all triangles, in the order of `triangles`, three for

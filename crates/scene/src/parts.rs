@@ -27,7 +27,8 @@ type Side = ([u32; 2], bool, u32);
 
 impl Parts {
     /// Finds the parts of a mesh. A triangle that names a position twice has no area, and one may
-    /// [cast](Mesh::casts) no shadow: such a triangle closes no edge, and is an open part of its own.
+    /// [cast](Mesh::casts) no shadow: such a triangle closes no edge, and is an open part of its
+    /// own.
     pub fn new(mesh: &Mesh) -> Self {
         let mut sides = sides(mesh);
         sides.sort_unstable();

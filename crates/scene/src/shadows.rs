@@ -1,6 +1,5 @@
 //! Roles of surfaces in shadows: which cast them, and which receive them.
 
-use crate::mesh::Mesh;
 use serde::{Deserialize, Serialize};
 
 /// Role of a surface in shadows. A surface that does not cast keeps light from nothing; one that
@@ -41,29 +40,10 @@ impl Shadows {
     }
 }
 
-/// Packs the [roles](Shadows) of a mesh's triangles for shaders: two bits for each, 16 triangles to
-/// a word, lowest bits first. The lower bit is set for a triangle that casts no shadow, the upper
-/// for one that receives none. Returns no words if all triangles do both.
-pub fn shadow_words(mesh: &Mesh) -> Vec<u32> {
-    let surfaces = &mesh.surfaces;
-    if !surfaces.have_roles() {
-        return Vec::new();
-    }
-    let bits = |primitive: u32| {
-        let receives = surfaces.shadows(primitive).receives();
-        u32::from(!mesh.casts(primitive)) | u32::from(!receives) << 1
-    };
-    let count = mesh.triangles.len() as u32;
-    let word = |first: u32| {
-        let own = first..count.min(first + 16);
-        own.fold(0, |word, at| word | bits(at) << (2 * (at % 16)))
-    };
-    (0..count).step_by(16).map(word).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Mesh, packed_masks::shadow_words};
 
     /// Triangles of their own corners, of two groups.
     fn mesh(count: u32) -> Mesh {

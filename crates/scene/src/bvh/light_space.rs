@@ -96,9 +96,10 @@ impl LightSpace {
         (p.truncate() - d.truncate() / d.z * p.z, up)
     }
 
-    /// Builds a hierarchy over the [casters](Mesh::casters) of a mesh with at most `most` nodes (0 counts as 1). Returns its nodes,
-    /// root first, and a [`Bvh`] of the same tree, to be used only for its `primitives` and for
-    /// [`refit`](Self::refit). Both are empty where nothing casts. Returns `None` if
+    /// Builds a hierarchy over the [casters](Mesh::casters) of a mesh with at most `most` nodes (0
+    /// counts as 1). Returns its nodes, root first, and a [`Bvh`] of the same tree, to be used only
+    /// for its `primitives` and for [`refit`](Self::refit). Both are empty where nothing casts.
+    /// Returns `None` if
     /// [`LightSpaceNode::link`] has too few bits: with more than 67 million triangles or nodes, or
     /// with more than 63 triangles in a leaf.
     pub fn build(&self, mesh: &Mesh, most: usize) -> Option<(Vec<LightSpaceNode>, Bvh)> {

@@ -234,8 +234,8 @@ impl TwoLevelBvh {
     /// Adds a piece with the number `piece`: the next unused number ([`pieces`](Self::pieces)), or
     /// the number of a piece that was [removed](Self::remove). `at_rest` has the piece's triangles
     /// before they were moved; its tree is built over those that [cast](Mesh::casts). In the whole
-    /// mesh they are the triangles from the primitive id `first` on. The boxes are fitted by the next
-    /// [`refit`](Self::refit), which must name the piece.
+    /// mesh they are the triangles from the primitive id `first` on. The boxes are fitted by the
+    /// next [`refit`](Self::refit), which must name the piece.
     ///
     /// # Panics
     /// If `piece` is the number of a piece that has triangles, or greater than the number of

@@ -54,8 +54,8 @@ pub(super) fn index(value: Option<&Value>) -> Option<usize> {
     usize::try_from(value?.as_u64()?).ok()
 }
 
-/// The role in shadows that the `extras` of an object give, if they do: `casts` and `receives`, true
-/// without a word. Some exporters write 0 and 1.
+/// The role in shadows that the `extras` of an object give, if they do: `casts` and `receives`,
+/// true without a word. Some exporters write 0 and 1.
 pub(super) fn role(fields: &Fields, place: &str, beside: &mut Beside) -> Option<Shadows> {
     let extras = fields.get("extras")?;
     let mut is_said = false;

@@ -1,8 +1,8 @@
 // Stage to estimate how many entries the lists would have: counts those of one caster in 31, a
 // large one's in some of its tiles; one thread for each.
 
+#import "shared/numbered_casters.wgsl"
 #import "shared/groups.wgsl"
-#import "shared/all_cast.wgsl"
 #import "shared/bin_texels.wgsl"
 
 // Not a power of two, as meshes may repeat themselves.
@@ -21,7 +21,7 @@ fn main(
     if number >= caster_count() {
         return;
     }
-    let caster = caster_of(caster_primitive(number));
+    let caster = caster_of(number);
     if any(caster.last < caster.first) {
         return;
     }

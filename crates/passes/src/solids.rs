@@ -94,3 +94,48 @@ pub(crate) fn joined_corners(
     }
     corners
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use skiagraph_scene::Shadows;
+
+    /// Triangles of their own corners, of which some cast nothing.
+    fn mesh(count: u32, quiet: &[u32]) -> Mesh {
+        let mut mesh = Mesh {
+            triangles: (0..count)
+                .map(|at| [3 * at, 3 * at + 1, 3 * at + 2])
+                .collect(),
+            ..Mesh::default()
+        };
+        let quiet = quiet.iter().copied();
+        mesh.surfaces
+            .set_shadows(quiet, count as usize, Shadows::Receives);
+        mesh
+    }
+
+    fn ranges(mesh: &Mesh) -> Vec<(Option<[usize; 2]>, Range<usize>)> {
+        let solids = solids(&[Piece::new(Content::Whole)], mesh, 1 << 24).into_iter();
+        solids.map(|solid| (solid.piece, solid.triangles)).collect()
+    }
+
+    #[test]
+    fn each_run_of_casters_is_a_solid() {
+        assert_eq!(ranges(&mesh(9, &[])), [(Some([0, 0]), 0..9)]);
+        let runs = [(Some([0, 1]), 1..4), (Some([0, 6]), 6..9)];
+        assert_eq!(ranges(&mesh(9, &[0, 4, 5])), runs);
+        assert_eq!(ranges(&mesh(2, &[0, 1])), []);
+    }
+
+    #[test]
+    fn many_runs_are_one_solid_in_which_others_have_no_area() {
+        let quiet: Vec<u32> = (0..300).filter(|at| at % 2 == 1).collect();
+        let mesh = mesh(300, &quiet);
+        let pieces = [Piece::new(Content::Whole)];
+        let solids = solids(&pieces, &mesh, 1 << 24);
+        assert_eq!((solids.len(), solids[0].piece), (1, None));
+        let corners = joined_corners(&pieces, &mesh, &solids[0], 1 << 24);
+        let areas = corners.iter().filter(|corners| **corners != [0; 3]);
+        assert_eq!(areas.count(), 150);
+    }
+}

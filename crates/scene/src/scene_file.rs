@@ -212,7 +212,8 @@ impl SceneFile {
         }
         if let Some(text) = nothing_casts(mesh) {
             let warning = Diagnostic::warning(Code::Unused, text);
-            let place = self.shadow_places.values().next();
+            let places = self.shadow_places.values();
+            let place = places.min_by_key(|place| place.range.start);
             report.remark(warning.at_any(place, "").brief());
         }
         Ok(())

@@ -67,9 +67,9 @@ resources! {
     "scene.embree", "work for the CPU, with the feature `embree`",
         Shape, Storage, |_, _| Some(Provided::CPU_WORK), |it, _, name, _| Err(it.unknown(name));
     "scene.casters",
-        "`array<u32>`, ids of the primitives that cast shadows, ascending; of none one item, \
-         0xffffffff",
-        Winding, Storage, |it, _| array(Some(it.facts.casters(&it.scene.mesh)), 4),
+        "`array<vec4<u32>>`, of each primitive that casts shadows its three indices and its id, \
+         ascending; of none one item, of 0xffffffff",
+        Winding, Storage, |it, _| array(Some(it.facts.casters(&it.scene.mesh)), 16),
         Uploads::upload_casters;
     "scene.shadows",
         "`array<u32>`: [`shadow_words`](skiagraph_scene::packed_masks::shadow_words), what \

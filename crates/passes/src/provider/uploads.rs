@@ -206,17 +206,19 @@ impl Uploads {
     }
 
     pub fn upload_casters(&mut self, mesh: &Mesh, name: &str, on: On) -> Result<How, Error> {
-        let facts = Arc::clone(&self.facts);
-        let every: Vec<u32>;
-        let casters = match facts.casters(mesh) {
-            0 => &[u32::MAX],
-            _ if facts.shadows.is_empty() => {
-                every = (0..mesh.triangles.len() as u32).collect();
-                &every[..]
-            }
-            _ => &facts.listed,
+        let item = |id: u32| {
+            let [a, b, c] = mesh.triangles[id as usize];
+            [a, b, c, id]
         };
-        self.upload_items(name, casters, on)
+        let mut casters: Vec<[u32; 4]> = if self.facts.shadows.is_empty() {
+            (0..mesh.triangles.len() as u32).map(item).collect()
+        } else {
+            self.facts.listed.iter().copied().map(item).collect()
+        };
+        if casters.is_empty() {
+            casters.push([u32::MAX; 4]);
+        }
+        self.upload_items(name, &casters, on)
     }
 
     pub fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {

@@ -528,7 +528,8 @@ fn parts_get_their_roles_in_shadows() {
     ];
     let nothing = names.map(|name| format!("{name:?}: Receives")).join(", ");
     let (_, report) = load_with(&format!("{{{nothing}}}")).unwrap();
-    let expected = "garden.ron:5:15: no part of the mesh casts a shadow, so that everything is lit: let \
-                one cast (`shadows` of a scene file, `casts` in the extras of a glTF file)\n";
+    let expected = "garden.ron:5:15: no part of the mesh casts a shadow, so that everything is \
+                    lit: let one cast (`shadows` of a scene file, `casts` in the extras of a glTF \
+                    file)\n";
     assert_eq!(report, expected);
 }

@@ -3,6 +3,7 @@
 // over many tiles to `bin_large`: one workgroup per part of a large one, whose threads take its
 // tiles in turns. So no thread looks at more than 2,048 texels, however large a triangle is.
 
+#import "shared/numbered_casters.wgsl"
 #import "shared/groups.wgsl"
 #import "shared/bin_texels.wgsl"
 #import "shared/large_casters.wgsl"
@@ -20,11 +21,11 @@ struct Thread {
 
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_small(thread: Thread) {
-    let primitive = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
-    if 3u * primitive >= arrayLength(&scene_indices) {
+    let number = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
+    if number >= caster_count() {
         return;
     }
-    let caster = caster_of(primitive);
+    let caster = caster_of(number);
     if any(caster.last < caster.first) {
         return;
     }
@@ -32,7 +33,7 @@ fn bin_small(thread: Thread) {
     let count = tiles.x * tiles.y;
     if count > ALONE {
         for (var first = 0u; first < count; first += PART) {
-            append_part(Part(primitive, first));
+            append_part(Part(number, first));
         }
         return;
     }
@@ -46,7 +47,7 @@ fn bin_large(thread: Thread) {
         return;
     }
     let part = large.parts[number];
-    let caster = caster_of(part.primitive);
+    let caster = caster_of(part.caster);
     let tiles = tiles_of(caster);
     let end = min(tiles.x * tiles.y, part.first_tile + PART);
     bin(caster, part.first_tile + thread.lane, end, GROUP_SIZE);

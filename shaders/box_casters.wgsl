@@ -1,5 +1,7 @@
-// Stage to write the box of each caster; one thread per triangle, as many as `boxes` has.
+// Stage to write the box of each caster; one thread per caster, boxes by primitive, as many as
+// `boxes` has.
 
+#import "shared/all_cast.wgsl"
 #import "shared/caster_box.wgsl"
 #import "shared/geometry.wgsl"
 #import "shared/groups.wgsl"
@@ -11,8 +13,12 @@ fn main(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let primitive = thread_number(group, lane);
-    if primitive >= min(arrayLength(&boxes), arrayLength(&scene_indices) / 3u) {
+    let number = thread_number(group, lane);
+    if number >= caster_count() {
+        return;
+    }
+    let primitive = caster_primitive(number);
+    if primitive >= arrayLength(&boxes) {
         return;
     }
     boxes[primitive] = packed_box(box_of(primitive));

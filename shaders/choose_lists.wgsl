@@ -2,6 +2,7 @@
 // single thread. Their answers are the same. Figures: docs/light_buffer_area.md.
 
 #import "shared/groups.wgsl"
+#import "shared/all_cast.wgsl"
 #import "shared/light_area.wgsl"
 #import "shared/light_buffer.wgsl"
 
@@ -42,5 +43,5 @@ fn main() {
     }
     test_call = array(3u, 1u, 0u, 0u);
     leave_call = array(0u, 0u, 0u, 0u);
-    bin_groups = groups_for(arrayLength(&scene_indices) / 3u);
+    bin_groups = groups_for(caster_count());
 }

@@ -8,6 +8,7 @@
 #import "shared/light.wgsl"
 #import "shared/ray_triangle.wgsl"
 #import "shared/receiver.wgsl"
+#import "shared/all_roles.wgsl"
 
 struct Params {
     reach: f32,
@@ -55,7 +56,7 @@ fn leave_unless_stopped(pixel: vec2<u32>) {
         let seen = dot(relative_to_eye(textureLoad(position, at, 0).xyz), camera.forward);
         var hit = Hit(ray.t_max, id, 0.0, 0.0);
         let is_known = id != UNKNOWN_PRIMITIVE;
-        if id == NO_PRIMITIVE || (is_known && id == own) {
+        if id == NO_PRIMITIVE || (is_known && (id == own || !casts_shadow(id))) {
             continue;
         }
         if (clip.w - seen > rise && clip.w - seen < params.thickness * distance)

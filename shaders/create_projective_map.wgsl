@@ -4,6 +4,7 @@
 // primitive, pulled. Martin, Tan 2004, section 4; Williams 1978.
 
 #import "shared/map_caster.wgsl"
+#import "shared/all_cast.wgsl"
 
 struct Params {
     cull: u32,
@@ -29,12 +30,13 @@ struct MaskedVertex {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) corner: u32) -> Vertex {
-    return projected(corner);
+fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
+    return projected(caster_corner(index));
 }
 
 @vertex
-fn vertex_masked(@builtin(vertex_index) corner: u32) -> MaskedVertex {
+fn vertex_masked(@builtin(vertex_index) index: u32) -> MaskedVertex {
+    let corner = caster_corner(index);
     let place = projected(corner);
     let own = corner % 3u;
     let weights = vec2(f32(own == 1u), f32(own == 2u));

@@ -3,6 +3,7 @@
 // Curved Surfaces", SIGGRAPH 1978.
 
 #import "shared/map_caster.wgsl"
+#import "shared/all_cast.wgsl"
 
 struct Params {
     cull: u32,
@@ -19,13 +20,14 @@ struct MaskedVertex {
 }
 
 @vertex
-fn vertex(@builtin(vertex_index) corner: u32) -> @builtin(position) vec4<f32> {
-    let texel = light_texel(corner_position(corner));
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
+    let texel = light_texel(corner_position(caster_corner(index)));
     return texel_clip(texel.xy, texel.z);
 }
 
 @vertex
-fn vertex_masked(@builtin(vertex_index) corner: u32) -> MaskedVertex {
+fn vertex_masked(@builtin(vertex_index) index: u32) -> MaskedVertex {
+    let corner = caster_corner(index);
     let primitive = corner / 3u;
     let texel = light_texel(corner_position(corner));
     var depth = texel.z;

@@ -1,6 +1,7 @@
 // Stage to estimate how many entries the lists would have: counts those of one caster in 31, a
 // large one's in some of its tiles; one thread for each.
 
+#import "shared/numbered_casters.wgsl"
 #import "shared/groups.wgsl"
 #import "shared/bin_texels.wgsl"
 
@@ -16,11 +17,11 @@ fn main(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let primitive = ((group.y * groups.x + group.x) * GROUP_SIZE + lane) * ONE_IN;
-    if 3u * primitive >= arrayLength(&scene_indices) {
+    let number = ((group.y * groups.x + group.x) * GROUP_SIZE + lane) * ONE_IN;
+    if number >= caster_count() {
         return;
     }
-    let caster = caster_of(primitive);
+    let caster = caster_of(number);
     if any(caster.last < caster.first) {
         return;
     }
@@ -42,6 +43,6 @@ fn main(
         }
     }
     // The sum fits 32 bits whatever the mesh: of 10 million triangles each counts 2,200 at most.
-    let casters = arrayLength(&scene_indices) / (3u * ONE_IN) + 1u;
+    let casters = caster_count() / ONE_IN + 1u;
     atomicAdd(&estimate[0], min(entries_here, 0xffffffffu / (6u * casters)));
 }

@@ -1,7 +1,8 @@
 // Stage to list the triangles that have no place in a spot light's map and may cover some of it.
 // Those of which rounding hides what they cover may cover all of it: the nearest of their depths
-// stands for all. One thread per triangle.
+// stands for all. One thread per caster.
 
+#import "shared/all_cast.wgsl"
 #import "shared/face_triangle.wgsl"
 #import "shared/groups.wgsl"
 #import "shared/ids.wgsl"
@@ -19,11 +20,15 @@ fn main(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let primitive = (group.y * groups.x + group.x) * GROUP_SIZE + lane;
-    if primitive == 0u {
+    let number = (group.y * groups.x + group.x) * GROUP_SIZE + lane;
+    if number == 0u {
         add(NO_PRIMITIVE);
     }
-    if 3u * primitive >= arrayLength(&scene_indices) || is_placed(light_triangle(primitive)) {
+    if number >= caster_count() {
+        return;
+    }
+    let primitive = caster_primitive(number);
+    if is_placed(light_triangle(primitive)) {
         return;
     }
     let anywhere = face_triangle(primitive);

@@ -5,6 +5,7 @@
 // algorithm.
 
 #import "shared/light_triangle.wgsl"
+#import "shared/all_cast.wgsl"
 
 struct Params {
     cull: u32,
@@ -28,7 +29,7 @@ struct Vertex {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Vertex {
-    let primitive = index / 3u;
+    let primitive = caster_primitive(index / 3u);
     let triangle = light_triangle(primitive);
     var vertex = Vertex(vec4(0.0), triangle.a, triangle.b, triangle.c, primitive);
     // Others are outer_unplaced.wgsl's.

@@ -2,13 +2,14 @@
 // to compact them for an indirect draw; one thread per corner, which answers for the edge that
 // begins there, 64 triangles per workgroup.
 
+#import "shared/all_cast.wgsl"
 #import "shared/light_triangle.wgsl"
 #import "shared/light_edges.wgsl"
 #import "shared/casters.wgsl"
 
 struct Params {
     cull: u32,
-    // The corners from this one on, as many as `selected` takes; a multiple of 3.
+    // The casters' corners from this one on, as many as `selected` takes; a multiple of 3.
     first: u32,
 }
 
@@ -25,6 +26,7 @@ const CORNERS: u32 = 192u;
 // Vertices at the edges of a large triangle, see inner_one_ring.wgsl.
 const EDGE_VERTICES: u32 = 36u;
 const NO_SLOT: u32 = 0xffffffffu;
+const NO_CORNER: u32 = 0xffffffffu;
 // Least radius of the circle in a large triangle, in texels. Among 2, 4 and 8 the first two drew
 // the layer equally fast, the last more slowly.
 const LEAST_RADIUS: f32 = 3.0;
@@ -95,11 +97,14 @@ fn kept_tag(corner: u32, lane: u32, triangle: LightTriangle) -> u32 {
 
 fn corner_of(thread: Thread) -> u32 {
     let index = (thread.group.y * thread.groups.x + thread.group.x) * CORNERS + thread.lane;
-    return params.first + index;
+    if index >= arrayLength(&selected) || params.first + index >= 3u * caster_count() {
+        return NO_CORNER;
+    }
+    return caster_corner(params.first + index);
 }
 
 fn is_asked(corner: u32) -> bool {
-    return corner < arrayLength(&scene_indices) && corner - params.first < arrayLength(&selected);
+    return corner != NO_CORNER;
 }
 
 fn gather(corner: u32, lane: u32) -> LightTriangle {

@@ -185,5 +185,5 @@ fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {
         other = bc;
     }
     let key = entry_key(least_depth(caster, centre), one, other);
-    append_entry(number, slot, caster.primitive, key);
+    append_entry(number, slot, caster_primitive(caster.number), key);
 }

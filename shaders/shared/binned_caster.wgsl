@@ -6,7 +6,8 @@
 #import "shared/caster_reach.wgsl"
 
 struct Binned {
-    primitive: u32,
+    // Its number among the casters, whose corners `corner_position` counts.
+    number: u32,
     // Its corners are counter-clockwise where y is up: inside is to the left of its edges.
     triangle: LightTriangle,
     plane: DepthPlane,
@@ -24,11 +25,11 @@ struct Binned {
     reach: Reach,
 }
 
-fn caster_of(primitive: u32) -> Binned {
+fn caster_of(number: u32) -> Binned {
     if light_kind != LIGHT_DIRECTIONAL {
-        return caster_of_face(primitive);
+        return caster_of_face(number);
     }
-    let triangle = light_triangle(primitive);
+    let triangle = light_triangle(number);
     var plane = depth_plane(triangle);
     let edge_tolerance = edge_tolerance();
     let dilation = max(SLACK, edge_tolerance);
@@ -40,7 +41,7 @@ fn caster_of(primitive: u32) -> Binned {
     if !has_usable_plane(plane) {
         plane.margin = -1.0;
     }
-    return caster_over(primitive, triangle, plane, dilation, depth_tolerance);
+    return caster_over(number, triangle, plane, dilation, depth_tolerance);
 }
 
 // How far a receiver may be beyond an edge, in texels in each direction, and the tracer not tell.
@@ -71,7 +72,7 @@ fn max_depth_slope() -> f32 {
 }
 
 fn caster_over(
-    primitive: u32,
+    number: u32,
     projected: LightTriangle,
     plane: DepthPlane,
     dilation: f32,
@@ -98,16 +99,16 @@ fn caster_over(
         edge_threshold_of(a.xy - c.xy, dilation),
     );
     return Binned(
-        primitive, triangle, plane, first, last, edge_threshold, dilation, depth_tolerance, reach,
+        number, triangle, plane, first, last, edge_threshold, dilation, depth_tolerance, reach,
     );
 }
 
 // In a face of a spot or point light's map: where the corners are projected to, if all are before
 // the light; depths are those of the corners, since a plane's are not linear there.
-fn caster_of_face(primitive: u32) -> Binned {
-    let a = light_homogeneous(corner_position(3u * primitive), binned_layer);
-    let b = light_homogeneous(corner_position(3u * primitive + 1u), binned_layer);
-    let c = light_homogeneous(corner_position(3u * primitive + 2u), binned_layer);
+fn caster_of_face(number: u32) -> Binned {
+    let a = light_homogeneous(corner_position(3u * number), binned_layer);
+    let b = light_homogeneous(corner_position(3u * number + 1u), binned_layer);
+    let c = light_homogeneous(corner_position(3u * number + 2u), binned_layer);
     let least = saturate(min(a.z, min(b.z, c.z)));
     let greatest = saturate(max(a.z, max(b.z, c.z)));
     let nearest = min(a.w, min(b.w, c.w));
@@ -124,14 +125,14 @@ fn caster_of_face(primitive: u32) -> Binned {
     let depth_tolerance = traced() * light.max_distance / light.range;
     if !(nearest > 0.0 && dilation < 0.125 * map_fit.size) {
         let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest, 0.0);
-        return caster_of_whole_face(primitive, a, b, c, plane, depth_tolerance);
+        return caster_of_whole_face(number, a, b, c, plane, depth_tolerance);
     }
     let p = face_texel(a);
     let q = face_texel(b);
     let r = face_texel(c);
     let triangle = LightTriangle(p, q, r, cross_2d(q.xy - p.xy, r.xy - p.xy));
     let plane = DepthPlane(p, vec2(0.0), -1.0, least, greatest, 0.0);
-    return caster_over(primitive, triangle, plane, dilation, depth_tolerance);
+    return caster_over(number, triangle, plane, dilation, depth_tolerance);
 }
 
 fn face_texel(seen: vec4<f32>) -> vec3<f32> {
@@ -146,7 +147,7 @@ fn max_projected_ratio(seen: vec4<f32>) -> f32 {
 // A triangle that reaches behind the light, or nearly to it, has no corners to speak of: it may be
 // anywhere in the face, unless it is beside it as a whole.
 fn caster_of_whole_face(
-    primitive: u32,
+    number: u32,
     a: vec4<f32>,
     b: vec4<f32>,
     c: vec4<f32>,
@@ -158,7 +159,7 @@ fn caster_of_whole_face(
     let last = select(vec2(u32(map_fit.size) - 1u), vec2(0u), beside);
     let nowhere = LightTriangle(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
     return Binned(
-        primitive, nowhere, plane, first, last, vec3(1e30), SLACK, depth_tolerance,
+        number, nowhere, plane, first, last, vec3(1e30), SLACK, depth_tolerance,
         reach_of_whole_face(),
     );
 }

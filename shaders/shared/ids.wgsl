@@ -8,6 +8,9 @@ const UNKNOWN_PRIMITIVE: u32 = 0xfffffffeu;
 const UNANSWERED: u32 = 0xfffffffdu;
 const VISIBILITY_UNANSWERED: u32 = 2u;
 
+// In the place of dot(n, l) of a receiver that receives no shadow: it is lit, wherever it faces.
+const UNSHADOWED: f32 = -2.0;
+
 const STATUS_BACKGROUND: u32 = 0u;
 const STATUS_FACING_AWAY: u32 = 1u;
 const STATUS_LIGHT: u32 = 2u;

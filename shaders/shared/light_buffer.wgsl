@@ -26,7 +26,8 @@ const LIST_END: u32 = 0u;
 
 // Some of the tiles under the box of a large triangle, from `first_tile` on.
 struct Part {
-    primitive: u32,
+    // Number of its caster.
+    caster: u32,
     first_tile: u32,
 }
 

@@ -8,12 +8,13 @@ use crate::support::{
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use skiagraph_gpu::{Executor, Frame, Provider, device::Gpu};
+use skiagraph_graph::Describe;
 use skiagraph_passes::{
     Error, HostDecoder, HostIndices, HostMesh, HostMeshError, HostVertices, PartId, Room,
     SceneProvider, Work,
 };
 use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics, statistics::status};
-use skiagraph_scene::{Camera, DirectionalLight, Indexed, Mesh, Movable, View};
+use skiagraph_scene::{Camera, DirectionalLight, Indexed, Mesh, Movable, Shadows, View};
 use wgpu::{BufferUsages, VertexFormat, util::DeviceExt};
 
 const VIEWPORT: [u32; 2] = [96, 64];
@@ -335,6 +336,56 @@ fn parts_of_a_mega_buffer_are_traced_as_uploaded_ones() {
     assert_eq!(wrong.count(), 0);
 }
 
+/// Stones that cast nothing are in no hierarchy, list or map, uploaded or not.
+#[test]
+fn host_parts_have_the_roles_of_their_meshes() {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let roles = [Shadows::Both, Shadows::Receives, Shadows::Casts];
+    let providers = || {
+        let mut host = SceneProvider::from_parts(Movable::joined(&[]), sun());
+        let room = stones.hosts[0].room(1).and(stones.hosts[1].room(6));
+        host.reserve(room, &gpu.device.limits()).unwrap();
+        let meshes: Vec<Mesh> = stones.meshes.iter().map(Quantised::mesh).collect();
+        let (mut uploaded, mut maps) = (Vec::new(), Vec::new());
+        for (number, (mesh, map)) in places(0).into_iter().enumerate() {
+            let shadows = roles[number % 3];
+            let part = stones.hosts[mesh].clone().with_shadows(shadows);
+            host.add_host_part(&part, &map).unwrap();
+            let mut mesh = meshes[mesh].clone();
+            mesh.set_shadows(shadows);
+            uploaded.push(mesh);
+            maps.push(map);
+        }
+        let parts: Vec<&Mesh> = uploaded.iter().collect();
+        let mut uploaded = SceneProvider::from_parts(Movable::joined(&parts), sun());
+        uploaded.set_transforms(&maps).unwrap();
+        [host, uploaded].map(|mut scene| {
+            scene.set_camera(&camera(VIEWPORT));
+            scene
+        })
+    };
+    let casters = |scene: &SceneProvider| scene.describe("scene.casters").unwrap().items;
+    for preset in ["rt", "light_buffer", "crsm"] {
+        let [mut host, mut uploaded] = providers();
+        let triangles = uploaded.scene().mesh.triangles.len() as u64;
+        assert!(casters(&host) == casters(&uploaded) && casters(&host) < Some(triangles));
+        let mut executor = start(&gpu, preset, &mut host);
+        let seen = shown(&gpu, &mut executor);
+        let expected = shown(&gpu, &mut start(&gpu, preset, &mut uploaded));
+        assert!(expected.contains(&0) && expected.contains(&1));
+        assert!(seen == expected, "{preset}");
+        // They move, too.
+        let places = places(3);
+        let maps: Vec<DAffine3> = places.iter().map(|(_, map)| *map).collect();
+        host.set_transforms(&maps).unwrap();
+        uploaded.set_transforms(&maps).unwrap();
+        executor.refresh(&mut host).unwrap();
+        let expected = shown(&gpu, &mut start(&gpu, preset, &mut uploaded));
+        assert!(shown(&gpu, &mut executor) == expected, "{preset}, moved");
+    }
+}
+
 /// Formats with the size of a component in bytes, and its decoder.
 type Decoder = fn(&[u8]) -> f32;
 const FORMATS: [(VertexFormat, usize, Decoder); 11] = [
@@ -374,7 +425,7 @@ fn half(bits: u16) -> f32 {
 }
 
 /// Reads a buffer of the scene back, as tests may.
-fn contents(gpu: &Gpu, provider: &mut SceneProvider, name: &str) -> Vec<u32> {
+pub fn contents(gpu: &Gpu, provider: &mut SceneProvider, name: &str) -> Vec<u32> {
     let buffer = provider.build(name, &gpu.device, &gpu.queue).unwrap();
     provider.submit_built(&gpu.device, &gpu.queue).unwrap();
     let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {

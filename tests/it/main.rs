@@ -61,6 +61,7 @@ mod ray_query;
 mod rays;
 mod readme;
 mod receivers;
+mod roles;
 mod shaders;
 mod sheets;
 mod shuffled;

@@ -635,10 +635,16 @@ fn the_first_masked_part_asks_for_another_plan() {
         scene.set_transforms(&maps[..1]).unwrap();
         let mut executor = start(&gpu, preset, &mut scene);
         let relies_on: Vec<&String> = executor.plan().relies_on().keys().collect();
-        // Maps hold both faces of what is masked.
-        let asked = ["scene.masks", "scene.sheets"];
-        let count = 1 + usize::from(preset == "nsm");
-        assert_eq!(relies_on, asked[..count], "{preset}");
+        // Lists and maps hold casters, maps both faces of what is masked.
+        let asked = [
+            "scene.casters",
+            "scene.masks",
+            "scene.shadows",
+            "scene.sheets",
+        ];
+        let first = usize::from(preset == "rt");
+        let end = 3 + usize::from(preset == "nsm");
+        assert_eq!(relies_on, asked[first..end], "{preset}");
         scene.add_part(&leaves, &maps[1]).unwrap();
         let of_masks = |error: ExecuteError| {
             let text = error.to_string();

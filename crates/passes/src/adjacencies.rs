@@ -46,7 +46,7 @@ impl Adjacencies {
 fn renew(opposite: &mut [u32], piece: &[u32], mesh: &Mesh) {
     let picked = |list: &Vec<u32>| piece.iter().map(|&id| list[id as usize]).collect();
     let surfaces = &mesh.surfaces;
-    let surfaces = if surfaces.need_care() {
+    let surfaces = if surfaces.need_care() || surfaces.have_roles() {
         Surfaces {
             materials: surfaces.materials.clone(),
             of: picked(&surfaces.of),

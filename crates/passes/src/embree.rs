@@ -196,7 +196,7 @@ fn tree(scene: &Arc<Scene>) -> Result<Tree<'static>, embree3::Error> {
             .copy_from_slice(&positions);
         geometry
             .set_new_buffer::<[u32; 3]>(BufferUsage::INDEX, 0, Format::UINT3, 12, triangles)?
-            .copy_from_slice(&mesh.triangles);
+            .copy_from_slice(&triangles_of(mesh));
         let masked = Arc::clone(scene);
         geometry.set_occluded_filter_function::<_, ()>(move |rays, hits, valid, _, _| {
             filter(&masked.mesh, rays, hits, valid, true);
@@ -211,6 +211,18 @@ fn tree(scene: &Arc<Scene>) -> Result<Tree<'static>, embree3::Error> {
     tree.set_build_quality(BuildQuality::HIGH);
     tree.commit();
     Ok(tree)
+}
+
+/// The triangles of a mesh; one that casts no shadow names corners that there are not, for which
+/// Embree leaves it out of its hierarchy.
+fn triangles_of(mesh: &Mesh) -> Vec<[u32; 3]> {
+    let mut triangles = mesh.triangles.clone();
+    for (primitive, corners) in (0..).zip(&mut triangles) {
+        if !mesh.casts(primitive) {
+            *corners = [MISS; 3];
+        }
+    }
+    triangles
 }
 
 /// Rejects the hits of each ray on its own primitive, at its very begin, and where a mask has

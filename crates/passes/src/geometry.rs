@@ -333,7 +333,9 @@ impl Geometry {
         let total = whole.triangles.len();
         let own = (at.triangle, movable.rest.triangles.len());
         whole.surfaces.put(&movable.rest.surfaces, own, total);
-        if host.is_some() {
+        if let Some(host) = &host {
+            let own = own.0 as u32..(own.0 + own.1) as u32;
+            whole.surfaces.set_shadows(own, total, host.mesh.shadows());
             // Its tree may have to be built once more.
             let positions = &mut whole.positions[at.position..];
             positions[..movable.rest.positions.len()].copy_from_slice(&movable.rest.positions);
@@ -474,7 +476,9 @@ impl Geometry {
             if let Some(host) = piece.host_mut()
                 && Arc::ptr_eq(host.mesh.movable(), mesh.movable())
             {
-                (host.mesh, host.is_elsewhere) = (mesh.clone(), false);
+                let shadows = host.mesh.shadows();
+                host.mesh = mesh.clone().with_shadows(shadows);
+                host.is_elsewhere = false;
                 piece.moved = next_version();
                 parts += 1;
             }

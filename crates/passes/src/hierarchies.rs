@@ -13,10 +13,13 @@ const WORSE: f64 = 1.5;
 /// provider.
 const DIRECTIONS: usize = 4;
 
-/// Leaf of an empty tree, around a triangle without area.
+/// Coordinate beyond all scenes and rays.
+pub(crate) const FAR_AWAY: f32 = 1e30;
+
+/// Leaf of an empty tree, where no ray is: its triangle may be one that casts nothing.
 const NOTHING: LightSpaceNode = LightSpaceNode {
-    low: [0.0; 2],
-    high: [0.0; 2],
+    low: [FAR_AWAY; 2],
+    high: [FAR_AWAY; 2],
     farthest: [0.0; 3],
     link: 1,
 };

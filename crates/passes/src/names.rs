@@ -37,6 +37,14 @@ pub(crate) const EMBREE: &str = "scene.embree";
 /// reads. It has no items if no triangle of the scene is masked (cut out by the alpha of its
 /// texture) or double-sided.
 pub const MASKS: &str = "scene.masks";
+/// Name of the storage buffer of the triangles that cast shadows, ascending, each with its three
+/// indices and its primitive id, which `shared/listed_casters.wgsl` reads. The list of a scene
+/// without casters counts no items, and holds one of 0xffffffff.
+pub const CASTERS: &str = "scene.casters";
+/// Name of the storage buffer of the triangles' roles in shadows
+/// ([`shadow_words`](skiagraph_scene::packed_masks::shadow_words)), which `shared/roles.wgsl`
+/// reads. It has no items if all triangles cast shadows and receive them.
+pub const SHADOWS: &str = "scene.shadows";
 /// Name of the storage buffer of the [`Sheets`](skiagraph_scene::Sheets), a bit per triangle,
 /// which `shared/sheets.wgsl` reads: the triangles of which shadow maps draw both faces. It has
 /// no items if the scene has none.

@@ -36,6 +36,11 @@ pub(crate) struct HostPart {
 }
 
 impl HostPart {
+    /// True if it casts shadows.
+    pub fn casts(&self) -> bool {
+        self.mesh.shadows().casts()
+    }
+
     /// Creates a part of a mesh that a map moves.
     ///
     /// # Errors

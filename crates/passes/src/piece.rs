@@ -57,10 +57,11 @@ impl Piece {
             return 0;
         };
         match &part.host {
-            Some(host) => {
+            Some(host) if host.casts() => {
                 host.mesh.add_to(tree, piece, part.at.triangle);
                 tree.state_bounds(piece, host.placed);
             }
+            Some(_) => tree.add(piece, &Mesh::default(), 0),
             None => tree.add(piece, &part.of.rest, part.at.triangle as u32),
         }
         tree.nodes_of(piece).len()

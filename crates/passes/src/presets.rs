@@ -1,6 +1,9 @@
 //! The presets and their shaders, embedded, and the registry of pass kinds that they need.
 
-use crate::{names::MASKS, trace::Trace};
+use crate::{
+    names::{MASKS, SHADOWS},
+    trace::Trace,
+};
 use include_dir::{Dir, include_dir};
 use skiagraph_graph::{Diagnostics, Graph, Registry, Sources};
 use std::{collections::BTreeMap, sync::Arc};
@@ -123,16 +126,32 @@ pub fn load_unit_visibility(
 /// Creates a registry of the [standard](Registry::standard) pass kinds and [`Trace`], which
 /// [`Graph::load`](skiagraph_graph::Graph::load) needs to read the presets. In scenes with masked
 /// or double-sided triangles `shared/masks.wgsl` [stands in](Registry::stand_in) for
-/// `shared/solid.wgsl` in the shaders of all documents.
+/// `shared/solid.wgsl` in the shaders of all documents, and modules that know which triangles cast
+/// and receive shadows for those that do not, in scenes where some do not.
 pub fn registry() -> Registry {
     let mut registry = Registry::standard();
     registry.register::<Trace>("Trace");
-    for (module, is) in [
-        ("shared/solid.wgsl", "shared/masks.wgsl"),
+    for (module, is, items_of) in [
+        ("shared/solid.wgsl", "shared/masks.wgsl", MASKS),
         // A stage that reads masks has no storage buffer left for the number of rays.
-        ("shared/ray_total.wgsl", "shared/ray_total_uniform.wgsl"),
+        (
+            "shared/ray_total.wgsl",
+            "shared/ray_total_uniform.wgsl",
+            MASKS,
+        ),
+        (
+            "shared/all_cast.wgsl",
+            "shared/listed_casters.wgsl",
+            SHADOWS,
+        ),
+        ("shared/all_roles.wgsl", "shared/roles.wgsl", SHADOWS),
+        (
+            "shared/numbered_casters.wgsl",
+            "shared/listed_corners.wgsl",
+            SHADOWS,
+        ),
     ] {
-        registry.stand_in(module, is, MASKS);
+        registry.stand_in(module, is, items_of);
     }
     #[cfg(feature = "schema")]
     registry.describe::<Trace>("Trace");

@@ -27,7 +27,7 @@ const IDENTITY: [f32; 12] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0.];
 /// Acceleration structures that are kept for the next change.
 #[derive(Clone, Default)]
 pub(crate) struct Structures {
-    bottoms: BTreeMap<Option<usize>, Bottom>,
+    bottoms: BTreeMap<Option<[usize; 2]>, Bottom>,
     top: Option<Top>,
 }
 

@@ -1,4 +1,5 @@
-//! The triangles of a mesh as solids: one for each piece whose triangles lie together.
+//! The casters of a mesh as solids: one for each run of them in a piece whose triangles lie
+//! together.
 
 use crate::piece::{Content, Piece};
 use skiagraph_scene::Mesh;
@@ -7,36 +8,37 @@ use std::ops::Range;
 /// Triangles that a tracer other than ours has in a structure of their own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Solid {
-    /// The piece that they are; `None` for pieces whose triangles lie among those of others, which
-    /// are one solid together.
-    pub piece: Option<usize>,
-    /// The range of the mesh that holds them, and no others if they are a piece.
+    /// The piece that they are of, and the first of them; `None` for pieces whose triangles lie
+    /// among those of others, which are one solid together.
+    pub piece: Option<[usize; 2]>,
+    /// The range of the mesh that holds them, and no others if they are of a piece.
     pub triangles: Range<usize>,
     /// Number of the last change of their corners.
     pub changed: u64,
 }
 
-/// Returns the solids of the mesh: all of its triangles but those that no part has. They are
-/// `most` at most, and the numbers of their first triangles have 24 bits.
+/// Most runs of casters in a piece: one of more runs is joined with others.
+const MOST_RUNS: usize = 64;
+
+/// Returns the solids of the mesh: all of its casters but those that no part has. They are `most`
+/// at most, and the numbers of their first triangles have 24 bits.
 pub(crate) fn solids(pieces: &[Piece], mesh: &Mesh, most: u32) -> Vec<Solid> {
     let mut solids = Vec::new();
     let (mut together, mut changed) = (0..0, 0);
     for (number, piece) in pieces.iter().enumerate() {
-        let (triangles, of_piece) = (piece.triangles(mesh), piece.moved.max(piece.turned));
-        if is_solid(pieces, piece, mesh, most) {
-            let (piece, changed) = (Some(number), of_piece);
-            solids.push(Solid {
-                piece,
+        let of_piece = piece.moved.max(piece.turned);
+        if let Some(runs) = runs(pieces, piece, mesh, most) {
+            solids.extend(runs.into_iter().map(|triangles| Solid {
+                piece: Some([number, triangles.start]),
                 triangles,
-                changed,
-            });
+                changed: of_piece,
+            }));
         } else {
             // Those of a piece that is gone may have been among these.
             changed = changed.max(of_piece);
-            together.end = together.end.max(triangles.end);
+            together.end = together.end.max(piece.triangles(mesh).end);
         }
     }
-    solids.retain(|solid| !solid.triangles.is_empty());
     let together = Solid {
         piece: None,
         triangles: together,
@@ -46,17 +48,32 @@ pub(crate) fn solids(pieces: &[Piece], mesh: &Mesh, most: u32) -> Vec<Solid> {
     solids
 }
 
-/// True if a piece is a solid by itself.
-fn is_solid(pieces: &[Piece], piece: &Piece, mesh: &Mesh, most: u32) -> bool {
+/// The runs of casters of a piece, if they are solids by themselves.
+fn runs(pieces: &[Piece], piece: &Piece, mesh: &Mesh, most: u32) -> Option<Vec<Range<usize>>> {
     let triangles = piece.triangles(mesh);
     let count = match &piece.content {
         Content::Part(part) => part.of.triangles(part.number).len(),
         Content::Outside(outside) => outside.triangles.len(),
         Content::Whole => triangles.len(),
-        Content::Gone => return false,
+        Content::Gone => return None,
     };
-    let is_named = triangles.start < 1 << 24 && pieces.len() < most as usize;
-    count == triangles.len() && is_named
+    if count != triangles.len() {
+        return None;
+    }
+    let mut runs = Vec::new();
+    if mesh.surfaces.have_roles() {
+        for caster in triangles.filter(|id| mesh.casts(*id as u32)) {
+            match runs.last_mut() {
+                Some(Range { end, .. }) if *end == caster => *end += 1,
+                _ => runs.push(caster..caster + 1),
+            }
+        }
+    } else if !triangles.is_empty() {
+        runs.push(triangles);
+    }
+    let last = runs.last().map_or(0, |run| run.start);
+    let is_named = last < 1 << 24 && pieces.len() * runs.len().max(1) < most as usize;
+    (is_named && runs.len() <= MOST_RUNS).then_some(runs)
 }
 
 /// Returns the corners of the solid of those pieces that are none by themselves: those of other
@@ -70,9 +87,55 @@ pub(crate) fn joined_corners(
     let mut corners = vec![[0; 3]; solid.triangles.len()];
     let joined = pieces
         .iter()
-        .filter(|piece| !is_solid(pieces, piece, mesh, most));
-    for primitive in joined.flat_map(|piece| piece.primitives(mesh)) {
+        .filter(|piece| runs(pieces, piece, mesh, most).is_none());
+    let joined = joined.flat_map(|piece| piece.primitives(mesh));
+    for primitive in joined.filter(|id| mesh.casts(*id)) {
         corners[primitive as usize] = mesh.triangles[primitive as usize];
     }
     corners
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use skiagraph_scene::Shadows;
+
+    /// Triangles of their own corners, of which some cast nothing.
+    fn mesh(count: u32, quiet: &[u32]) -> Mesh {
+        let mut mesh = Mesh {
+            triangles: (0..count)
+                .map(|at| [3 * at, 3 * at + 1, 3 * at + 2])
+                .collect(),
+            ..Mesh::default()
+        };
+        let quiet = quiet.iter().copied();
+        mesh.surfaces
+            .set_shadows(quiet, count as usize, Shadows::Receives);
+        mesh
+    }
+
+    fn ranges(mesh: &Mesh) -> Vec<(Option<[usize; 2]>, Range<usize>)> {
+        let solids = solids(&[Piece::new(Content::Whole)], mesh, 1 << 24).into_iter();
+        solids.map(|solid| (solid.piece, solid.triangles)).collect()
+    }
+
+    #[test]
+    fn each_run_of_casters_is_a_solid() {
+        assert_eq!(ranges(&mesh(9, &[])), [(Some([0, 0]), 0..9)]);
+        let runs = [(Some([0, 1]), 1..4), (Some([0, 6]), 6..9)];
+        assert_eq!(ranges(&mesh(9, &[0, 4, 5])), runs);
+        assert_eq!(ranges(&mesh(2, &[0, 1])), []);
+    }
+
+    #[test]
+    fn many_runs_are_one_solid_in_which_others_have_no_area() {
+        let quiet: Vec<u32> = (0..300).filter(|at| at % 2 == 1).collect();
+        let mesh = mesh(300, &quiet);
+        let pieces = [Piece::new(Content::Whole)];
+        let solids = solids(&pieces, &mesh, 1 << 24);
+        assert_eq!((solids.len(), solids[0].piece), (1, None));
+        let corners = joined_corners(&pieces, &mesh, &solids[0], 1 << 24);
+        let areas = corners.iter().filter(|corners| **corners != [0; 3]);
+        assert_eq!(areas.count(), 150);
+    }
 }

@@ -3,7 +3,7 @@
 use crate::{
     built::{How, Work},
     error::Error,
-    hierarchies::{Fitted, Hierarchies, Parted, Tree, all},
+    hierarchies::{FAR_AWAY, Fitted, Hierarchies, Parted, Tree, all},
     parts::Room,
     piece::{Content, Piece},
 };
@@ -11,7 +11,7 @@ use skiagraph_scene::{
     BvhNode, LightSpace, LightSpaceNode, Mesh, Movable, TwoLevelBvh,
     bvh::{self, Moved},
 };
-use std::{collections::BTreeMap, sync::Arc};
+use std::{borrow::Cow, collections::BTreeMap, sync::Arc};
 
 /// Hierarchies that are kept over a mesh.
 #[derive(Clone, Default)]
@@ -44,6 +44,15 @@ pub(crate) struct Over<'a> {
 }
 
 impl Over<'_> {
+    /// Those of some triangles that cast shadows.
+    fn casters<'t>(&self, triangles: &'t [u32]) -> Cow<'t, [u32]> {
+        if !self.mesh.surfaces.have_roles() {
+            return triangles.into();
+        }
+        let casters = triangles.iter().copied();
+        casters.filter(|id| self.mesh.casts(*id)).collect()
+    }
+
     fn build_parts(&self, first: &Movable, most: usize) -> TwoLevelBvh {
         let mut numbers = BTreeMap::new();
         let mut added = Vec::new();
@@ -62,8 +71,13 @@ impl Over<'_> {
                 }
                 Content::Gone | Content::Whole => (&[][..], number),
             };
-            begun.push(bvh::Piece { triangles, copy_of });
+            begun.push((self.casters(triangles), copy_of));
         }
+        let begun = begun.iter().map(|(triangles, copy_of)| bvh::Piece {
+            triangles,
+            copy_of: *copy_of,
+        });
+        let begun: Vec<bvh::Piece<'_>> = begun.collect();
         let mut tree = TwoLevelBvh::build(self.mesh, &first.rest, &begun, most);
         if self.room != Room::default() {
             let left = most.saturating_sub(tree.nodes.len()) / 4;
@@ -129,7 +143,7 @@ impl Trees {
         let mut tree = kept.tree;
         let fitted = Arc::make_mut(&mut tree);
         for &piece in &moved {
-            if let Some(host) = over.pieces[piece].host() {
+            if let Some(host) = over.pieces[piece].host().filter(|host| host.casts()) {
                 fitted.state_bounds(piece, host.placed);
             }
         }
@@ -179,12 +193,14 @@ impl Trees {
         let tree = match over.first {
             Some(first) => over.build_parts(first, most),
             None => {
-                let triangles: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+                let triangles = mesh.casters();
                 let whole = bvh::Piece {
                     triangles: &triangles,
                     copy_of: 0,
                 };
-                TwoLevelBvh::build(mesh, mesh, &[whole], most)
+                let mut tree = TwoLevelBvh::build(mesh, mesh, &[whole], most);
+                tree.primitives.truncate(triangles.len());
+                tree
             }
         };
         let tree = Arc::new(tree);
@@ -243,13 +259,12 @@ impl Trees {
     }
 }
 
-/// Nodes that shaders walk: those of the tree, or of an empty one a leaf around a triangle without
-/// area, which no ray hits.
+/// Nodes that shaders walk: those of the tree, or of an empty one a leaf where no ray is.
 pub(crate) fn nodes_to_walk(tree: &TwoLevelBvh) -> &[BvhNode] {
     const EMPTY: &[BvhNode] = &[BvhNode {
-        min: [0.0; 3],
+        min: [FAR_AWAY; 3],
         first: 0,
-        max: [0.0; 3],
+        max: [FAR_AWAY; 3],
         count: 1,
     }];
     if tree.nodes.is_empty() {

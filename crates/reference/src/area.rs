@@ -136,8 +136,9 @@ pub(crate) fn answered(
 ) -> (Answer, [f64; 2]) {
     // Answer for the light's centre, for indeterminate pixels.
     let mut answer = oracle.answer(receiver, mode, stack);
-    if answer.class == Class::FacingAway {
-        return (answer, [0.0; 2]);
+    if !answer.class.faces_light() {
+        let share = f64::from(u8::from(answer.class.is_lit()));
+        return (answer, [share, 0.0]);
     }
     let emitter = Emitter::seen_from(light, receiver);
     let estimate = share(oracle, &emitter, strata, receiver, mode, pixel, stack);
@@ -163,7 +164,7 @@ fn casters<'a>(
     }
     let mut casters = Vec::new();
     oracle.tree.within(origin, cone, stack, |caster| {
-        if caster.primitive != excluded {
+        if caster.may_shade(excluded) {
             casters.push(caster);
         }
         if casters.len() > MOST_CASTERS {

@@ -25,8 +25,8 @@ pub struct BlockerCounts {
     pub open_part: u64,
     /// Pixels whose shadow ray meets a triangle of a closed part, whatever else it meets.
     pub closed_part: u64,
-    /// Pixels whose shadow ray meets nothing, and pixels that face away from the light or show the
-    /// background.
+    /// Pixels whose shadow ray meets nothing, and pixels that face away from the light, receive no
+    /// shadow or show the background.
     pub none: u64,
 }
 
@@ -54,7 +54,7 @@ pub fn blockers(
     let blockers = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
         let pixel = [(pixel % width) as u32, (pixel / width) as u32];
         let receiver = Receiver::from_pixel(oracle.mesh, primitives, camera, pixel, &light)?;
-        let receiver = receiver.filter(|it| it.n_dot_l > 0.0 && !it.outside_cone);
+        let receiver = receiver.filter(Receiver::may_be_shaded);
         Ok(receiver.and_then(|receiver| {
             let (origin, way, passed) = mode.ray(&receiver);
             blocker(oracle, origin, way, passed, parts, stack)
@@ -71,8 +71,8 @@ pub fn blockers(
 
 /// Finds the caster that is nearest to each receiver on its ray to the light's centre: the
 /// primitive id of a triangle, or [`BACKGROUND`] where none stands in the way, where the receiver
-/// faces away from the light, and in the background. The result has an entry for each pixel, row by
-/// row from the top left. The arguments are those of [`Oracle::shade`].
+/// faces away from the light or receives no shadow, and in the background. The result has an entry
+/// for each pixel, row by row from the top left. The arguments are those of [`Oracle::shade`].
 ///
 /// # Errors
 /// [`Error::PixelCount`], [`Error::UnknownPrimitive`], [`Error::Interrupted`].
@@ -88,7 +88,7 @@ pub fn nearest_blockers(
     let light = light.into();
     per_pixel(camera.viewport, progress, |x, y, stack| {
         let receiver = Receiver::from_pixel(oracle.mesh, primitives, camera, [x, y], &light)?;
-        let receiver = receiver.filter(|it| it.n_dot_l > 0.0 && !it.outside_cone);
+        let receiver = receiver.filter(Receiver::may_be_shaded);
         let Some(receiver) = receiver else {
             return Ok(BACKGROUND);
         };
@@ -97,7 +97,7 @@ pub fn nearest_blockers(
         let mut nearest = (f64::INFINITY, BACKGROUND);
         oracle.tree.walk(&ray, stack, |caster, _| {
             if let Some(hit) = caster.hit(&ray).filter(|hit| ray.reaches(hit.t))
-                && caster.primitive != passed
+                && caster.may_shade(passed)
                 && (hit.t, caster.primitive) < nearest
             {
                 nearest = (hit.t, caster.primitive);
@@ -127,7 +127,7 @@ fn blocker(
     let ray = oracle.tree.ray(origin, &way, 0.0);
     let mut blocker = None;
     oracle.tree.walk(&ray, stack, |caster, _| {
-        if caster.primitive == passed || !caster.blocks(&ray) {
+        if !caster.may_shade(passed) || !caster.blocks(&ray) {
             return ControlFlow::Continue(());
         }
         if parts.is_open(caster.primitive) {

@@ -24,6 +24,9 @@ pub enum Class {
     Lit,
     /// The receiver faces the light and does not see it; where shares are counted, less than half.
     Shadow,
+    /// The receiver is of a surface that receives no shadow ([`skiagraph_scene::Shadows`]): it is
+    /// lit wherever it faces, and not judged.
+    Unshadowed,
 }
 
 impl Class {
@@ -31,6 +34,11 @@ impl Class {
     /// *pixels facing the light* (PFL), of which error counts are given as shares.
     pub fn faces_light(self) -> bool {
         matches!(self, Self::Lit | Self::Shadow)
+    }
+
+    /// Returns true for [`Lit`](Self::Lit) and [`Unshadowed`](Self::Unshadowed).
+    pub fn is_lit(self) -> bool {
+        matches!(self, Self::Lit | Self::Unshadowed)
     }
 }
 
@@ -87,7 +95,7 @@ impl GroundTruthPixels {
     /// Returns the share of a light without extent that each pixel sees: 1 where lit, 0 elsewhere;
     /// row by row from the top left. For a light with extent see [`GroundTruth::shares`].
     pub fn shares(&self) -> Vec<f32> {
-        let share = |&class: &Class| f32::from(u8::from(class == Class::Lit));
+        let share = |class: &Class| f32::from(u8::from(class.is_lit()));
         self.classes.iter().map(share).collect()
     }
 
@@ -96,7 +104,7 @@ impl GroundTruthPixels {
     pub fn visibility(&self) -> Vec<u8> {
         self.classes
             .iter()
-            .map(|&class| u8::from(class == Class::Lit))
+            .map(|class| u8::from(class.is_lit()))
             .collect()
     }
 
@@ -106,7 +114,7 @@ impl GroundTruthPixels {
         let status = |class: &Class| match class {
             Class::Background => status::BACKGROUND,
             Class::FacingAway => status::FACING_AWAY,
-            Class::Lit => status::CERTAIN_LIGHT,
+            Class::Lit | Class::Unshadowed => status::CERTAIN_LIGHT,
             Class::Shadow => status::CERTAIN_SHADOW,
         };
         self.classes
@@ -146,7 +154,8 @@ pub struct AreaVisibility {
     /// Number of shadow rays for each pixel that faces the light.
     pub samples: u32,
     /// Share of the light that each pixel sees, 0 in the umbra to 1 where it sees all of the light.
-    /// 0 also where it faces away from the light, and in the background.
+    /// 0 also where it faces away from the light, and in the background; 1 where it receives no
+    /// shadow.
     pub shares: Vec<f32>,
     /// Estimated standard error of each pixel's share; 0 where no ray was traced.
     pub standard_errors: Vec<f32>,
@@ -210,12 +219,14 @@ impl Answer {
         let could_leave = receiver.on_cone_edge && (!faces_away || could_turn);
         let beyond_cone = receiver.outside_cone && !receiver.on_cone_edge;
         Self {
-            class: if faces_away || receiver.outside_cone {
+            class: if !receiver.receives {
+                Class::Unshadowed
+            } else if faces_away || receiver.outside_cone {
                 Class::FacingAway
             } else {
                 Class::Lit
             },
-            indeterminate: !beyond_cone && (could_turn || could_leave),
+            indeterminate: receiver.receives && !beyond_cone && (could_turn || could_leave),
             n_dot_l: if receiver.outside_cone {
                 receiver.n_dot_l.min(0.0) as f32
             } else {

@@ -110,7 +110,7 @@ impl Image {
                 (Verdict::WronglyShadowed, true, _) => WRONGLY_SHADOWED_INDETERMINATE,
                 (Verdict::Right, _, Class::Background) => DIM_BACKGROUND,
                 (Verdict::Right, _, Class::FacingAway) => backdrop(DIM_FACING_AWAY),
-                (Verdict::Right, _, Class::Lit) => backdrop(DIM_LIGHT),
+                (Verdict::Right, _, Class::Lit | Class::Unshadowed) => backdrop(DIM_LIGHT),
                 (Verdict::Right, _, Class::Shadow) => backdrop(DIM_SHADOW),
             });
         })?;
@@ -138,6 +138,7 @@ impl Image {
         let colour = |(index, class): (usize, &Class)| match class {
             Class::Background => DIM_BACKGROUND,
             Class::FacingAway => DIM_FACING_AWAY,
+            Class::Unshadowed => DIM_LIGHT,
             _ if visibility[index].is_nan() => NO_NUMBER,
             _ => {
                 let off = error(visibility[index], shares[index]);

@@ -79,8 +79,9 @@ impl fmt::Display for OracleMode {
 const MOST_EXTENTS: f64 = 1e6;
 
 /// Ray tracer in f64 with error bounds over one mesh. It finds the ground truth against which
-/// shadow methods are judged. Masked triangles have holes, through which all rays pass, those from
-/// the eye too ([`skiagraph_scene::mask`]).
+/// shadow methods are judged. Shadow rays pass through triangles that cast no shadow
+/// ([`skiagraph_scene::Shadows`]). Masked triangles have holes, through which all rays pass, those
+/// from the eye too ([`skiagraph_scene::mask`]).
 pub struct Oracle<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) tree: Tree<'a>,
@@ -228,7 +229,7 @@ impl<'a> Oracle<'a> {
         stack: &mut Vec<u32>,
     ) -> Answer {
         let facing = Answer::facing(receiver);
-        if facing.class == Class::FacingAway {
+        if !facing.class.faces_light() {
             return facing;
         }
         let (origin, way, excluded) = mode.ray(receiver);
@@ -259,7 +260,7 @@ impl<'a> Oracle<'a> {
         let mut touched = false;
         let mut blocked: Option<(f64, bool)> = None;
         let robust = self.tree.walk(&ray, stack, |caster, _| {
-            if caster.primitive == excluded {
+            if !caster.may_shade(excluded) {
                 return ControlFlow::Continue(());
             }
             match fuzzy.contact(caster) {
@@ -302,7 +303,7 @@ impl<'a> Oracle<'a> {
     ) -> bool {
         let ray = self.tree.ray(origin, &way, 0.0);
         self.tree.walk(&ray, stack, |caster, _| {
-            if caster.primitive != excluded && caster.blocks(&ray) {
+            if caster.may_shade(excluded) && caster.blocks(&ray) {
                 return ControlFlow::Break(());
             }
             ControlFlow::Continue(())

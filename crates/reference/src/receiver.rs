@@ -48,6 +48,8 @@ pub struct Receiver {
     pub position: DVec3,
     /// Direction and distance from the receiver to the light's centre.
     pub towards: Towards,
+    /// True if the surface receives shadows.
+    pub receives: bool,
     /// True if the receiver lies outside of a spot light's cone; false for other lights.
     pub outside_cone: bool,
     /// True if f32 arithmetic may find the opposite of `outside_cone`: the receiver lies on the
@@ -65,6 +67,12 @@ pub struct Receiver {
 }
 
 impl Receiver {
+    /// Returns true if a caster may shade the receiver: it receives shadows, faces the light, and
+    /// is not outside of a spot light's cone.
+    pub fn may_be_shaded(&self) -> bool {
+        self.receives && self.n_dot_l > 0.0 && !self.outside_cone
+    }
+
     /// Finds the receiver of a pixel (column and row, from the top left) of a G-buffer. Returns
     /// `None` if the pixel shows the background. `primitives` is as for
     /// [`Oracle::shade`](crate::Oracle::shade).
@@ -174,6 +182,7 @@ impl Receiver {
             primitive,
             position,
             towards,
+            receives: mesh.surfaces.shadows(primitive).receives(),
             outside_cone: beyond_edge.is_some_and(|beyond| beyond > 0.0),
             on_cone_edge: beyond_edge.is_some_and(|beyond| beyond.abs() <= cone_error),
             n_dot_l,

@@ -20,7 +20,8 @@ pub const UNANSWERED: u32 = 2;
 pub struct PixelCounts {
     /// Pixels that show no geometry.
     pub background: u64,
-    /// Pixels that face away from the light (PnFL: pixels not facing the light).
+    /// Pixels that face away from the light (PnFL: pixels not facing the light), and those of
+    /// surfaces that receive no shadow.
     pub facing_away: u64,
     /// Pixels that face the light (PFL), lit or in shadow. All shares of error counts are relative
     /// to this number.
@@ -131,7 +132,8 @@ impl Split {
 /// is wrong if it shows shadow where the reference is lit, or light where the reference is in
 /// shadow. A pixel that the reference calls facing away but the method does not (status 2 to 4) is
 /// wrong, as `lit`, if it shows light; shown in shadow it looks the same and is right. Pixels
-/// facing away by both, and background, are not judged: their visibility may be 0 or 1.
+/// facing away by both, background, and pixels of surfaces that receive no shadow, are not judged:
+/// their visibility may be 0 or 1.
 /// `facing_mismatch` counts the disagreements about facing, wrong or not.
 ///
 /// `certain` and `uncertain` count PFL pixels only, so that `certain.lit + certain.shadow +
@@ -186,7 +188,7 @@ impl Statistics {
         let faces_light = pixel.class.faces_light();
         match pixel.class {
             Class::Background => self.pixels.background += 1,
-            Class::FacingAway => self.pixels.facing_away += 1,
+            Class::FacingAway | Class::Unshadowed => self.pixels.facing_away += 1,
             Class::Lit => {
                 self.pixels.lit += 1;
                 self.split.lit.add(pixel);
@@ -206,7 +208,9 @@ impl Statistics {
                 _ => {}
             }
         }
-        self.facing_mismatch += u64::from(faces_light != (status >= status::CERTAIN_LIGHT));
+        let is_mismatch = faces_light != (status >= status::CERTAIN_LIGHT);
+        let is_judged = pixel.class != Class::Unshadowed;
+        self.facing_mismatch += u64::from(is_mismatch && is_judged);
         match pixel.verdict {
             Verdict::Right => return,
             Verdict::WronglyLit => self.wrong.lit += 1,

@@ -23,6 +23,8 @@ pub(crate) struct Caster<'a> {
     pub(crate) masked: Option<Masked<'a>>,
     /// True if its back face is seen, too.
     pub(crate) double_sided: bool,
+    /// True if it casts shadows.
+    casts: bool,
 }
 
 impl Caster<'_> {
@@ -31,6 +33,11 @@ impl Caster<'_> {
         let hit = ray.hit(&self.corners)?;
         let is_there = |masked: &Masked<'_>| masked.is_opaque(hit.weights);
         self.masked.as_ref().is_none_or(is_there).then_some(hit)
+    }
+
+    /// Returns true if it is in the way of shadow rays that pass the primitive `excluded`.
+    pub(crate) fn may_shade(&self, excluded: u32) -> bool {
+        self.casts && self.primitive != excluded
     }
 
     /// Returns true if the ray meets it before its end.
@@ -83,6 +90,7 @@ impl<'a> Tree<'a> {
                 open: open[primitive as usize],
                 masked: Masked::new(mesh, primitive),
                 double_sided: mesh.surfaces.is_double_sided(primitive),
+                casts: mesh.casts(primitive),
             })
             .collect();
         let bounds = mesh
@@ -192,10 +200,12 @@ impl<'a> Tree<'a> {
 }
 
 /// For each triangle and each of its edges, in the order of `Ray::edges`, whether it is the only
-/// one to have it.
+/// caster to have it.
 fn open_edges(mesh: &Mesh) -> Vec<[bool; 3]> {
     let keys = |&[a, b, c]: &[u32; 3]| [(b, c), (c, a), (a, b)].map(|(p, q)| (p.min(q), p.max(q)));
-    let mut edges: Vec<(u32, u32)> = mesh.triangles.iter().flat_map(keys).collect();
+    let casters = mesh.casters().into_iter();
+    let casters = casters.map(|primitive| &mesh.triangles[primitive as usize]);
+    let mut edges: Vec<(u32, u32)> = casters.flat_map(keys).collect();
     edges.par_sort_unstable();
     let alone = |key| {
         let first = edges.partition_point(|other| *other < key);

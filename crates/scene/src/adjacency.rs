@@ -17,7 +17,8 @@ pub struct Adjacency {
     /// is the triangle on the other side of the edge, and `k` (0 to 2) is the corner of `q` that is
     /// not on the edge. The value is [`NO_NEIGHBOUR`] for an edge of one triangle or of more than
     /// two. It is the same for an edge beside a masked triangle (one cut out by an alpha mask),
-    /// whose surface may end anywhere. Neighbours may be wound against each other.
+    /// whose surface may end anywhere. A triangle that [casts](Mesh::casts) no shadow is passed
+    /// over: it has no neighbours and is none. Neighbours may be wound against each other.
     pub opposite: Vec<u32>,
 }
 
@@ -37,7 +38,7 @@ impl Adjacency {
         let mut opposite = vec![NO_NEIGHBOUR; 3 * mesh.triangles.len()];
         let mut edges = HashMap::with_capacity(3 * mesh.triangles.len() / 2);
         for (primitive, &[a, b, c]) in mesh.triangles.iter().enumerate() {
-            if a == b || b == c || c == a {
+            if a == b || b == c || c == a || !mesh.casts(primitive as u32) {
                 continue;
             }
             for (side, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {

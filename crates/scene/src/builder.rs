@@ -81,6 +81,11 @@ impl MeshBuilder {
         }
     }
 
+    /// Number of triangles so far.
+    pub fn triangles(&self) -> u32 {
+        self.mesh.triangles.len() as u32
+    }
+
     /// Returns the welded position with this index.
     pub fn point(&self, index: u32) -> DVec3 {
         self.positions.values[index as usize].as_dvec3()

@@ -78,6 +78,7 @@ pub mod scene_file;
 pub mod scene_writer;
 #[cfg(feature = "schema")]
 mod schema;
+pub mod shadows;
 pub mod sheets;
 pub mod texels;
 #[cfg(feature = "files")]
@@ -108,6 +109,7 @@ pub use path::{CameraKey, CameraPath, LightKey};
 pub use scene::Scene;
 #[cfg(feature = "schema")]
 pub use schema::schema;
+pub use shadows::Shadows;
 pub use sheets::Sheets;
 pub use texture::{Texture, Wrap};
 

@@ -330,7 +330,7 @@ impl SceneLibrary {
         scene: SceneFile,
         file: Option<&Path>,
     ) -> Result<(Scene, ImportReport), SceneError> {
-        let (mut mesh, report) = match &scene.mesh {
+        let (mut mesh, mut report) = match &scene.mesh {
             MeshSource::Generated(generator) => (generator.build(), ImportReport::default()),
             MeshSource::Obj {
                 file: mesh,
@@ -357,6 +357,7 @@ impl SceneLibrary {
         if let Some(up) = scene.ground {
             add_ground(&mut mesh, up);
         }
+        scene.give_roles(&mut mesh, &mut report)?;
         Ok((
             Scene {
                 name: scene.name,

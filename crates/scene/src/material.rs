@@ -1,8 +1,8 @@
 //! Materials of the surfaces of a mesh.
 
-use crate::{mask::Mask, texture::Texture};
+use crate::{mask::Mask, shadows::Shadows, texture::Texture};
 use glam::{DVec2, Vec2};
-use std::sync::Arc;
+use std::{collections::HashMap, sync::Arc};
 
 /// Material of triangles of a mesh.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub struct Material {
     pub mask: Option<Arc<Mask>>,
     /// True if the surface's back faces are visible, too.
     pub double_sided: bool,
+    /// Role of the surface in shadows.
+    pub shadows: Shadows,
 }
 
 impl Default for Material {
@@ -27,6 +29,7 @@ impl Default for Material {
             texture: None,
             mask: None,
             double_sided: false,
+            shadows: Shadows::default(),
         }
     }
 }
@@ -159,10 +162,61 @@ impl Surfaces {
     /// Returns true if any triangle is masked or double-sided, so that tracing and drawing have to
     /// look at its material.
     pub fn need_care(&self) -> bool {
-        let cared = |material: &Material| material.mask.is_some() || material.double_sided;
+        self.use_any(|material| material.mask.is_some() || material.double_sided)
+    }
+
+    /// True if a triangle has such a material.
+    fn use_any(&self, is_such: impl Fn(&Material) -> bool + Copy) -> bool {
         let mut used = self.of.iter();
-        self.materials.iter().any(cared)
-            && used.any(|index| self.materials.get(*index as usize).is_some_and(cared))
+        self.materials.iter().any(is_such)
+            && used.any(|index| self.materials.get(*index as usize).is_some_and(is_such))
+    }
+
+    /// Returns the role of triangle `primitive` in shadows.
+    pub fn shadows(&self, primitive: u32) -> Shadows {
+        let material = self.material(primitive);
+        material.map(|it| it.shadows).unwrap_or_default()
+    }
+
+    /// Returns true if some triangle does not cast shadows or does not receive them.
+    pub fn have_roles(&self) -> bool {
+        self.use_any(|material| material.shadows != Shadows::Both)
+    }
+
+    /// Gives triangles, by their primitive ids, a role in shadows, by copies of their materials.
+    /// `total` is the number of triangles of the mesh.
+    ///
+    /// # Panics
+    /// If a primitive id is not below `total`.
+    pub fn set_shadows(
+        &mut self,
+        primitives: impl IntoIterator<Item = u32>,
+        total: usize,
+        shadows: Shadows,
+    ) {
+        if self.of.is_empty() {
+            if shadows == Shadows::Both {
+                return;
+            }
+            self.of = vec![self.materials.len() as u32; total];
+            self.materials.push(Material::default());
+        }
+        let mut copies = HashMap::new();
+        for primitive in primitives {
+            let index = &mut self.of[primitive as usize];
+            let own = self.materials.get(*index as usize);
+            let Some(own) = own.filter(|own| own.shadows != shadows) else {
+                continue;
+            };
+            let copy = Material {
+                shadows,
+                ..own.clone()
+            };
+            *index = *copies.entry(*index).or_insert_with(|| {
+                self.materials.push(copy);
+                self.materials.len() as u32 - 1
+            });
+        }
     }
 
     /// Returns the linear base colour of triangle `primitive`, times its texture's nearest texel,

@@ -1,6 +1,6 @@
 //! Indexed triangle meshes with welded positions.
 
-use crate::material::Surfaces;
+use crate::{material::Surfaces, shadows::Shadows};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
@@ -62,6 +62,58 @@ impl Mesh {
         if let Some(uvs) = self.surfaces.uv_indices.get_mut(primitive) {
             uvs.swap(1, 2);
         }
+    }
+
+    /// Finds the triangles of a part: the primitive ids of all groups of this name, ascending.
+    ///
+    /// # Errors
+    /// Text that lists the names of all groups, if there is none of this name.
+    pub fn part(&self, name: &str) -> Result<Vec<u32>, String> {
+        let groups = self.groups.iter().filter(|group| group.name == name);
+        let triangles: Vec<u32> = groups.flat_map(|group| group.triangles.clone()).collect();
+        if !triangles.is_empty() {
+            return Ok(triangles);
+        }
+        let mut names: Vec<&str> = self.groups.iter().map(|it| it.name.as_str()).collect();
+        names.dedup();
+        let names = names.join(", ");
+        Err(format!(
+            "no part of the mesh is called {name:?}; known here: {names}"
+        ))
+    }
+
+    /// Gives all triangles a role in shadows.
+    pub fn set_shadows(&mut self, shadows: Shadows) {
+        let total = self.triangles.len();
+        self.surfaces.set_shadows(0..total as u32, total, shadows);
+    }
+
+    /// Gives the triangles of a [part](Self::part) a role in shadows.
+    ///
+    /// # Errors
+    /// Text that lists the names of all groups, if there is none of this name.
+    pub fn set_shadows_of(&mut self, part: &str, shadows: Shadows) -> Result<(), String> {
+        let (triangles, total) = (self.part(part)?, self.triangles.len());
+        self.surfaces.set_shadows(triangles, total, shadows);
+        Ok(())
+    }
+
+    /// Returns true if triangle `primitive` casts a shadow, or is one of a removed part: all of its
+    /// corners are position 0, and another part may take its place.
+    ///
+    /// # Panics
+    /// If `primitive` is not below `triangles.len()`.
+    pub fn casts(&self, primitive: u32) -> bool {
+        let is_free = || self.triangles[primitive as usize] == [0; 3];
+        self.surfaces.shadows(primitive).casts() || is_free()
+    }
+
+    /// Returns the primitive ids of all triangles that cast a shadow, ascending.
+    pub fn casters(&self) -> Vec<u32> {
+        let primitives = 0..self.triangles.len() as u32;
+        primitives
+            .filter(|primitive| self.casts(*primitive))
+            .collect()
     }
 
     /// Iterates over the corner positions of all triangles, in the order of `triangles`, three for

@@ -11,7 +11,7 @@ use crate::{
         options::{Concave, ObjOptions, QuadDiagonal},
         read::load_obj,
     },
-    report::ImportReport,
+    report::{ImportReport, nothing_casts},
     scene_file::MeshSource,
 };
 use std::path::Path;
@@ -94,7 +94,8 @@ impl MeshFile {
             });
         }
         let (mesh, scene, mut report) = load_gltf_scene(path, options.materials)?;
-        for remark in scene.remarks {
+        let nothing = nothing_casts(&mesh).map(str::to_owned);
+        for remark in scene.remarks.into_iter().chain(nothing) {
             report.remark(remark);
         }
         Ok(Self {

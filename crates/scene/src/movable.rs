@@ -496,16 +496,7 @@ impl Part {
     }
 
     fn cut(mesh: &mut Mesh, name: &str, copy_of: usize) -> Result<Self, String> {
-        let groups = mesh.groups.iter().filter(|group| group.name == name);
-        let inside: HashSet<u32> = groups.flat_map(|group| group.triangles.clone()).collect();
-        if inside.is_empty() {
-            let mut names: Vec<&str> = mesh.groups.iter().map(|it| it.name.as_str()).collect();
-            names.dedup();
-            return Err(format!(
-                "no part of the mesh is called {name:?}; known here: {}",
-                names.join(", ")
-            ));
-        }
+        let inside: HashSet<u32> = mesh.part(name)?.into_iter().collect();
         let mut positions: Vec<u32> = Vec::new();
         let mut outside = HashSet::new();
         for (primitive, corners) in (0..).zip(&mesh.triangles) {

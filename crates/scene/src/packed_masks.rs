@@ -1,4 +1,5 @@
-//! Packs the masks of a mesh into one buffer for shaders.
+//! Packs the masks of a mesh into one buffer for shaders, and the roles of its triangles in shadows
+//! into another.
 
 use crate::{mask::Mask, material::Surfaces, mesh::Mesh};
 use std::collections::HashMap;
@@ -58,4 +59,24 @@ fn append_masks(surfaces: &Surfaces, waiting: &[(usize, usize)], words: &mut Vec
         });
         words[at] = place;
     }
+}
+
+/// Packs the [roles](crate::Shadows) of a mesh's triangles for shaders: two bits for each, 16
+/// triangles to a word, lowest bits first. The lower bit is set for a triangle that casts no
+/// shadow, the upper for one that receives none. Returns no words if all triangles do both.
+pub fn shadow_words(mesh: &Mesh) -> Vec<u32> {
+    let surfaces = &mesh.surfaces;
+    if !surfaces.have_roles() {
+        return Vec::new();
+    }
+    let bits = |primitive: u32| {
+        let receives = surfaces.shadows(primitive).receives();
+        u32::from(!mesh.casts(primitive)) | u32::from(!receives) << 1
+    };
+    let count = mesh.triangles.len() as u32;
+    let word = |first: u32| {
+        let own = first..count.min(first + 16);
+        own.fold(0, |word, at| word | bits(at) << (2 * (at % 16)))
+    };
+    (0..count).step_by(16).map(word).collect()
 }

@@ -26,13 +26,15 @@ pub struct Parts {
 type Side = ([u32; 2], bool, u32);
 
 impl Parts {
-    /// Finds the parts of a mesh. A triangle that names a position twice has no area: it closes no
-    /// edge, and is an open part of its own.
+    /// Finds the parts of a mesh. A triangle that names a position twice has no area, and one may
+    /// [cast](Mesh::casts) no shadow: such a triangle closes no edge, and is an open part of its
+    /// own.
     pub fn new(mesh: &Mesh) -> Self {
         let mut sides = sides(mesh);
         sides.sort_unstable();
         let mut joined = UnionFind::<u32>::new(mesh.triangles.len());
-        let mut open: Vec<bool> = mesh.triangles.iter().map(names_one_twice).collect();
+        let ids = 0..mesh.triangles.len() as u32;
+        let mut open: Vec<bool> = ids.map(|id| is_passed_over(mesh, id)).collect();
         for edge in sides.chunk_by(|one, other| one.0 == other.0) {
             let first = edge[0].2;
             for &(.., triangle) in edge {
@@ -64,16 +66,19 @@ impl Parts {
     }
 }
 
+fn is_passed_over(mesh: &Mesh, primitive: u32) -> bool {
+    names_one_twice(&mesh.triangles[primitive as usize]) || !mesh.casts(primitive)
+}
+
 fn sides(mesh: &Mesh) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * mesh.triangles.len());
-    for (primitive, triangle) in mesh.triangles.iter().enumerate() {
-        if names_one_twice(triangle) {
+    for (primitive, &[a, b, c]) in (0..).zip(&mesh.triangles) {
+        if is_passed_over(mesh, primitive) {
             continue;
         }
-        let &[a, b, c] = triangle;
         sides.extend(
             [(a, b), (b, c), (c, a)]
-                .map(|(from, to)| ([from.min(to), from.max(to)], from < to, primitive as u32)),
+                .map(|(from, to)| ([from.min(to), from.max(to)], from < to, primitive)),
         );
     }
     sides

@@ -1,6 +1,9 @@
 //! Changes that an import made to a mesh, and content that it left out.
 
-use crate::error::{FACES_SHOWN, FaceRef, plural};
+use crate::{
+    error::{FACES_SHOWN, FaceRef, plural},
+    mesh::Mesh,
+};
 use std::{fmt, path::PathBuf};
 
 /// Counts and warnings of the import of a mesh file. The report of a generated mesh is empty.
@@ -71,6 +74,14 @@ impl Degenerate {
         );
         writeln!(f, "{triangles} {what}: {faces}{more}")
     }
+}
+
+/// Returns a warning for a mesh of which nothing casts a shadow, with the way out.
+pub(crate) fn nothing_casts(mesh: &Mesh) -> Option<&'static str> {
+    (mesh.surfaces.have_roles() && mesh.casters().is_empty()).then_some(
+        "no part of the mesh casts a shadow, so that everything is lit: let one cast (`shadows` of \
+         a scene file, `casts` in the extras of a glTF file)",
+    )
 }
 
 /// How many remarks are spelt out before they are only counted.

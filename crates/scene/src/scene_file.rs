@@ -26,8 +26,11 @@ use crate::{
     light::DirectionalLight,
     light_kind::Light,
     material_use::MaterialUse,
+    mesh::Mesh,
     obj::options::{Concave, ObjMaterials, QuadDiagonal},
     path::CameraPath,
+    report::{ImportReport, nothing_casts},
+    shadows::Shadows,
     vector::{SomeVector, Vector, is_default},
 };
 use glam::DVec3;
@@ -39,9 +42,9 @@ use skiagraph_located_ron::{
     diagnostics::{Code, Diagnostic, Diagnostics},
     fields::from_all_fields,
     reader::Node,
-    span::SourceFile,
+    span::{SourceFile, Span},
 };
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Content of a scene file. `SceneFile::parse` checks everything in it, but loads no mesh. Serde
 /// alone refuses the lists `lights`, `views` and `paths`.
@@ -68,6 +71,14 @@ pub struct SceneFile {
     )]
     #[cfg_attr(feature = "schema", schemars(with = "Option<Vector>"))]
     pub ground: Option<DVec3>,
+    /// Roles of parts in shadows, by their names: OBJ groups and objects, glTF nodes, parts of
+    /// generated meshes, `ground`. Parts that are not named cast and receive shadows, or do what a
+    /// glTF file says.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub shadows: BTreeMap<String, Shadows>,
+    /// Places of the names in `shadows` in the text that was parsed, for messages; may be empty.
+    #[serde(skip)]
+    pub shadow_places: BTreeMap<String, Span>,
     /// Lights of the scene: at least one, no two of the same name. They light each view that has no
     /// light of its own.
     #[serde(
@@ -157,6 +168,8 @@ impl SceneFile {
             description: String::new(),
             mesh,
             ground: None,
+            shadows: BTreeMap::new(),
+            shadow_places: BTreeMap::new(),
             lights: Vec::new(),
             views: Vec::new(),
             paths: Vec::new(),
@@ -174,6 +187,36 @@ impl SceneFile {
         let scene = Self::read(&Node::root(&SourceFile::new(file, text)), &mut faults);
         let scene = scene.filter(|_| faults.is_empty());
         scene.ok_or_else(|| SceneError::SceneFile(Diagnostics::new(faults)))
+    }
+
+    /// Gives the parts of the scene's mesh their roles in shadows.
+    ///
+    /// # Errors
+    /// [`SceneError::SceneFile`] with every name that no part of the mesh has.
+    pub(crate) fn give_roles(
+        &self,
+        mesh: &mut Mesh,
+        report: &mut ImportReport,
+    ) -> Result<(), SceneError> {
+        let mut faults = Vec::new();
+        for (part, &shadows) in &self.shadows {
+            if mesh.set_shadows_of(part, shadows).is_err() {
+                let why = format!("no part of the mesh is called {part:?}");
+                let names = mesh.groups.iter().map(|group| &group.name);
+                let fault = Diagnostic::error(Code::UnknownResource, why).suggest(part, names);
+                faults.push(fault.at_any(self.shadow_places.get(part), "no such part"));
+            }
+        }
+        if !faults.is_empty() {
+            return Err(SceneError::SceneFile(Diagnostics::new(faults)));
+        }
+        if let Some(text) = nothing_casts(mesh) {
+            let warning = Diagnostic::warning(Code::Unused, text);
+            let places = self.shadow_places.values();
+            let place = places.min_by_key(|place| place.range.start);
+            report.remark(warning.at_any(place, "").brief());
+        }
+        Ok(())
     }
 
     fn read(root: &Node, faults: &mut Vec<Diagnostic>) -> Option<Self> {
@@ -209,12 +252,16 @@ impl SceneFile {
             faults.push(lacks(root, what));
         }
         let paths = list("paths").map_or(Some(Vec::new()), |list| named(list, faults));
+        let shadows = list("shadows").and_then(|node| node.map().ok());
+        let places = shadows.into_iter().flatten();
+        let shadow_places = places.map(|(name, _)| (name.value, name.span)).collect();
         let head = fields.into_iter();
         let head = head.filter(|field| !LISTS.contains(&field.name.as_str()));
         let scene: Option<Self> = from_all_fields(head.collect(), &root.head(), &LISTS, faults);
         let (mut scene, lights) = (scene?, lights?);
         scene.lights.extend(lights);
         (scene.views, scene.paths) = (views??, paths?);
+        scene.shadow_places = shadow_places;
         Some(scene)
     }
 }

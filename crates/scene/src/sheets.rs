@@ -6,7 +6,7 @@ use std::cell::LazyCell;
 /// Sheets of a mesh: its masked triangles, and its double-sided ones that belong to an open
 /// [part](Parts). Behind the front of a sheet is no back that could cast its shadow, so a shadow
 /// map has to draw both. A double-sided triangle of a closed part is no sheet: its part casts the
-/// same shadow by its back faces alone.
+/// same shadow by its back faces alone. A triangle that [casts](Mesh::casts) no shadow is none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheets(Vec<u32>);
 
@@ -29,7 +29,9 @@ impl Sheets {
         let parts = LazyCell::new(|| Parts::new(part));
         let is_sheet = |id| {
             let is_double_sided = part.surfaces.is_double_sided(id);
-            part.surfaces.mask(id).is_some() || (is_double_sided && parts.is_open(id))
+            let has_faces =
+                part.surfaces.mask(id).is_some() || is_double_sided && parts.is_open(id);
+            has_faces && part.casts(id)
         };
         let flags: Vec<bool> = (0..part.triangles.len() as u32).map(is_sheet).collect();
         if self.0.is_empty() && !flags.contains(&true) {

@@ -17,7 +17,10 @@
 //! ```
 
 use skiagraph_graph::{Picture, Sources};
-use skiagraph_scene::{Light, Mesh, packed_masks::mask_words};
+use skiagraph_scene::{
+    Light, Mesh,
+    packed_masks::{mask_words, shadow_words},
+};
 use std::{
     collections::BTreeMap,
     fmt,
@@ -56,14 +59,16 @@ impl Fingerprint {
         self.with_bytes(&other.bytes())
     }
 
-    /// Returns the hash extended by a mesh (positions, triangles, normals, masks) and lights.
+    /// Returns the hash extended by a mesh (positions, triangles, normals, masks, roles in shadows)
+    /// and lights.
     pub fn with_scene(self, mesh: &Mesh, lights: &[Light]) -> Self {
         let list = |bytes: &[u8]| Self::EMPTY.with_bytes(bytes);
-        let masks = match mask_words(mesh) {
-            words if words.is_empty() => self,
-            words => self.with_all(list(bytemuck::cast_slice(&words))),
-        };
-        masks
+        let facts = [mask_words(mesh), shadow_words(mesh)].into_iter();
+        let facts = facts.filter(|words| !words.is_empty());
+        facts
+            .fold(self, |hash, words| {
+                hash.with_all(list(bytemuck::cast_slice(&words)))
+            })
             .with_all(list(bytemuck::cast_slice(&mesh.positions)))
             .with_all(list(bytemuck::cast_slice(&mesh.triangles)))
             .with_all(list(bytemuck::cast_slice(&mesh.normals)))

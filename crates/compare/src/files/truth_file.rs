@@ -126,6 +126,7 @@ fn class_of(byte: u8) -> Option<Class> {
         Class::FacingAway,
         Class::Lit,
         Class::Shadow,
+        Class::Unshadowed,
     ];
     classes.get(usize::from(byte)).copied()
 }

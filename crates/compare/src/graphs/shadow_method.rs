@@ -284,6 +284,7 @@ fn certain(visibility: &[u32], truth: &GroundTruthPixels) -> Vec<u32> {
     let verdict = |(&class, &visibility): (&Class, &u32)| match (class, visibility) {
         (Class::Background, _) => status::BACKGROUND,
         (Class::FacingAway, _) => status::FACING_AWAY,
+        (Class::Unshadowed, _) => status::CERTAIN_LIGHT,
         (_, 0) => status::CERTAIN_SHADOW,
         _ => status::CERTAIN_LIGHT,
     };

@@ -170,7 +170,8 @@ pub struct Scene {
     pub parts: OpenParts,
 }
 
-/// Numbers of a mesh's parts: sets of triangles that are connected by shared edges.
+/// Numbers of a mesh's parts that cast shadows: sets of triangles that are connected by shared
+/// edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OpenParts {
     /// Number of all parts.
@@ -186,10 +187,12 @@ impl OpenParts {
     pub fn new(mesh: &skiagraph_scene::Mesh) -> Self {
         let parts = skiagraph_scene::Parts::new(mesh);
         let open = |part: &&u32| parts.open[**part as usize];
+        // Each is an open part of its own.
+        let cast_nothing = (mesh.triangles.len() - mesh.casters().len()) as u64;
         Self {
-            all: parts.open.len() as u64,
-            open: parts.open.iter().filter(|open| **open).count() as u64,
-            open_triangles: parts.of.iter().filter(open).count() as u64,
+            all: parts.open.len() as u64 - cast_nothing,
+            open: parts.open.iter().filter(|open| **open).count() as u64 - cast_nothing,
+            open_triangles: parts.of.iter().filter(open).count() as u64 - cast_nothing,
         }
     }
 }

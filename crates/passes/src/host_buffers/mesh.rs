@@ -7,7 +7,7 @@ use crate::{
 };
 use glam::Vec3;
 use skiagraph_gpu::DeviceIdentity;
-use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, TwoLevelBvh};
+use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, Shadows, TwoLevelBvh};
 use std::{
     collections::HashMap,
     sync::{Arc, OnceLock},
@@ -37,12 +37,14 @@ pub enum HostIndices<'a> {
 /// The CPU keeps the welded mesh at rest, its hierarchy, and the numbers of the vertices that it
 /// came from.
 ///
-/// Its triangles have no materials: they are opaque and single-sided. Masked and double-sided ones
+/// Its triangles have no materials: they are opaque and single-sided, and cast and receive shadows
+/// unless [`with_shadows`](Self::with_shadows) says otherwise. Masked and double-sided ones
 /// come by [`SceneProvider::add_part`](crate::SceneProvider::add_part).
 #[derive(Clone, Debug)]
 pub struct HostMesh {
     pub(super) own: Arc<Own>,
     bounds: [Vec3; 2],
+    shadows: Shadows,
 }
 
 #[derive(Debug)]
@@ -135,6 +137,7 @@ impl HostMesh {
         Ok(Self {
             own: Arc::new(Own::new(device, (vertices, identity), Arc::new(rest))),
             bounds: [low, high],
+            shadows: Shadows::default(),
         })
     }
 
@@ -165,8 +168,20 @@ impl HostMesh {
         let own = Own::new(device, (vertices, identity), Arc::clone(&self.own.rest));
         Ok(Self {
             own: Arc::new(own),
-            bounds: self.bounds,
+            ..*self
         })
+    }
+
+    /// Returns the mesh with a role in shadows, for parts that are added of it from then on.
+    #[must_use]
+    pub fn with_shadows(mut self, shadows: Shadows) -> Self {
+        self.shadows = shadows;
+        self
+    }
+
+    /// Returns the role in shadows of parts that are added of the mesh.
+    pub fn shadows(&self) -> Shadows {
+        self.shadows
     }
 
     /// Returns the mesh with stated bounds, low and high corner in the space of its vertices, for a

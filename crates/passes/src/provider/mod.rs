@@ -20,11 +20,9 @@ use crate::{
 use glam::{DAffine3, Vec3};
 use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
 use skiagraph_graph::Plan;
-use skiagraph_scene::{
-    Camera, Light, LightKind, Mesh, Movable, Scene, Sheets, View, packed_masks::mask_words,
-};
+use skiagraph_scene::{Camera, Light, LightKind, Mesh, Movable, Scene, Sheets, View};
 use std::sync::Arc;
-use uploads::Uploads;
+use uploads::{Facts, Uploads};
 
 /// Provider of a scene's resources to graphs: the buffers of one mesh, one camera and the lights,
 /// on one device. It builds each resource when a graph's pass first binds it. Primitives are
@@ -274,7 +272,7 @@ impl SceneProvider {
     /// triangles and other items: if they change, graphs must be planned anew
     /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
     pub fn set_mesh(&mut self, mesh: Mesh) {
-        self.uploads.masks = mask_words(&mesh).into();
+        self.uploads.facts = Facts::new(&mesh).into();
         self.uploads.sheets = Sheets::new(&mesh).into();
         Arc::make_mut(&mut self.uploads.scene).mesh = mesh;
         self.uploads.atlas = Arc::default();
@@ -383,7 +381,7 @@ impl SceneProvider {
         self.uploads
             .geometry
             .reserve(room, &mut self.uploads.scene)?;
-        self.uploads.masks = mask_words(&self.uploads.scene.mesh).into();
+        self.uploads.facts = Facts::new(&self.uploads.scene.mesh).into();
         self.uploads.put_sheets(&Mesh::default(), 0);
         self.uploads.versions.change_mesh();
         Ok(())
@@ -401,7 +399,8 @@ impl SceneProvider {
     /// (`scene.masks`, `scene.materials`, `scene.uvs` and their like). It makes other plans invalid
     /// if it changes numbers of items that they use. Each masked part changes that of masks, and so
     /// does the first double-sided one in a mesh without masks; the first part with [`Sheets`]
-    /// changes that of `scene.sheets`. If the mesh or the part has
+    /// changes that of `scene.sheets`, and each part that casts or receives no shadow those of
+    /// `scene.casters` and `scene.shadows`. If the mesh or the part has
     /// materials, the numbers of items of materials and texture coordinates change. All plans are
     /// invalid if the mesh grows. Invalid plans must be made anew
     /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)). Until then

@@ -51,14 +51,14 @@ resources! {
     "scene.bvh_nodes", "32-byte [`BvhNode`](skiagraph_scene::BvhNode)s, node 0 is the root",
         Shape, Storage, |_, _| array(None, 32), |it, _, _, on| it.upload_hierarchy(on);
     "scene.bvh_primitives", "`array<u32>`, primitive ids in leaf order", Shape, Storage,
-        |it, _| array(Some(it.scene.mesh.triangles.len()), 4),
+        |it, _| array(Some(it.tree_slots()), 4),
         |it, _, _, on| it.upload_hierarchy(on);
     "scene.light_space_nodes",
         "32-byte [`LightSpaceNode`](skiagraph_scene::LightSpaceNode)s, node 0 the root; last the \
          [centre](skiagraph_scene::LightSpaceNode::centre)",
         LightOverShape, OfLight, |_, _| array(None, 32), |it, _, _, on| it.upload_light_space(on);
     "scene.light_space_primitives", "`array<u32>`, primitive ids in their leaf order",
-        LightOverShape, OfLight, |it, _| array(Some(it.scene.mesh.triangles.len()), 4),
+        LightOverShape, OfLight, |it, _| array(Some(it.tree_slots()), 4),
         |it, _, _, on| it.upload_light_space(on);
     "scene.tlas", "`acceleration_structure`; primitive id = custom data + primitive index",
         Shape, Storage, |_, _| Some(Provided::ACCELERATION_STRUCTURE),
@@ -66,11 +66,21 @@ resources! {
     #[cfg(feature = "embree")]
     "scene.embree", "work for the CPU, with the feature `embree`",
         Shape, Storage, |_, _| Some(Provided::CPU_WORK), |it, _, name, _| Err(it.unknown(name));
+    "scene.casters",
+        "`array<vec4<u32>>`, of each primitive that casts shadows its three indices and its id, \
+         ascending; of none one item, of 0xffffffff",
+        Winding, Storage, |it, _| array(Some(it.facts.casters(&it.scene.mesh)), 16),
+        Uploads::upload_casters;
+    "scene.shadows",
+        "`array<u32>`: [`shadow_words`](skiagraph_scene::packed_masks::shadow_words), what \
+         `shared/roles.wgsl` reads; no items if all primitives cast and receive",
+        Winding, Storage, |it, _| array(Some(it.facts.shadows.len()), 4),
+        |it, _, name, on| it.upload_items(name, &it.facts.clone().shadows, on);
     "scene.masks",
         "`array<u32>`: [`mask_words`](skiagraph_scene::packed_masks::mask_words), what \
          `shared/masks.wgsl` reads",
-        Winding, Storage, |it, _| array(Some(it.masks.len()), 4),
-        |it, _, name, on| it.upload_items(name, &it.masks.clone(), on);
+        Winding, Storage, |it, _| array(Some(it.facts.masks.len()), 4),
+        |it, _, name, on| it.upload_items(name, &it.facts.clone().masks, on);
     "scene.sheets", "`array<u32>`: a bit per primitive, of [`Sheets`](skiagraph_scene::Sheets)",
         Mesh, Storage, |it, _| array(Some(it.sheets.words().len()), 4),
         |it, _, name, on| it.upload_items(name, it.sheets.clone().words(), on);
@@ -152,8 +162,8 @@ mod tests {
                 LIGHT_AREA,
                 crate::lights::LIGHTS,
                 crate::lights::LIGHT_AREAS,
-                LIGHT,
-                LIGHT,
+                CASTERS,
+                SHADOWS,
             ],
         ];
         for name in own.into_iter().flatten() {

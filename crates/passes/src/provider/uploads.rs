@@ -17,7 +17,8 @@ use crate::{
 use glam::{Vec3, Vec4};
 use skiagraph_graph::Provided;
 use skiagraph_scene::{
-    BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets, packed_masks::mask_words,
+    BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets,
+    packed_masks::{mask_words, shadow_words},
 };
 use std::{ops::Range, sync::Arc};
 use web_time::Instant;
@@ -33,14 +34,48 @@ pub(super) struct Resource {
     pub upload: fn(&mut Uploads, &Mesh, &str, On) -> Result<How, Error>,
 }
 
+/// Facts about a mesh's triangles, packed for shaders.
+pub(super) struct Facts {
+    pub masks: Vec<u32>,
+    pub shadows: Vec<u32>,
+    /// Casters, of a mesh with such words.
+    listed: Vec<u32>,
+}
+
+impl Facts {
+    pub fn new(mesh: &Mesh) -> Self {
+        let shadows = shadow_words(mesh);
+        let listed = if shadows.is_empty() {
+            Vec::new()
+        } else {
+            mesh.casters()
+        };
+        let masks = mask_words(mesh);
+        Self {
+            masks,
+            shadows,
+            listed,
+        }
+    }
+
+    /// Number of triangles that cast shadows.
+    pub fn casters(&self, mesh: &Mesh) -> usize {
+        if self.shadows.is_empty() {
+            mesh.triangles.len()
+        } else {
+            self.listed.len()
+        }
+    }
+}
+
 /// A scene under a camera and lights, and what is uploaded of it.
 #[derive(Clone)]
 pub(super) struct Uploads {
     resources: &'static [Resource],
     pub scene: Arc<Scene>,
     pub versions: Versions,
-    /// Words of [`MASKS`] and [`SHEETS`], made at once: plans ask how many there are.
-    pub masks: Arc<Vec<u32>>,
+    /// Words of [`MASKS`], [`SHADOWS`] and [`SHEETS`], made at once: plans ask how many there are.
+    pub facts: Arc<Facts>,
     pub sheets: Arc<Sheets>,
     pub buffers: Buffers,
     pub geometry: Geometry,
@@ -58,7 +93,7 @@ impl Uploads {
             .map(|resource| (resource.name, resource.held));
         Self {
             versions: Versions::new(Eye::default(), scene.light(), lights),
-            masks: mask_words(&scene.mesh).into(),
+            facts: Facts::new(&scene.mesh).into(),
             sheets: Sheets::new(&scene.mesh).into(),
             scene,
             buffers: Buffers::new(held),
@@ -160,6 +195,32 @@ impl Uploads {
         Ok(How::Made)
     }
 
+    /// Number of entries that hierarchies have for primitives; in parts, room for those to come.
+    pub fn tree_slots(&self) -> usize {
+        let mesh = &self.scene.mesh;
+        if self.geometry.is_in_parts() {
+            mesh.triangles.len()
+        } else {
+            self.facts.casters(mesh)
+        }
+    }
+
+    pub fn upload_casters(&mut self, mesh: &Mesh, name: &str, on: On) -> Result<How, Error> {
+        let item = |id: u32| {
+            let [a, b, c] = mesh.triangles[id as usize];
+            [a, b, c, id]
+        };
+        let mut casters: Vec<[u32; 4]> = if self.facts.shadows.is_empty() {
+            (0..mesh.triangles.len() as u32).map(item).collect()
+        } else {
+            self.facts.listed.iter().copied().map(item).collect()
+        };
+        if casters.is_empty() {
+            casters.push([u32::MAX; 4]);
+        }
+        self.upload_items(name, &casters, on)
+    }
+
     pub fn upload_hierarchy(&mut self, on: On) -> Result<How, Error> {
         // Beyond some four million triangles the boxes of all leaves exceed what Vulkan promises
         // to bind, and so the smallest leaves are joined.
@@ -185,7 +246,10 @@ impl Uploads {
                 ..write
             }
         };
-        let writes: Vec<HostWrite> = writes.into_iter().map(with_nodes).collect();
+        let cast = writes
+            .into_iter()
+            .filter(|(_, write)| write.mesh.shadows().casts());
+        let writes: Vec<HostWrite> = cast.map(with_nodes).collect();
         self.write_host_parts(BVH_NODES, patched, writes, on)?;
         Ok(fitted.how)
     }
@@ -428,7 +492,7 @@ impl Uploads {
         }
         if change.is_turned || change.is_painted {
             // Texture coordinates come in the order of corners.
-            self.masks = mask_words(&self.scene.mesh).into();
+            self.facts = Facts::new(&self.scene.mesh).into();
             self.versions.change_winding();
         }
         if change.is_painted {

@@ -7,6 +7,7 @@ mod area;
 mod blockers;
 mod indeterminate;
 mod lamps;
+mod roles;
 mod shimmer;
 mod standard_views;
 mod visible;

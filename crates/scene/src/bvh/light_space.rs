@@ -3,7 +3,11 @@
 //! watertight triangle test (Woop, Benthin and Wald 2013): axes permuted so that the direction's
 //! longest component is the last, then sheared so that the direction is the z axis.
 
-use super::{node::BvhNode, tree::Bvh, two_level::TwoLevelBvh};
+use super::{
+    node::{BvhNode, MAX_DEPTH},
+    tree::Bvh,
+    two_level::TwoLevelBvh,
+};
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use obvhs::triangle::Triangle;
@@ -92,9 +96,10 @@ impl LightSpace {
         (p.truncate() - d.truncate() / d.z * p.z, up)
     }
 
-    /// Builds a hierarchy over a mesh with at most `most` nodes (0 counts as 1). Returns its nodes,
-    /// root first, and a [`Bvh`] of the same tree, to be used only for its `primitives` and for
-    /// [`refit`](Self::refit). Both are empty for an empty mesh. Returns `None` if
+    /// Builds a hierarchy over the [casters](Mesh::casters) of a mesh with at most `most` nodes (0
+    /// counts as 1). Returns its nodes, root first, and a [`Bvh`] of the same tree, to be used only
+    /// for its `primitives` and for [`refit`](Self::refit). Both are empty where nothing casts.
+    /// Returns `None` if
     /// [`LightSpaceNode::link`] has too few bits: with more than 67 million triangles or nodes, or
     /// with more than 63 triangles in a leaf.
     pub fn build(&self, mesh: &Mesh, most: usize) -> Option<(Vec<LightSpaceNode>, Bvh)> {
@@ -116,12 +121,19 @@ impl LightSpace {
             let (seen, up) = self.place(mesh.positions[index as usize]);
             seen.extend(DEPTH * steepness * up.z).as_vec3().into()
         };
-        let triangle = |corners: &[u32; 3]| {
-            let [v0, v1, v2] = corners.map(corner);
+        let casters = mesh.casters();
+        let triangle = |&primitive: &u32| {
+            let [v0, v1, v2] = mesh.triangles[primitive as usize].map(corner);
             Triangle { v0, v1, v2 }
         };
-        let triangles: Vec<Triangle> = mesh.triangles.iter().map(triangle).collect();
-        Bvh::by_ploc(&triangles).unwrap_or_else(|| Bvh::build(mesh))
+        let triangles: Vec<Triangle> = casters.iter().map(triangle).collect();
+        let tree = Bvh::by_ploc(&triangles);
+        let own = || Bvh::over(mesh, casters.iter().copied(), MAX_DEPTH);
+        let mut tree = tree.unwrap_or_else(own);
+        for primitive in &mut tree.primitives {
+            *primitive = casters[*primitive as usize];
+        }
+        tree
     }
 
     /// Returns the nodes of a hierarchy, fitted to the mesh in this light space, root first. `bvh`

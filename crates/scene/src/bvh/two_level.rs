@@ -233,17 +233,18 @@ impl TwoLevelBvh {
 
     /// Adds a piece with the number `piece`: the next unused number ([`pieces`](Self::pieces)), or
     /// the number of a piece that was [removed](Self::remove). `at_rest` has the piece's triangles
-    /// before they were moved; its tree is built over them. In the whole mesh they are the
-    /// triangles from the primitive id `first` on. The boxes are fitted by the next
-    /// [`refit`](Self::refit), which must name the piece.
+    /// before they were moved; its tree is built over those that [cast](Mesh::casts). In the whole
+    /// mesh they are the triangles from the primitive id `first` on. The boxes are fitted by the
+    /// next [`refit`](Self::refit), which must name the piece.
     ///
     /// # Panics
     /// If `piece` is the number of a piece that has triangles, or greater than the number of
     /// pieces.
     pub fn add(&mut self, piece: usize, at_rest: &Mesh, first: u32) {
-        let ids = 0..at_rest.triangles.len() as u32;
-        let tree = Bvh::over(at_rest, ids, depth_left(self.filled() + 1));
-        self.add_built(piece, &tree, tree.order().into(), first);
+        let mut ids = at_rest.casters();
+        let tree = Bvh::over(at_rest, ids.iter().copied(), depth_left(self.filled() + 1));
+        ids.iter_mut().for_each(|id| *id += first);
+        self.add_built(piece, &tree, tree.order().into(), &ids);
     }
 
     /// Adds a piece as [`add`](Self::add) does, with a tree that was built before: `tree` over the
@@ -262,17 +263,18 @@ impl TwoLevelBvh {
         if tree.depth > depth_left(self.filled() + 1) {
             self.add(piece, at_rest, first);
         } else {
-            self.add_built(piece, tree, Arc::clone(order), first);
+            let ids: Vec<u32> = (first..).take(tree.primitives.len()).collect();
+            self.add_built(piece, tree, Arc::clone(order), &ids);
         }
     }
 
-    fn add_built(&mut self, piece: usize, tree: &Bvh, order: Arc<[u32]>, first: u32) {
-        let count = tree.primitives.len() as u32;
+    fn add_built(&mut self, piece: usize, tree: &Bvh, order: Arc<[u32]>, ids: &[u32]) {
+        let (first, count) = (ids.first().map_or(0, |id| *id as usize), ids.len());
         if count > 0 {
             self.reserve_top(self.filled() + 1);
         }
         let nodes = self.take(tree.nodes.len().max(1) - 1);
-        let slots = first as usize..(first + count) as usize;
+        let slots = first..first + count;
         if self.primitives.len() < slots.end {
             self.primitives.resize(slots.end, 0);
         }
@@ -291,8 +293,7 @@ impl TwoLevelBvh {
                 self.pieces.push(added);
             }
         }
-        let ids: Vec<u32> = (first..first + count).collect();
-        self.put(piece, tree, order, &ids);
+        self.put(piece, tree, order, ids);
         self.pieces[piece].cost = self.cost(piece);
         self.is_stale = true;
     }

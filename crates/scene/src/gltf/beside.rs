@@ -1,7 +1,7 @@
 //! The part of a document's JSON that the `gltf` crate does not read, and how it is read.
 
 use super::extensions::{self, Kind};
-use crate::error::beginning;
+use crate::{error::beginning, shadows::Shadows};
 use serde_json::{Map, Value};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -12,6 +12,10 @@ pub(super) struct Beside {
     pub hidden: HashSet<usize>,
     /// Nodes whose mesh is there several times (EXT_mesh_gpu_instancing).
     pub instances: HashMap<usize, Instances>,
+    /// Roles in shadows that the `extras` of nodes give.
+    pub roles: HashMap<usize, Shadows>,
+    /// The same of meshes.
+    pub mesh_roles: HashMap<usize, Shadows>,
     /// Textures whose picture cannot be read, and why.
     pub unread: HashMap<usize, String>,
     /// Distances of a buffer view's items, bytes, which the `gltf` crate refuses.
@@ -48,6 +52,30 @@ pub(super) fn items<'v>(owner: &'v Value, list: &str) -> impl Iterator<Item = &'
 
 pub(super) fn index(value: Option<&Value>) -> Option<usize> {
     usize::try_from(value?.as_u64()?).ok()
+}
+
+/// The role in shadows that the `extras` of an object give, if they do: `casts` and `receives`,
+/// true without a word. Some exporters write 0 and 1.
+pub(super) fn role(fields: &Fields, place: &str, beside: &mut Beside) -> Option<Shadows> {
+    let extras = fields.get("extras")?;
+    let mut is_said = false;
+    let mut flag = |name: &str| match extras.get(name) {
+        None => true,
+        Some(value) => {
+            let flag = value.as_bool().or(value.as_u64().map(|number| number != 0));
+            if flag.is_none() {
+                let value = value.to_string();
+                let value = beginning(&value);
+                let text =
+                    format!("{place}: its extras say {name}: {value}, expected true or false");
+                beside.remarks.insert(text);
+            }
+            is_said |= flag.is_some();
+            flag.unwrap_or(true)
+        }
+    };
+    let role = Shadows::new(flag("casts"), flag("receives"));
+    is_said.then_some(role)
 }
 
 /// Takes the extensions off an object, and says which are not followed.

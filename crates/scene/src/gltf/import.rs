@@ -21,11 +21,12 @@ use crate::{
     mesh::Mesh,
     obj::read::check_read,
     report::ImportReport,
+    shadows::Shadows,
     weld::Known,
 };
 use glam::{DMat3, DMat4, DVec3, Vec2};
 use gltf::{Document, Semantic, accessor::DataType, mesh::Mode};
-use std::path::Path;
+use std::{ops::Range, path::Path};
 
 /// Most corners of all triangles together: a small file may place one mesh any number of times.
 const MOST_CORNERS: usize = 1 << 28;
@@ -117,11 +118,18 @@ pub fn parse_gltf_scene(
         materials,
         builder,
         corners: 0,
+        roles: Vec::new(),
     };
     let nodes = Nodes::new(&document, &beside, placements.animations.nodes()).map_err(fail)?;
     import.read_nodes(nodes.as_ref()).map_err(fail)?;
     let materials = import.materials.all.into_iter().map(|read| read.material);
-    let (mesh, report) = import.builder.finish(materials.collect());
+    let (mut mesh, report) = import.builder.finish(materials.collect());
+    let total = mesh.triangles.len();
+    for role in [Shadows::Casts, Shadows::Receives, Shadows::Neither] {
+        let own = import.roles.iter().filter(|(_, own)| *own == role);
+        let own = own.flat_map(|(triangles, _)| triangles.clone());
+        mesh.surfaces.set_shadows(own, total, role);
+    }
     check_read(&mesh, &report, path)?;
     let mut scene = GltfScene::new(&placements, nodes.as_ref(), mesh.bounds());
     if let Some(nodes) = &nodes {
@@ -171,6 +179,8 @@ struct Import<'a> {
     materials: Materials,
     builder: MeshBuilder,
     corners: usize,
+    /// Triangles whose nodes or meshes have a role in shadows.
+    roles: Vec<(Range<u32>, Shadows)>,
 }
 
 /// Where a mesh is placed.
@@ -217,6 +227,7 @@ impl<'a> Import<'a> {
             let Some(mesh) = node.mesh() else { continue };
             let placing = self.placing(node, &mesh, nodes);
             let placing = placing.map_err(|why| (format!("node {}", node.index()), why))?;
+            let first = self.builder.triangles();
             if nodes.moved.contains(&node.index()) {
                 let shared_table = self.builder.positions.weld_to(Known::default());
                 self.read_mesh(&mesh, &placing)?;
@@ -224,6 +235,12 @@ impl<'a> Import<'a> {
             } else {
                 self.read_mesh(&mesh, &placing)?;
             }
+            let roles = &self.beside.roles;
+            let role = roles
+                .get(&node.index())
+                .or(self.beside.mesh_roles.get(&mesh.index()));
+            self.roles
+                .extend(role.map(|role| (first..self.builder.triangles(), *role)));
         }
         Ok(())
     }

@@ -116,8 +116,8 @@ impl Reader<'_> {
                 name: from.name().unwrap_or("unnamed").to_owned(),
                 base_color: [red, green, blue],
                 texture,
-                mask: None,
                 double_sided: from.double_sided(),
+                ..Material::default()
             },
             uv_set: uv_set.or(info.map(|info| info.tex_coord())).unwrap_or(0),
             uv_transform,

@@ -3,7 +3,7 @@
 //! unknown to the crate are read here.
 
 use super::{
-    beside::{Beside, Instances, each, index, items, taken},
+    beside::{Beside, Instances, each, index, items, role, taken},
     extensions::{self, Kind},
     fault::Fault,
     nodes::NO_TURN,
@@ -89,6 +89,9 @@ fn nodes(root: &mut Value, beside: &mut Beside) {
                 .remarks
                 .insert(format!("node {number}{name}: its {NO_TURN}"));
         }
+        if let Some(role) = role(node, &format!("node {number}"), beside) {
+            beside.roles.insert(number, role);
+        }
         let extensions = taken(node, "nodes", beside);
         let visible = |extension: &Value| extension.get("visible").and_then(Value::as_bool);
         if extensions.get("KHR_node_visibility").and_then(visible) == Some(false) {
@@ -134,6 +137,9 @@ fn meshes(root: &mut Value, beside: &mut Beside, materials: MaterialUse) -> Resu
     };
     let mut fault = None;
     each(root, "meshes", |number, mesh| {
+        if let Some(role) = role(mesh, &format!("mesh {number}"), beside) {
+            beside.mesh_roles.insert(number, role);
+        }
         taken(mesh, "meshes", beside);
         let primitives = mesh.get_mut("primitives").and_then(Value::as_array_mut);
         for (which, primitive) in primitives.into_iter().flatten().enumerate() {

@@ -247,7 +247,7 @@ impl Reading<'_> {
             base_color: from.diffuse.unwrap_or([1.0; 3]),
             texture,
             mask,
-            double_sided: false,
+            ..Material::default()
         };
         Ok((material, uvs))
     }

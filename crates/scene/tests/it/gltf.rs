@@ -226,3 +226,32 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn extras_give_roles_in_shadows() {
+    use skiagraph_scene::Shadows::{Both, Casts, Neither, Receives};
+    let role = |node: &str, mesh: &str| {
+        let node = format!("\"mesh\": 0, \"extras\": {node}}}");
+        let mesh = format!("\"meshes\": [{{\"extras\": {mesh}, ");
+        let text = with_data_uri().replace("\"mesh\": 0}", &node);
+        let (mesh, report) = parse(&text.replace("\"meshes\": [{", &mesh)).unwrap();
+        assert_eq!(mesh.surfaces.shadows(0), mesh.surfaces.shadows(1));
+        (mesh.surfaces.shadows(0), report.remarks.join("\n"))
+    };
+    for (node, mesh, expected) in [
+        ("{}", "{}", Both),
+        ("{\"casts\": false}", "{}", Receives),
+        ("{\"receives\": false}", "{\"casts\": false}", Casts),
+        (
+            "{\"colour\": 1}",
+            "{\"casts\": 0, \"receives\": 0}",
+            Neither,
+        ),
+        ("{\"casts\": true}", "{\"casts\": false}", Both),
+    ] {
+        assert_eq!(role(node, mesh), (expected, String::new()), "{node} {mesh}");
+    }
+    let (shadows, remarks) = role("{\"casts\": \"no\"}", "{}");
+    let remark = "node 1: its extras say casts: \"no\", expected true or false";
+    assert_eq!((shadows, remarks.as_str()), (Both, remark));
+}

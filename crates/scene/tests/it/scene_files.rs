@@ -58,6 +58,8 @@ fn mistakes_are_shown_in_their_lines() {
         (view, ""),
         (view, &format!("{view}\n{view}")),
         ("format: 1", "format: 2"),
+        ("light: (", "shadows: {\"lawn\": Cast},\n    light: ("),
+        ("light: (", "shadows: [\"lawn\"],\n    light: ("),
     ]
     .map(|(from, to)| found(&with(from, to)).render(false));
     assert_snapshot!(frames.join("\n"));
@@ -487,4 +489,47 @@ fn a_scene_file_that_stands_in_for_a_built_in_one_is_named() {
     assert_eq!(library.stand_in("park"), Some(file));
     std::fs::write(folder.path().join("garden.ron"), SCENE_OF_PARK).unwrap();
     assert_eq!(library.stand_in("garden"), None);
+}
+
+/// Loads a scene of these roles in shadows.
+fn load_with(shadows: &str) -> Result<(skiagraph_scene::Scene, String), String> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("garden.ron");
+    let text = with("light: (", &format!("shadows: {shadows},\n    light: ("));
+    fs::write(&file, text).unwrap();
+    let loaded = SceneLibrary::default().load(file.to_str().unwrap());
+    let plain = |text: String| text.replace(&format!("{}/", folder.path().display()), "");
+    loaded
+        .map(|(scene, report)| (scene, plain(report.to_string())))
+        .map_err(|error| plain(error.to_string()))
+}
+
+#[test]
+fn parts_get_their_roles_in_shadows() {
+    use skiagraph_scene::Shadows::{Both, Neither, Receives};
+    let (scene, report) = load_with("{\"lawn\": Receives, \"lamp\": Neither}").unwrap();
+    assert_eq!(report, "");
+    for group in &scene.mesh.groups {
+        let expected = match group.name.as_str() {
+            "lawn" => Receives,
+            "lamp" => Neither,
+            _ => Both,
+        };
+        let mut own = group.triangles.clone();
+        assert!(own.all(|id| scene.mesh.surfaces.shadows(id) == expected));
+    }
+    assert_snapshot!(load_with("{\"lawm\": Receives, \"lamp\": Neither}").unwrap_err(), @r#"
+    error[unknown-resource]: no part of the mesh is called "lawm"
+      --> garden.ron:5:15 no such part
+      help: did you mean `lawn`?
+    "#);
+    let names = [
+        "lawn", "bench", "lamp", "planter", "flowers", "tree 1", "tree 2",
+    ];
+    let nothing = names.map(|name| format!("{name:?}: Receives")).join(", ");
+    let (_, report) = load_with(&format!("{{{nothing}}}")).unwrap();
+    let expected = "garden.ron:5:15: no part of the mesh casts a shadow, so that everything is \
+                    lit: let one cast (`shadows` of a scene file, `casts` in the extras of a glTF \
+                    file)\n";
+    assert_eq!(report, expected);
 }

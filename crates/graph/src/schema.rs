@@ -112,9 +112,10 @@ written!(FormatEntry, "Format", _generator => json_schema!({
 }));
 
 written!(Data, "Data", _generator => json_schema!({
-    "description": "Numbers, or tuples of them, one per scalar of the shader's type.",
+    "description": "Numbers, or tuples of them, one per scalar of the shader's type; expressions \
+        stand in quotes.",
     "type": "array",
-    "items": { "type": ["number", "array"] },
+    "items": { "type": ["number", "array", "string"] },
 }));
 
 written!(Expose, "Expose", generator => {

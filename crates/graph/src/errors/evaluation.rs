@@ -76,6 +76,18 @@ mistakes! {
         Expression("{owner} has no such attribute")
         .at(span, "").help(format!("attributes are {}", attributes()));
 
+    /// A component that a value has not: `size.z` of two numbers, or any of one.
+    NoComponent { place: Span, owner: String, component: &'static str, value: Value } =>
+        Expression("`{owner}` has no component `{component}`")
+        .at(place, format!("`{owner}` is {value}"))
+        .help(match &value {
+            Value::List(list) => format!(
+                "its numbers are {}",
+                ["`x`", "`y`", "`z`", "`w`"][..list.len().min(4)].join(", ")
+            ),
+            _ => "only sizes and vectors have `x`, `y`, `z`, `w`".to_owned(),
+        });
+
     NoCount(name: Located<String>) =>
         Size("`{name}` has no number of items")
         .at(name, "it says no `count`")

@@ -502,13 +502,23 @@ impl<'a> Builder<'a> {
         // attributes (`index` is one) are what they are here.
         let text = condition.canonical(&mut |leaf| {
             if let Some(name) = leaf.as_param() {
+                let is_param = |name: &str| params.bound(name).is_some();
+                let part = leaf.as_component().filter(|(owner, _)| is_param(owner));
+                let (name, part) = match part.filter(|_| !is_param(name)) {
+                    Some((owner, part)) => (owner, format!(".{}", part.as_str())),
+                    None => (name, String::new()),
+                };
                 match params.bound(name).map(|bound| &bound.root) {
-                    Some(Some(root)) => return root.clone(),
-                    Some(None) => return format!("{private}{name}"),
+                    Some(Some(root)) => return format!("{root}{part}"),
+                    Some(None) => return format!("{private}{name}{part}"),
                     None => {}
                 }
                 let scopes = &self.symbols.scopes;
-                if scopes.find_value(position.scope, name).is_none() {
+                let owner = leaf.as_component().map_or(name, |(owner, _)| owner);
+                if [name, owner]
+                    .iter()
+                    .all(|it| scopes.find_value(position.scope, it).is_none())
+                {
                     return name.to_owned();
                 }
             }

@@ -57,6 +57,13 @@ impl Environment for At<'_, '_> {
         Err(self.report(error))
     }
 
+    fn is_param(&self, name: &str) -> bool {
+        let scopes = &self.symbols.scopes;
+        let scope = self.position.scope;
+        scopes.document(scope).params.bound(name).is_some()
+            || scopes.find_value(scope, name).is_some()
+    }
+
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
         let instance = self.symbols.scopes.document(self.position.scope);
         if let Some(value) = instance.params.value(name, &mut self.symbols.reports) {

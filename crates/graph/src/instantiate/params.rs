@@ -146,6 +146,10 @@ impl Environment for ParamsAlone<'_> {
         }
     }
 
+    fn is_param(&self, name: &str) -> bool {
+        self.params.bound(name).is_some()
+    }
+
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
         self.params.value(name, self.reports)?.ok()
     }

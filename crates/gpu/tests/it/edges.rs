@@ -1,6 +1,6 @@
-//! What an author meets in the first week: each feature by itself on the device, to the bit.
+//! Features that shader authors expect of any graph: each by itself on the device, to the bit.
 
-use crate::featured::{Running, buffer_floats};
+use crate::featured::{Running, buffer_floats, floats};
 use crate::support::Files;
 use skiagraph_graph::ParamValue;
 
@@ -33,4 +33,101 @@ fn data_are_expressions_over_params_and_sizes() {
     let words = running.words("copied").into_iter().map(f32::from_bits);
     let expected = [2.0, 1.0, 6.0, 2.0, 0.5, 8.0, 8.0, 2.0];
     assert_eq!(words.collect::<Vec<f32>>(), expected);
+}
+
+/// Reset to (0.25, 0.25, 0.25, 0.5), below (1, 0.5, 0, 0.5).
+#[test]
+fn factors_operation_and_constant_of_blending_are_free() {
+    for (blend, expected) in [
+        (
+            "(source: SrcAlpha, target: OneMinusSrcAlpha, alpha: (source: One, \
+          target: OneMinusSrcAlpha))",
+            [0.625, 0.375, 0.125, 0.75],
+        ),
+        ("(target: Zero)", [1.0, 0.5, 0.0, 0.5]),
+        ("(source: Zero, target: Src)", [0.25, 0.125, 0.0, 0.25]),
+        ("(operation: ReverseSubtract)", [-0.75, -0.25, 0.25, 0.0]),
+        (
+            "(operation: Min, alpha: (operation: Max))",
+            [0.25, 0.25, 0.0, 0.5],
+        ),
+        (
+            "(source: Constant, target: OneMinusConstant, constant: 0.75)",
+            [0.8125, 0.4375, 0.0625, 0.5],
+        ),
+        (
+            "(source: Constant, target: Zero, constant: (\"half\", 1, 1, \"half / 2\"))",
+            [0.5, 0.5, 0.0, 0.125],
+        ),
+    ] {
+        let files = Files::graph(&format!(
+            r#"
+            params: [F32(name: "half", default: 0.5)],
+            materials: [Texture(name: "image", format: Rgba16Float)],
+            passes: [
+                Clear(name: "reset", target: "image", value: (0.25, 0.25, 0.25, 0.5)),
+                Fullscreen(name: "over", color: [(target: "image", load: Load, blend: {blend})]),
+            ],
+            outputs: ["image"],
+            "#
+        ));
+        let over = "@fragment fn fragment() -> @location(0) vec4<f32> {
+                return vec4(1.0, 0.5, 0.0, 0.5);
+            }";
+        let texels = floats(&files.with("over.wgsl", over), "image");
+        assert_eq!(texels, expected.repeat(16), "{blend}");
+    }
+}
+
+#[test]
+fn a_draw_begins_at_any_vertex_and_instance() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "row", default: 2)],
+        materials: [Texture(name: "image", format: R32Float)],
+        passes: [Raster(name: "rows", draw: 6, first_vertex: "6 * row", instances: 2,
+            first_instance: 1, color: ["image"])],
+        outputs: ["image"],
+        "#,
+    );
+    // A rectangle for every six vertices, a row each; a column for each instance.
+    let rows = "struct Out { @builtin(position) clip: vec4<f32>, @location(0) value: f32 }
+        @vertex fn vertex(@builtin(vertex_index) vertex: u32,
+            @builtin(instance_index) instance: u32) -> Out {
+            let corner = vertex % 6u;
+            let x = f32(instance) + select(0.0, 1.0, corner == 1u || corner == 2u || corner == 4u);
+            let y = f32(vertex / 6u) + select(0.0, 1.0, corner == 2u || corner >= 4u);
+            let clip = vec2(x, y) / 2.0 - 1.0;
+            return Out(vec4(clip.x, -clip.y, 0.0, 1.0), f32(10u * instance + vertex / 6u));
+        }
+        @fragment fn fragment(in: Out) -> @location(0) f32 { return in.value; }";
+    let mut expected = [0.0; 16];
+    (expected[9], expected[10]) = (12.0, 22.0);
+    assert_eq!(floats(&files.with("rows.wgsl", rows), "image"), expected);
+}
+
+#[test]
+fn a_colour_target_is_there_under_a_condition() {
+    let files = Files::graph(
+        r#"
+        params: [Bool(name: "detailed", default: false)],
+        materials: [
+            Texture(name: "a", format: R32Float), Texture(name: "b", format: Rg32Float),
+            Texture(name: "c", format: R32Uint),
+        ],
+        passes: [Fullscreen(name: "three",
+            color: ["a", (target: "b", if: "detailed"), "c"])],
+        outputs: ["a", (name: "b", if: "detailed"), "c"],
+        "#,
+    );
+    let three = "struct Out { @location(0) a: f32, @location(1) b: vec2<f32>, @location(2) c: u32 }
+        @fragment fn fragment() -> Out { return Out(0.5, vec2(2.0, 3.0), 7u); }";
+    let files = files.with("three.wgsl", three);
+    let mut plain = Running::new(&files);
+    assert_eq!(plain.floats("a"), [0.5; 16]);
+    assert_eq!(plain.words("c"), [7; 16]);
+    let mut detailed = Running::with(&files, &[("detailed", ParamValue::Bool(true))]);
+    assert_eq!(detailed.floats("a"), [0.5; 16]);
+    assert_eq!(detailed.floats("b"), [2.0, 3.0].repeat(16));
+    assert_eq!(detailed.words("c"), [7; 16]);
 }

@@ -299,7 +299,14 @@ mistakes! {
         .at(name, "").help("use a colour format that can be drawn to, or `depth: \"…\"`");
 
     NotBlendable(name: Located<String>, format: TextureFormat) =>
-        FormatMismatch("a target of format {format:?} cannot be blended").at(name, "");
+        FormatMismatch("a target of format {format:?} cannot be blended")
+        .at(name, "")
+        .help(match format.sample_type(None, None) {
+            Some(wgt::TextureSampleType::Float { .. }) => {
+                "write `requires: [\"FLOAT32_BLENDABLE\"]`, or use a format of 16 bits"
+            }
+            _ => "leave `blend` out, or use a format of floats or normalised numbers",
+        });
 
     Resolve(name: Located<String>, why: &'static str) =>
         ResourceKind("nothing can be resolved into `{name}`").at(name, why);

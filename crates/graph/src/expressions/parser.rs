@@ -369,8 +369,8 @@ impl<'a> Parser<'a> {
             path.pop();
             let (first, owner) = (path[0].range.start, path[path.len() - 1].range.end);
             let kind = self.value_of(path)?;
-            let of = Expr::new(kind, self.file.span(first..owner));
-            return Ok(ExprKind::Component(Box::new(of), *component));
+            let whole = Expr::new(kind, self.file.span(first..owner));
+            return Ok(ExprKind::Component(Box::new(whole), *component));
         }
         if alone && attribute == Some(Attribute::Index) {
             let innermost = Subject::Repetition(None);

@@ -174,13 +174,17 @@ impl PlanInputs {
         let Some(condition) = condition else {
             return Ok(true);
         };
-        let (symbols, scope) = (at.symbols(), at.position.scope);
+        self.note(condition, at.symbols(), at.position.scope);
+        eval::boolean(condition, at)
+    }
+
+    /// Notes the params and features in a condition.
+    pub fn note(&mut self, condition: &Expr, symbols: &SymbolTable<'_>, scope: ScopeId) {
         self.params.extend(symbols.roots(scope, condition));
         symbols.visit(scope, condition, &mut |_, leaf| {
             if let Leaf::Has(feature) = leaf {
                 self.features |= feature;
             }
         });
-        eval::boolean(condition, at)
     }
 }

@@ -9,6 +9,7 @@ use std::{collections::BTreeSet, path::Path};
 /// that makes them.
 const BY_HAND: &[(&str, &str)] = &[
     ("DocumentError::Twice", "duplicate_material"),
+    ("DocumentError::BlendConstant", "blend_no_constant"),
     ("ComposeError::NoInclude", "include_missing"),
     ("ComposeError::SameName", "duplicate_pass"),
     ("EvaluationError::Words", "param_cull"),

@@ -125,6 +125,7 @@ const DOCUMENTS: [(&str, usize); 13] = [
     ("extended.ron", 4),
     ("history.ron", 1),
     ("age.ron", 3),
+    ("bands.ron", 4),
     ("kept.ron", 1),
     ("settled.ron", 1),
     ("filtered.ron", 6),

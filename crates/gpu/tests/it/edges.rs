@@ -1,8 +1,10 @@
 //! Features that shader authors expect of any graph: each by itself on the device, to the bit.
 
-use crate::featured::{Running, buffer_floats, floats};
+use crate::featured::{Running, VALUE, buffer_floats, floats};
+use crate::host::{executor, frame, request, submit};
 use crate::support::Files;
-use skiagraph_graph::ParamValue;
+use skiagraph_gpu::Frame;
+use skiagraph_graph::{NoProvider, ParamValue};
 
 #[test]
 fn data_are_expressions_over_params_and_sizes() {
@@ -130,4 +132,61 @@ fn a_colour_target_is_there_under_a_condition() {
     assert_eq!(detailed.floats("a"), [0.5; 16]);
     assert_eq!(detailed.floats("b"), [2.0, 3.0].repeat(16));
     assert_eq!(detailed.words("c"), [7; 16]);
+}
+
+/// Each frame draws one of four layers; none is left out, and the others stay.
+#[test]
+fn passes_take_turns_by_the_number_of_the_frame() {
+    let files = Files::graph(
+        r#"
+        materials: [Texture(name: "maps", format: R32Float, size: 1, layers: 4, keep: true)],
+        passes: [Fullscreen(name: "fill", repeat: 4, color: ["maps[index]"],
+            run: When("frame.index % 4 == index"))],
+        outputs: ["maps"],
+        "#,
+    );
+    let fill = "struct Frame { index: u32, seconds: f32 }
+        var<uniform> frame: Frame;
+        @fragment fn fragment() -> @location(0) f32 { return f32(frame.index); }";
+    let mut executor = executor(&files.with("fill.wgsl", fill), &request(&NoProvider));
+    assert_eq!(executor.plan().period(), 4);
+    for number in 0..9_u16 {
+        let report = frame(&mut executor, &["maps"]);
+        let ran = usize::from(number % 4);
+        let names = (0..4).filter(|layer| *layer != ran);
+        let names: Vec<String> = names.map(|layer| format!("fill[{layer}]")).collect();
+        assert_eq!(report.skipped, names, "{number}");
+        let newest = |layer: u16| {
+            let frames = (0..=number).filter(|frame| frame % 4 == layer);
+            f32::from(frames.max().unwrap_or(0))
+        };
+        let texels = report.readbacks[0].content.as_f32();
+        assert_eq!(texels, Some((0..4).map(newest).collect()), "{number}");
+    }
+}
+
+/// Nothing changes, and nothing is remembered but which frame it is.
+#[test]
+fn a_pass_that_takes_turns_never_rests() {
+    let files = Files::graph(
+        r#"
+        params: [F32(name: "value", default: 2)],
+        materials: [Texture(name: "image", format: R32Float)],
+        passes: [Fullscreen(name: "fill", color: ["image"],
+            run: When("(frame.index % 2 == 1 && value > 1) || frame.index % 3 == 2"))],
+        outputs: ["image"],
+        "#,
+    );
+    let mut executor = executor(&files.with("fill.wgsl", VALUE), &request(&NoProvider));
+    assert_eq!(executor.plan().period(), 6);
+    let ran = (0..12).map(|_| frame(&mut executor, &[]).skipped.is_empty());
+    let turn = [false, true, true, true, false, true];
+    assert_eq!(ran.collect::<Vec<bool>>(), [turn, turn].concat());
+    // A frame of all passes, as those that are timed, whatever its number.
+    let whole = submit(
+        &mut executor,
+        &Frame::new().with_all(true).with_read(&["image"]),
+    );
+    assert_eq!(whole.skipped, [""; 0]);
+    assert_eq!(whole.readbacks[0].content.as_f32(), Some(vec![2.0; 64]));
 }

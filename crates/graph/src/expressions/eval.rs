@@ -44,6 +44,12 @@ pub(crate) trait Environment {
 
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
 
+    /// Returns the remainder of the frame's number by `length`, in a condition on frames; `None`
+    /// elsewhere.
+    fn turn(&mut self, _length: u32) -> Option<u32> {
+        None
+    }
+
     fn attribute(
         &mut self,
         material: &Reference,
@@ -245,6 +251,14 @@ fn binary(
         Binary::LessEqual => Ordering::is_le,
         Binary::Greater => Ordering::is_gt,
         Binary::GreaterEqual => Ordering::is_ge,
+        Binary::Remainder
+            if left.is_frame_number()
+                && let length = count32(right, env)?
+                && length > 0
+                && let Some(turn) = env.turn(length) =>
+        {
+            return Ok(Value::whole(turn));
+        }
         _ => {
             let values = [value(left, env)?, value(right, env)?];
             if matches!(operator, Binary::ShiftLeft | Binary::ShiftRight) {

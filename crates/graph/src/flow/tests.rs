@@ -100,7 +100,7 @@ fn case(uses: &[Vec<Use>]) -> Case {
             steps: Vec::new(),
             accesses,
             run: Run::Always,
-            enabled: true,
+            turns: vec![true],
         }
     };
     let passes: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();

@@ -18,9 +18,9 @@ use crate::{
         raw::Invalid,
         typed::{Document, Entry, Include, Pass, Run as RunEntry, What},
     },
-    errors::instantiate::InterfaceError,
+    errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     expressions::eval,
-    language::name::Name,
+    language::{name::Name, syntax::Expr, value::least_common_multiple},
     param::ParamType,
     provider::Import,
     request::PlanRequest,
@@ -37,6 +37,10 @@ use std::{
 /// guards against documents that double with each include, which would take absurd time and memory.
 const MOST: usize = 16_384;
 
+/// Greatest number of frames after which the run conditions of a graph repeat: a method is
+/// judged over all of them.
+const LONGEST_PERIOD: u64 = 64;
+
 pub(super) struct Builder<'a> {
     pub symbols: SymbolTable<'a>,
     pub(super) passes: Vec<FlatPass<'a>>,
@@ -52,6 +56,8 @@ pub(super) struct Builder<'a> {
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
     full: Option<ErrorGuaranteed>,
+    /// Number of frames after which all run conditions so far repeat.
+    period: u64,
 }
 
 /// Flattens a document with all that it includes. `merges`: includes of the same content are
@@ -75,6 +81,7 @@ pub(crate) fn flatten<'a>(
         said: Vec::new(),
         spent: 0,
         full: None,
+        period: 1,
     };
     let document = &graph.document;
     let instance = builder.symbols.scopes.add_instance(Instance {
@@ -334,14 +341,14 @@ impl<'a> Builder<'a> {
         match &entry.what {
             What::Pass(pass) => {
                 self.note_choices(pass, context.scope);
-                let (run, enabled) = run.unwrap_or((Run::Always, true));
+                let (run, turns) = run.unwrap_or((Run::Always, vec![true]));
                 let pass = FlatPass {
                     name: Located::new(name, entry.name.span.clone()),
                     entry,
                     pass,
                     position,
                     run,
-                    enabled,
+                    turns,
                     bind: self.asked(&context.bind, |name| {
                         self.asks_global(context.scope, entry, name)
                     }),
@@ -485,15 +492,16 @@ impl<'a> Builder<'a> {
         entry: &Entry,
         position: Position,
         context: &EntryContext<'a>,
-    ) -> Reported<Option<(Run, bool)>> {
+    ) -> Reported<Option<(Run, Vec<bool>)>> {
+        let always = |run| Ok(Some((run, vec![true])));
         let condition = match &entry.run {
             None => return Ok(context.run.clone()),
-            Some(RunEntry::Always) => return Ok(Some((Run::Always, true))),
-            Some(RunEntry::Once) => return Ok(Some((Run::Once, true))),
-            Some(RunEntry::OnChange) => return Ok(Some((Run::OnChange, true))),
+            Some(RunEntry::Always) => return always(Run::Always),
+            Some(RunEntry::Once) => return always(Run::Once),
+            Some(RunEntry::OnChange) => return always(Run::OnChange),
             Some(RunEntry::When(condition)) => condition,
         };
-        let enabled = eval::boolean(condition, &mut self.symbols.at(position, None))?;
+        let turns = self.turns(condition, position)?;
         let instance = self.symbols.scopes.document(position.scope);
         let params = Arc::clone(&instance.params);
         let outer = instance.outer.as_ref();
@@ -501,6 +509,9 @@ impl<'a> Builder<'a> {
         // Conditions of two documents are one if they are made of the same params of the root;
         // attributes (`index` is one) are what they are here.
         let text = condition.canonical(&mut |leaf| {
+            if leaf.is_frame_number() && turns.len() > 1 {
+                return leaf.text().to_owned();
+            }
             if let Some(name) = leaf.as_param() {
                 let is_param = |name: &str| params.bound(name).is_some();
                 let part = leaf.as_component().filter(|(owner, _)| is_param(owner));
@@ -525,7 +536,29 @@ impl<'a> Builder<'a> {
             let value = eval::value(leaf, &mut self.symbols.at(position, None));
             value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
         });
-        Ok(Some((Run::When(text), enabled)))
+        Ok(Some((Run::When(text), turns)))
+    }
+
+    /// Returns the values of a run condition, frame by frame until they repeat.
+    fn turns(&mut self, condition: &Expr, position: Position) -> Reported<Vec<bool>> {
+        let mut turns = Vec::new();
+        let mut at = self.symbols.at(position, None);
+        let (mut frame, mut repeats) = (0, 1);
+        while frame < repeats {
+            at.frame = Some((frame, repeats));
+            turns.push(eval::boolean(condition, &mut at)?);
+            (frame, repeats) = (frame + 1, at.frame.map_or(repeats, |(_, repeats)| repeats));
+            let period = least_common_multiple(self.period, repeats);
+            if period > LONGEST_PERIOD {
+                return Err(at.report(EvaluationError::FramePeriod {
+                    place: condition.span.clone(),
+                    period,
+                    most: LONGEST_PERIOD,
+                }));
+            }
+        }
+        self.period = least_common_multiple(self.period, repeats);
+        Ok(turns)
     }
 
     /// Adds the settings of a group to those of the groups around it; the inner setting of a name

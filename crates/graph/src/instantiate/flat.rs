@@ -30,10 +30,9 @@ pub enum Run {
     /// are not compared: content has changed if a pass that writes it has run, or the host reports
     /// a change.
     OnChange,
-    /// In every frame if an expression over params is true in the plan, in no frame otherwise.
-    /// Holds the expression as text, which names params as the loaded document does; passes with
-    /// equal texts run in the same frames. [`LinkedPass::enabled`](crate::LinkedPass::enabled)
-    /// holds its value.
+    /// In the frames in which an expression over params and the frame's number is true. Holds the
+    /// expression as text, which names params as the loaded document does; passes with equal texts
+    /// run in the same frames. [`LinkedPass::turns`](crate::LinkedPass::turns) holds its values.
     When(String),
 }
 
@@ -85,9 +84,9 @@ pub(crate) struct FlatPass<'a> {
     pub pass: &'a Pass,
     pub position: Position,
     pub run: Run,
-    /// Value of the expression in [`Run::When`] with the plan's params; true for every other
-    /// [`Run`].
-    pub enabled: bool,
+    /// Values of the expression in [`Run::When`], frame by frame until they repeat; one true for
+    /// every other [`Run`].
+    pub turns: Vec<bool>,
     /// Bindings that groups around the pass give to globals of its shader, an inner group's in
     /// place of an outer one's.
     pub bind: Vec<Inherited<'a, Reference>>,
@@ -103,7 +102,7 @@ pub(super) struct EntryContext<'a> {
     /// Prefix of the full names of the passes inside, such as `cascade[2].`; empty at the top of
     /// the loaded document.
     pub prefix: String,
-    pub run: Option<(Run, bool)>,
+    pub run: Option<(Run, Vec<bool>)>,
     pub bind: Vec<Inherited<'a, Reference>>,
     pub set: Vec<Inherited<'a, Expr>>,
 }

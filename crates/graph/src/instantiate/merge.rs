@@ -30,7 +30,7 @@ pub(super) struct Content {
     /// Targets of names of the scene; the innermost include that binds a name decides.
     scene: BTreeMap<String, Target>,
     replaced: Replaced,
-    run: Option<(Run, bool)>,
+    run: Option<(Run, Vec<bool>)>,
 }
 
 /// Value of a param, the param of the root document that it is (if any), and the params of the root
@@ -70,7 +70,7 @@ impl Content {
         inputs: &[Reported<Target>],
         scene: BTreeMap<String, Reported<Target>>,
         replaced: &Replaced,
-        run: Option<(Run, bool)>,
+        run: Option<(Run, Vec<bool>)>,
     ) -> Option<Self> {
         let params = params.list.iter().map(|bound| {
             let value = bound.value.clone().ok()?;

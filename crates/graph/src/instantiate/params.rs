@@ -155,7 +155,7 @@ impl Environment for ParamsAlone<'_> {
     }
 
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
-        Err(self.report(EvaluationError::NoIndex(span.clone(), entry.cloned())))
+        Err(self.report(EvaluationError::no_index(span, entry)))
     }
 
     fn attribute(&mut self, material: &Reference, _: Attribute, span: &Span) -> Reported<Value> {

@@ -281,6 +281,13 @@ impl Expr {
         Some((owner, Component::named(component)?.1))
     }
 
+    /// True if the expression is `frame.index`: the number of the frame, unless an entry called
+    /// `frame` is repeated around it.
+    pub(crate) fn is_frame_number(&self) -> bool {
+        let frame = |name: &Name| name.as_str() == "frame";
+        matches!(&self.kind, ExprKind::Attribute(Subject::Repetition(Some(name)), _) if frame(name))
+    }
+
     /// True if the expression asks for an attribute of a material. A count of this kind may be 0
     /// without a mistake of the document.
     pub(crate) fn is_taken(&self) -> bool {

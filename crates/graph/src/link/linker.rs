@@ -116,7 +116,7 @@ fn link_pass<'a>(mut pass: LoweredPass<'a>, scope: &mut PassScope<'a>) -> Report
     let flat = pass.flat;
     let mut linked = steps::link(flat.name, flat.pass.kind, &pass.steps, scope)?;
     linked.run = flat.run;
-    linked.enabled = flat.enabled;
+    linked.turns = flat.turns;
     scope.unasked()?;
     overwrites(&mut linked, &flat.pass.overwrites, scope)?;
     if let Some(reads) = &flat.pass.reads {

@@ -42,7 +42,7 @@ pub(super) fn link(
         steps: linked,
         accesses: std::mem::take(&mut scope.accesses),
         run: Run::Always,
-        enabled: true,
+        turns: vec![true],
     };
     wrong.map_or(Ok(pass), Err)
 }

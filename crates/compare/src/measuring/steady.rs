@@ -164,8 +164,9 @@ impl Pictures {
 }
 
 /// Judges the next frame of a method on a still view. Of one in its steady state, those of one
-/// period are judged (16 if it has none, or as many as the plan's): their means are written into `steady`, and the worst by
-/// [`Judgement::is_worse_than`] is returned. `layer` is the layer of the outputs that is judged.
+/// period are judged (if it has none, 16 or as many as the plan's has): their means are written
+/// into `steady`, and the worst by [`Judgement::is_worse_than`] is returned. `layer` is the layer
+/// of the outputs that is judged.
 ///
 /// # Errors
 /// An early end; the errors of the executor; outputs that are not those of a shadow method.

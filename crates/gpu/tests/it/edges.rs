@@ -1,10 +1,11 @@
 //! Features that shader authors expect of any graph: each by itself on the device, to the bit.
 
 use crate::featured::{Running, VALUE, buffer_floats, floats};
-use crate::host::{executor, frame, request, submit};
-use crate::support::Files;
-use skiagraph_gpu::Frame;
-use skiagraph_graph::{NoProvider, ParamValue};
+use crate::host::{GPU, executor, frame, numbers, request, submit};
+use crate::support::{Files, load, right};
+use skiagraph_gpu::{Executor, Frame};
+use skiagraph_graph::{Graph, Import, NoProvider, ParamValue, Registry};
+use wgpu::util::DeviceExt;
 
 #[test]
 fn data_are_expressions_over_params_and_sizes() {
@@ -189,4 +190,101 @@ fn a_pass_that_takes_turns_never_rests() {
     );
     assert_eq!(whole.skipped, [""; 0]);
     assert_eq!(whole.readbacks[0].content.as_f32(), Some(vec![2.0; 64]));
+}
+
+/// Writes the size of a picture and the sum of its first channel, in steps of eight bits.
+fn effect() -> Files {
+    let files = Files::graph(
+        r#"
+        materials: [
+            Texture(name: "noise", format: R8Unorm, file: "noise.png"),
+            Buffer(name: "sum", count: "noise.width"),
+        ],
+        passes: [Compute(name: "add", dispatch: Groups(1, 1, 1))],
+        outputs: ["sum"],
+        "#,
+    );
+    let add = "var noise: texture_2d<f32>;
+        var<storage, read_write> sum: array<f32>;
+        @compute @workgroup_size(1) fn main() {
+            let size = textureDimensions(noise);
+            for (var x = 0u; x < size.x; x++) {
+                var all = 0.0;
+                for (var y = 0u; y < size.y; y++) {
+                    all += 255.0 * textureLoad(noise, vec2(x, y), 0).x;
+                }
+                sum[x] = all;
+            }
+        }";
+    let files = files.with("add.wgsl", add);
+    let files = files.picture("noise.png", 2, &[1, 2, 3, 4]);
+    files.picture("pictures/other.png", 3, &[10, 20, 30])
+}
+
+fn sums(graph: &Graph) -> Vec<f32> {
+    let plan = right(graph.plan(&request(&NoProvider)));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut NoProvider).unwrap();
+    let words = numbers(&mut executor, "sum").into_iter();
+    words.map(|word| f32::from_bits(word).round()).collect()
+}
+
+#[test]
+fn a_picture_is_chosen_when_a_graph_is_loaded() {
+    let chosen = |name: &str, path: &str| {
+        let chosen = [(name.to_owned(), path.to_owned())].into();
+        Graph::load_over("graph.ron", &Registry::standard(), &effect(), &chosen)
+    };
+    let graph = right(load(&effect()));
+    assert_eq!(
+        graph.pictures().collect::<Vec<_>>(),
+        [("noise", "noise.png")]
+    );
+    assert_eq!(sums(&graph), [4.0, 6.0]);
+    let other = right(chosen("noise", "pictures/other.png"));
+    assert_eq!(sums(&other), [10.0, 20.0, 30.0]);
+    for (name, path, says) in [
+        ("noise", "none.png", "picture `none.png` not found"),
+        ("nois", "pictures/other.png", "did you mean `noise`?"),
+    ] {
+        let errors = chosen(name, path).expect_err("it is wrong").to_string();
+        assert!(errors.contains(says), "{errors}");
+    }
+}
+
+#[test]
+fn a_hosts_texture_stands_for_a_picture() {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let size = wgpu::Extent3d {
+        width: 4,
+        height: 1,
+        depth_or_array_layers: 1,
+    };
+    let texture = GPU.device.create_texture_with_data(
+        &GPU.queue,
+        &wgpu::TextureDescriptor {
+            label: None,
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::R8Unorm,
+            usage,
+            view_formats: &[],
+        },
+        wgpu::util::TextureDataOrder::LayerMajor,
+        &[7, 8, 9, 10],
+    );
+    let graph = right(load(&effect()));
+    let import = |format, size| Import::plain_texture(format, size, usage);
+    let with = |import| graph.plan(&request(&NoProvider).with_import("noise", import));
+    let plan = right(with(import(wgpu::TextureFormat::R8Unorm, [4, 1])));
+    let mut executor = Executor::new(&GPU.device, &GPU.queue, plan, &mut NoProvider).unwrap();
+    executor.import_texture("noise", &texture).unwrap();
+    let words = numbers(&mut executor, "sum").into_iter();
+    let sums: Vec<f32> = words.map(|word| f32::from_bits(word).round()).collect();
+    assert_eq!(sums, [7.0, 8.0, 9.0, 10.0]);
+    // The document's format holds for the host, too.
+    let errors = with(import(wgpu::TextureFormat::R16Float, [4, 1]));
+    let errors = errors.expect_err("it has another format").to_string();
+    assert!(errors.contains("a texture R8Unorm"), "{errors}");
 }

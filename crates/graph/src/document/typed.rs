@@ -356,6 +356,14 @@ impl Document {
         })
     }
 
+    /// Iterates over the textures that hold a picture, each by its name with the name of the file.
+    pub fn pictures(&self) -> impl Iterator<Item = (&Name, &Located<String>)> {
+        self.materials.iter().filter_map(|material| match material {
+            Material::Texture(texture) => Some((&texture.name.value, texture.file.as_ref()?)),
+            _ => None,
+        })
+    }
+
     /// Calls `each` with every leaf (param, word, material, constant or feature) of the document's
     /// expressions and references.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {

@@ -431,10 +431,10 @@ mistakes! {
         FormatMismatch("the shader declares {declared}");
 
     NoStorage =>
-        FormatMismatch("the adapter offers no storage access of this kind")
+        FormatMismatch("no storage access of this kind is offered")
         .help(
             "R32Uint, R32Float and the Rgba formats of 8, 16 and 32 bits can be written by every \
-             adapter",
+             adapter; others can be drawn to, as a `color`",
         );
 
     StorageSamples(samples: u32) =>

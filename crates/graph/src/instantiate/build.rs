@@ -14,7 +14,7 @@ use crate::{
     compose::loaded::Loaded,
     diagnostics::reports::{ErrorGuaranteed, Reported, Reports},
     document::{
-        materials::{Input, InputKind},
+        materials::{FormatEntry, Input, InputKind, Material},
         raw::Invalid,
         typed::{Document, Entry, Include, Pass, Run as RunEntry, What},
     },
@@ -118,19 +118,41 @@ impl<'a> Builder<'a> {
     /// Declares the inputs of the root document as the host's imports.
     fn imports(&mut self, document: &Document, scope: ScopeId) {
         for input in &document.inputs {
-            let name = &input.name;
-            let symbol = match self.import(input) {
-                Ok(kind) => {
-                    let id = self.symbols.add(Resource {
-                        declared: Some(name.span.clone()),
-                        ..Resource::new(name.value.to_string(), kind, Origin::Host)
-                    });
-                    Symbol::Target(self.symbols.whole(id))
-                }
-                Err(error) => Symbol::Invalid(self.symbols.reports.report(error)),
-            };
-            self.symbols.scopes.declare(scope, &name.value, symbol);
+            let symbol = self.imported(input);
+            let scopes = &mut self.symbols.scopes;
+            scopes.declare(scope, &input.name.value, symbol);
         }
+    }
+
+    fn imported(&mut self, input: &Input) -> Symbol {
+        let name = &input.name;
+        match self.import(input) {
+            Ok(kind) => {
+                let id = self.symbols.add(Resource {
+                    declared: Some(name.span.clone()),
+                    ..Resource::new(name.value.to_string(), kind, Origin::Host)
+                });
+                Symbol::Target(self.symbols.whole(id))
+            }
+            Err(error) => Symbol::Invalid(self.symbols.reports.report(error)),
+        }
+    }
+
+    /// Returns the input in the place of a texture whose picture the host replaces.
+    fn replaced_picture(&self, material: &Material, instance: InstanceId) -> Option<Input> {
+        let Material::Texture(texture) = material else {
+            return None;
+        };
+        let is_root = self.symbols.scopes.instance(instance).outer.is_none();
+        let name = &texture.name;
+        let is_replaced = self.symbols.request.imports.contains_key(name.as_str());
+        (is_root && is_replaced && texture.file.is_some()).then(|| Input {
+            name: name.clone(),
+            kind: InputKind::Texture(match texture.format {
+                FormatEntry::Named(format) => Some(format),
+                FormatEntry::Expr(_) => None,
+            }),
+        })
     }
 
     fn import(&self, input: &Input) -> Result<ResourceKind, InterfaceError> {
@@ -188,6 +210,11 @@ impl<'a> Builder<'a> {
             }
             let name = material.name();
             let instance = self.symbols.scopes.instance_of(scope);
+            if let Some(input) = self.replaced_picture(material, instance) {
+                let symbol = self.imported(&input);
+                self.symbols.scopes.declare(scope, &name.value, symbol);
+                continue;
+            }
             let mut at = self.symbols.at(scope.begin(), None);
             let symbol = match include::overridden(material, &mut at) {
                 Some(Ok(target)) => Symbol::Target(target),

@@ -69,7 +69,7 @@ fn texture(
     let picture = match &entry.file {
         None => None,
         Some(file) => {
-            let picture = graph.pictures.get(&declared.document, file)?;
+            let picture = graph.pictures.get(&declared.document, &entry.name)?;
             at.reports().check(check_picture(entry, file, format))?;
             Some(picture)
         }

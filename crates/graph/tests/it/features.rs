@@ -3,7 +3,7 @@
 
 use crate::support::{Files, Triangle, checked, codes, load, names, right};
 use skiagraph_graph::{
-    Code, Ids, ParamValue, PartialBackend, Plan, PlanRequest,
+    Code, Graph, Ids, ParamValue, PartialBackend, Plan, PlanRequest, Registry,
     step::{Draw, DrawCall, Step},
 };
 use wgt::{ColorWrites, TextureAspect};
@@ -454,4 +454,39 @@ fn a_pass_without_targets_has_memory_of_its_size() {
     let tight = wider.with(|request| request.memory_limit = Some(195));
     let message = tight.expect_err("it is too much").to_string();
     assert!(message.contains("first/canvas"), "{message}");
+}
+
+/// `check`, which knows no device, refuses what no device can run.
+#[test]
+fn storage_that_no_device_has_is_refused_without_one() {
+    let said = |format: &str| {
+        let files = Files::graph(&format!(
+            r#"materials: [Texture(name: "image", format: {format})],
+            passes: [Compute(name: "write", dispatch: Over("image.size"))],
+            outputs: ["image"]"#
+        ));
+        let (format, zero) = match format {
+            "Bgra8Unorm" => ("bgra8unorm", "vec4(0.0)"),
+            "R32Uint" => ("r32uint", "vec4(0u)"),
+            _ => ("r8uint", "vec4(0u)"),
+        };
+        let shader = format!(
+            "var image: texture_storage_2d<{format}, write>;
+            @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) at: vec3<u32>) {{
+                textureStore(image, at.xy, {zero});
+            }}"
+        );
+        let request = PlanRequest::new([8, 8], &Triangle).with_any_adapter(true);
+        let files = files.with("write.wgsl", shader);
+        let checked = Graph::check("graph.ron", &Registry::standard(), &files, &request);
+        checked.map(drop).map_err(|errors| errors.to_string())
+    };
+    let refused = said("R8Uint").expect_err("it has no storage access");
+    assert!(
+        refused.contains("no storage access of this kind"),
+        "{refused}"
+    );
+    assert_eq!(said("R32Uint"), Ok(()));
+    // With a feature that a device may have.
+    assert_eq!(said("Bgra8Unorm"), Ok(()));
 }

@@ -116,9 +116,10 @@ fn the_rust_of_the_documents_is_code_that_runs() {
 }
 
 /// The documents of the authoring guide in their order, as it calls them, with their passes.
-const DOCUMENTS: [(&str, usize); 15] = [
+const DOCUMENTS: [(&str, usize); 16] = [
     ("depth.ron", 2),
     ("blur.ron", 2),
+    ("halvings.ron", 65),
     ("cascades.ron", 5),
     ("softer.ron", 21),
     ("darkened.ron", 7),

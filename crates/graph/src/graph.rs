@@ -201,8 +201,8 @@ impl Graph {
 
     /// Returns the textures of the document that hold a picture (`file: "noise.png"`), which
     /// [`Graph::load_over`] can replace: pairs of the texture's name and the name of the file in
-    /// the document. An import of a texture's name ([`PlanRequest::imports`](crate::Request::imports))
-    /// takes the place of its picture, too.
+    /// the document. An import of a texture's name
+    /// ([`PlanRequest::imports`](crate::Request::imports)) takes the place of its picture, too.
     pub fn pictures(&self) -> impl Iterator<Item = (&str, &str)> {
         let pictures = self.0.document.pictures();
         pictures.map(|(name, file)| (name.as_str(), file.as_str()))

@@ -254,7 +254,14 @@ impl Kinds<'_> {
         let include = IncludeFields::json_schema(self.generator).to_value();
         let group = object(
             "Entries that have a name, a condition, a repetition in common.",
-            json!({ "passes": { "description": "The entries.", "$ref": "#/$defs/Entries" } }),
+            json!({
+                "passes": { "description": "The entries.", "$ref": "#/$defs/Entries" },
+                "while": {
+                    "description": "A buffer: rounds of the repetition run while its first u32 is \
+                        not 0.",
+                    "type": "string",
+                },
+            }),
             &["passes"],
         );
         let path = json!({ "description": "Its path: `\"blur.x\"` is `x` of the group `blur`.",

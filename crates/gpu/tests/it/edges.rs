@@ -1,6 +1,6 @@
 //! Features that shader authors expect of any graph: each by itself on the device, to the bit.
 
-use crate::featured::{Running, VALUE, buffer_floats, floats};
+use crate::featured::{Running, VALUE, buffer_floats, floats, words};
 use crate::host::{GPU, executor, frame, numbers, request, submit};
 use crate::support::{Files, load, right};
 use skiagraph_gpu::{Executor, Frame};
@@ -287,4 +287,91 @@ fn a_hosts_texture_stands_for_a_picture() {
     let errors = with(import(wgpu::TextureFormat::R16Float, [4, 1]));
     let errors = errors.expect_err("it has another format").to_string();
     assert!(errors.contains("a texture R8Unorm"), "{errors}");
+}
+
+/// Eight rounds at most, of which the counter, 3 at first, lets three run: dispatches, direct and
+/// indirect, and draws; a clear of the counter itself runs in all of them.
+#[test]
+fn a_group_ends_early_by_a_counter() {
+    let files = Files::graph(
+        r#"
+        params: [U32(name: "rounds", default: 3)],
+        materials: [
+            Buffer(name: "left"), Buffer(name: "ran", count: 2),
+            Buffer(name: "arguments", data: [1, 2, 1]),
+            Texture(name: "image", format: R16Float),
+        ],
+        passes: [
+            Compute(name: "begin", dispatch: Groups(1, 1, 1), overwrites: ["left", "ran"]),
+            Clear(name: "reset", target: "image"),
+            Group(name: "round", repeat: 8, while: "left", passes: [
+                Fullscreen(name: "light", color: [(target: "image", load: Load, blend: Additive)]),
+                Compute(name: "count", dispatch: Groups(1, 3, 1), entry: "rows", clear: ["left"]),
+                Group(name: "inner", passes: [
+                    Compute(name: "count", dispatch: Indirect("arguments"), entry: "columns"),
+                ]),
+            ]),
+        ],
+        outputs: ["left", "ran", "image"],
+        "#,
+    );
+    let begin = "struct Params { rounds: u32 }
+        var<uniform> params: Params;
+        var<storage, read_write> left: u32;
+        var<storage, read_write> ran: array<u32>;
+        @compute @workgroup_size(1) fn main() { left = params.rounds; ran[0] = 0u; ran[1] = 0u; }";
+    let light = "@fragment fn fragment() -> @location(0) f32 { return 1.0; }";
+    let count = "struct Params { rounds: u32 }
+        var<uniform> params: Params;
+        var<storage, read_write> left: atomic<u32>;
+        var<storage, read_write> ran: array<atomic<u32>>;
+        @compute @workgroup_size(1) fn rows(@builtin(workgroup_id) id: vec3<u32>) {
+            let rows = atomicAdd(&ran[0], 1u) + 1u;
+            if rows == 3u * params.rounds { return; }
+            atomicMax(&left, 1u);
+        }
+        @compute @workgroup_size(1) fn columns() { atomicAdd(&ran[1], 1u); }";
+    let count = count.replace(
+        "atomicMax(&left, 1u);",
+        "if rows % 3u == 0u { atomicMax(&left, 1u); }",
+    );
+    let files = files.with("begin.wgsl", begin).with("light.wgsl", light);
+    let files = files.with("count.wgsl", count);
+    for rounds in [3, 0, 8, 20] {
+        let mut running = Running::with(&files, &[("rounds", ParamValue::U32(rounds))]);
+        let ran = rounds.min(8);
+        assert_eq!(running.words("ran"), [3 * ran, 2 * ran], "{rounds}");
+        assert_eq!(running.words("left"), [u32::from(rounds > 8)], "{rounds}");
+        let image = running.floats("image");
+        assert_eq!(image, [ran as f32; 16], "{rounds}");
+    }
+}
+
+/// The counter is read before the pass clears it, in frames whose dispatches share a compute pass,
+/// too.
+#[test]
+fn a_round_begins_before_its_counter_is_cleared() {
+    let files = Files::graph(
+        r#"
+        materials: [Buffer(name: "left"), Buffer(name: "ran")],
+        passes: [
+            Compute(name: "begin", dispatch: Groups(1, 1, 1), overwrites: ["left", "ran"]),
+            Group(name: "round", repeat: 5, while: "left", passes: [
+                Compute(name: "count", dispatch: Groups(1, 1, 1), clear: ["left"]),
+            ]),
+        ],
+        outputs: ["ran"],
+        "#,
+    );
+    let globals = "var<storage, read_write> left: u32; var<storage, read_write> ran: u32;";
+    let begin =
+        format!("{globals} @compute @workgroup_size(1) fn main() {{ left = 7u; ran = 0u; }}");
+    let count = format!(
+        "{globals} @compute @workgroup_size(1) fn main() {{
+            ran += 1u;
+            if ran < 3u {{ left += 1u; }}
+        }}"
+    );
+    let files = files.with("begin.wgsl", begin).with("count.wgsl", count);
+    assert_eq!(words(&files, "ran"), [3]);
 }

@@ -196,6 +196,9 @@ pub(crate) struct Entry {
     pub run: Option<Run>,
     pub bind: Vec<(Located<String>, Reference)>,
     pub set: Vec<(Located<String>, Expr)>,
+    /// Buffer of a group whose first u32 ends the group's repetition early, once it is 0; `None` to
+    /// run all of its rounds.
+    pub rounds: Option<Reference>,
     pub what: What,
 }
 
@@ -418,6 +421,7 @@ impl Entry {
         let exprs = exprs.chain(mentions.iter().flat_map(|mentions| &mentions.exprs));
         exprs.for_each(|expr| expr.visit(each));
         let references = self.bind.iter().map(|(_, reference)| reference);
+        let references = references.chain(&self.rounds);
         let references =
             references.chain(mentions.iter().flat_map(|mentions| &mentions.references));
         references.for_each(|reference| reference.visit(each));

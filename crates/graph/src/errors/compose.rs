@@ -63,8 +63,8 @@ mistakes! {
     NoOpening(name: String, document: String, openings: Vec<String>) =>
         UnknownParam("`{document}` has no open include `{name}`, and no picture of this name")
         .help_any(openings.is_empty().then_some(
-            "an include is left open by `open: \"…\"`, a texture has a picture by `file: \"…\"`; it \
-             has none",
+            "an include is left open by `open: \"…\"`, a texture has a picture by `file: \"…\"`; \
+             it has none",
         ))
         .suggest(&name, openings);
 

@@ -118,6 +118,10 @@ mistakes! {
         Syntax("the first vertex and instance of an indirect draw stand in its buffer")
         .at(place, "").help("write them there as the third and fourth u32, and leave this out");
 
+    WhileAlone(field: Located<String>) =>
+        MissingField("`while` ends a repetition, and this group has none")
+        .at(field, "").help("write how many rounds there are at most: `repeat: 32`");
+
     Canvas(place: Span) =>
         Syntax("the size of a pass is one number or two: `(width, height)`").at(place, "");
 

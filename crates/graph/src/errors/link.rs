@@ -21,6 +21,19 @@ mistakes! {
         .at(read, "read here").at(pass, "by this pass")
         .help(format!("add `{name}` to its `reads`, as the document calls it"));
 
+    /// A part of a pass that a round which does not run cannot leave out.
+    InRounds(pass: Span, what: &'static str, counter: Span) =>
+        RunCondition("a group that ends early cannot leave this out: {what}")
+        .at(pass, "in this pass").at(counter, "the group ends by this counter")
+        .help(
+            "dispatches and draws that clear nothing stand there; put the rest above or below the \
+             group",
+        );
+
+    Counter(name: Located<String>, kind: &'static str) =>
+        ResourceKind("`{name}` cannot count the rounds of a group")
+        .at(name, format!("this is {kind}, and a whole buffer of the document is needed"));
+
     NoShader =>
         Shader("a step of this pass has no shader");
 

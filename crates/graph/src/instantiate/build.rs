@@ -2,7 +2,7 @@
 //! includes.
 
 use super::{
-    flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
+    flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Round, Run},
     include::{self, Call},
     merge::{Content, Site},
     params::Params,
@@ -376,6 +376,7 @@ impl<'a> Builder<'a> {
                     position,
                     run,
                     turns,
+                    round: context.round,
                     bind: self.asked(&context.bind, |name| {
                         self.asks_global(context.scope, entry, name)
                     }),
@@ -403,10 +404,31 @@ impl<'a> Builder<'a> {
                     }
                 };
                 let position = Position { scope, index: None };
+                let round = entry.rounds.as_ref().map(|counter| Round {
+                    counter,
+                    position,
+                    // A slash stands in no name: nothing in a document can mean this buffer.
+                    goes: self.symbols.add(Resource::new(
+                        format!("{name}/goes"),
+                        ResourceKind::Buffer(Buffer {
+                            count: Some(1),
+                            ..Buffer::default()
+                        }),
+                        Origin::Own,
+                    )),
+                });
+                if let (Some(inner), Some(outer)) = (&round, &context.round) {
+                    let counters = [inner, outer].map(|round| round.counter.located());
+                    return Err(self
+                        .symbols
+                        .reports
+                        .report(InterfaceError::RoundsInRounds(counters)));
+                }
                 let inner = EntryContext {
                     scope,
                     prefix: format!("{name}."),
                     run,
+                    round: round.or(context.round),
                     bind: self.say(&entry.bind, position, entry, &context.bind),
                     set: self.say(&entry.set, position, entry, &context.set),
                 };

@@ -87,12 +87,25 @@ pub(crate) struct FlatPass<'a> {
     /// Values of the expression in [`Run::When`], frame by frame until they repeat; one true for
     /// every other [`Run`].
     pub turns: Vec<bool>,
+    /// The round that the pass belongs to, of a group that ends early.
+    pub round: Option<Round<'a>>,
     /// Bindings that groups around the pass give to globals of its shader, an inner group's in
     /// place of an outer one's.
     pub bind: Vec<Inherited<'a, Reference>>,
     /// Values that groups around the pass give to params and overrides of its shader, an inner
     /// group's in place of an outer one's.
     pub set: Vec<Inherited<'a, Expr>>,
+}
+
+/// A round of a group that ends early (`while`).
+#[derive(Clone, Copy)]
+pub(crate) struct Round<'a> {
+    /// Buffer whose first u32 is 0 once no round runs any more.
+    pub counter: &'a Reference,
+    /// Position at which the counter's reference is resolved.
+    pub position: Position,
+    /// Buffer of one u32: 1 if the round runs, else 0.
+    pub goes: ResourceId,
 }
 
 /// Settings that an entry inherits from the document and the groups around it.
@@ -103,6 +116,7 @@ pub(super) struct EntryContext<'a> {
     /// the loaded document.
     pub prefix: String,
     pub run: Option<(Run, Vec<bool>)>,
+    pub round: Option<Round<'a>>,
     pub bind: Vec<Inherited<'a, Reference>>,
     pub set: Vec<Inherited<'a, Expr>>,
 }
@@ -113,6 +127,7 @@ impl<'a> EntryContext<'a> {
             scope,
             prefix: String::new(),
             run: None,
+            round: None,
             bind: Vec::new(),
             set: Vec::new(),
         }
@@ -124,6 +139,7 @@ impl<'a> EntryContext<'a> {
         Self {
             prefix: self.prefix.clone(),
             run: self.run.clone(),
+            round: self.round,
             ..Self::new(scope)
         }
     }

@@ -3,6 +3,7 @@
 use super::{
     capture,
     pass::{Access, LinkedPass},
+    rounds,
     scope::PassScope,
     steps,
 };
@@ -118,6 +119,9 @@ fn link_pass<'a>(mut pass: LoweredPass<'a>, scope: &mut PassScope<'a>) -> Report
     linked.run = flat.run;
     linked.turns = flat.turns;
     scope.unasked()?;
+    if let (Some(round), Some(_)) = (flat.round, flat.pass.overwrites.first()) {
+        return Err(rounds::refused("`overwrites`", &round, scope));
+    }
     overwrites(&mut linked, &flat.pass.overwrites, scope)?;
     if let Some(reads) = &flat.pass.reads {
         self::reads(&linked, reads, scope)?;

@@ -459,7 +459,7 @@ fn a_pass_without_targets_has_memory_of_its_size() {
 /// `check`, which knows no device, refuses what no device can run.
 #[test]
 fn storage_that_no_device_has_is_refused_without_one() {
-    let said = |format: &str| {
+    let outcome = |format: &str| {
         let files = Files::graph(&format!(
             r#"materials: [Texture(name: "image", format: {format})],
             passes: [Compute(name: "write", dispatch: Over("image.size"))],
@@ -481,12 +481,12 @@ fn storage_that_no_device_has_is_refused_without_one() {
         let checked = Graph::check("graph.ron", &Registry::standard(), &files, &request);
         checked.map(drop).map_err(|errors| errors.to_string())
     };
-    let refused = said("R8Uint").expect_err("it has no storage access");
+    let refused = outcome("R8Uint").expect_err("it has no storage access");
     assert!(
         refused.contains("no storage access of this kind"),
         "{refused}"
     );
-    assert_eq!(said("R32Uint"), Ok(()));
+    assert_eq!(outcome("R32Uint"), Ok(()));
     // With a feature that a device may have.
-    assert_eq!(said("Bgra8Unorm"), Ok(()));
+    assert_eq!(outcome("Bgra8Unorm"), Ok(()));
 }

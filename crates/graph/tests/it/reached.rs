@@ -22,6 +22,7 @@ const BY_HAND: &[(&str, &str)] = &[
     ("LayoutError::Alignment", "item_alignment"),
     ("LinkError::Alignment", "item_alignment_provided"),
     ("LinkError::SetValue", "set_vector"),
+    ("LinkError::InRounds", "rounds_clear"),
     ("LinkError::CopyFormat", "copy_format"),
     ("LinkError::CopySize", "copy_size"),
     ("LinkError::CopyKinds", "copy_kind"),

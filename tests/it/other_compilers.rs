@@ -133,14 +133,23 @@ fn record(step: &Step<Ids>, program: &LinkedProgram, wgsl: &str) -> String {
 
 fn targets(draw: &Draw<Ids>) -> Value {
     let format = |target: &Attachment| format!("{:?}", target.format);
-    let colors = draw.colors.iter().map(|color| format(&color.target));
+    let colors = draw
+        .colors
+        .iter()
+        .flatten()
+        .map(|color| format(&color.target));
     let canvas = draw
         .canvas
         .iter()
         .map(|canvas| format!("{:?}", canvas.format));
     let depth = draw.depth.as_ref().map(|depth| &depth.target);
     let depth = depth.or(draw.stencil.as_ref().map(|stencil| &stencil.target));
-    let colored = draw.colors.first().map(|color| &color.target);
+    let colored = draw
+        .colors
+        .iter()
+        .flatten()
+        .next()
+        .map(|color| &color.target);
     json!({
         "fullscreen": draw.fullscreen,
         "colors": colors.chain(canvas).collect::<Vec<_>>(),

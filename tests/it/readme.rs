@@ -1,9 +1,9 @@
 //! Checks that the README's commands and code work as they stand there, and that what pages name is
 //! there.
 
-use crate::support::graphs::open;
+use crate::support::graphs::{frame, open, provider};
 use skiagraph_gpu::{Executor, Frame};
-use skiagraph_graph::{FolderSources, Graph, LayeredSources, PlanRequest};
+use skiagraph_graph::{FolderSources, Graph, LayeredSources, PlanRequest, Sources};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{SceneFile, SceneLibrary};
 use std::{collections::VecDeque, fs, path::Path, sync::Arc};
@@ -116,17 +116,20 @@ fn the_rust_of_the_documents_is_code_that_runs() {
 }
 
 /// The documents of the authoring guide in their order, as it calls them, with their passes.
-const DOCUMENTS: [(&str, usize); 13] = [
+const DOCUMENTS: [(&str, usize); 16] = [
     ("depth.ron", 2),
     ("blur.ron", 2),
+    ("halvings.ron", 65),
     ("cascades.ron", 5),
     ("softer.ron", 21),
     ("darkened.ron", 7),
     ("extended.ron", 4),
     ("history.ron", 1),
     ("age.ron", 3),
+    ("bands.ron", 4),
     ("kept.ron", 1),
     ("settled.ron", 1),
+    ("works.ron", 10),
     ("filtered.ron", 6),
     ("every_light.ron", 7),
     ("claims.ron", 6),
@@ -167,7 +170,8 @@ fn the_documents_of_the_authoring_guide_are_right() {
     };
     let sources = LayeredSources(vec![Box::new(own), Box::new(EmbeddedSources)]);
     let (scene, _) = SceneLibrary::default().load("park").unwrap();
-    let provider = SceneProvider::new(Arc::new(scene));
+    let scene = Arc::new(scene);
+    let provider = provider(&scene, &scene.views[0], [64, 64]);
     for (name, passes) in DOCUMENTS {
         let request = PlanRequest::new([64, 64], &provider);
         let (graph, plan) = Graph::check(name, &registry(), &sources, &request)
@@ -177,6 +181,29 @@ fn the_documents_of_the_authoring_guide_are_right() {
         let planned = plan.passes().len() + plan.culled().len();
         assert_eq!(planned, passes, "{name}");
     }
+    runs_without_words(&sources, provider);
+}
+
+/// The document of what needs no word of its own, in its second frame: nothing has moved, and every
+/// receiver is where the frame before has found it.
+fn runs_without_words(sources: &dyn Sources, mut provider: SceneProvider) {
+    let gpu = open();
+    let request = PlanRequest::new([64, 64], &provider);
+    let request = request.with_device(gpu.device.limits(), gpu.device.features());
+    let graph = Graph::load("works.ron", &registry(), sources).unwrap();
+    let plan = graph.plan(&request).unwrap();
+    let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
+    frame(&gpu, &mut executor, &[]);
+    let report = frame(&gpu, &mut executor, &["seen_again"]);
+    let texels = report.readbacks[0].content.as_f32().unwrap();
+    let drawn: Vec<&[f32]> = texels.chunks(4).filter(|texel| texel[1] > 0.0).collect();
+    assert!(drawn.len() > 1000, "{}", drawn.len());
+    for texel in &drawn {
+        assert!(texel[0] == 0.0 && texel[2].abs() <= 1.0, "{texel:?}");
+    }
+    // The second camera has drawn, and the cube is read in several directions.
+    let seen = drawn.iter().filter(|texel| texel[3] > 0.0).count();
+    assert!(seen > 100, "{seen}");
 }
 
 /// The scene file that the page shows is one.

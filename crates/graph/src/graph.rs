@@ -40,13 +40,15 @@ impl Graph {
     }
 
     /// Loads the document at `path` as [`Graph::load`] does, but with other documents in its open
-    /// includes. `chosen` maps the name of an open include (`over` in `Include(open: "over", …)`,
-    /// see [`Graph::openings`]) to the path in `sources` of the document to include there. An open
-    /// include that `chosen` does not name keeps its document.
+    /// includes and other pictures in its textures. `chosen` maps the name of an open include
+    /// (`over` in `Include(open: "over", …)`) to the path in `sources` of the document to include
+    /// there, and the name of a texture with a `file` to the path of another picture, whose size
+    /// the texture then has. What `chosen` does not name stays.
     ///
     /// # Errors
-    /// The mistakes that [`Graph::load`] reports, and a name in `chosen` that no open include of
-    /// the document at `path` has.
+    /// The mistakes that [`Graph::load`] reports, and a name in `chosen` that neither an open
+    /// include of the document at `path` nor a texture with a picture has
+    /// ([`Graph::openings`], [`Graph::pictures`]).
     pub fn load_over(
         path: &str,
         registry: &Registry,
@@ -195,6 +197,15 @@ impl Graph {
     pub fn openings(&self) -> impl Iterator<Item = (&str, &str)> {
         let openings = self.0.document.openings();
         openings.map(|(name, include)| (name.as_str(), include.graph.as_str()))
+    }
+
+    /// Returns the textures of the document that hold a picture (`file: "noise.png"`), which
+    /// [`Graph::load_over`] can replace: pairs of the texture's name and the name of the file in
+    /// the document. An import of a texture's name
+    /// ([`PlanRequest::imports`](crate::Request::imports)) takes the place of its picture, too.
+    pub fn pictures(&self) -> impl Iterator<Item = (&str, &str)> {
+        let pictures = self.0.document.pictures();
+        pictures.map(|(name, file)| (name.as_str(), file.as_str()))
     }
 
     /// Returns the names of the document's inputs, in its order. For each of them the host must put

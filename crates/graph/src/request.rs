@@ -68,8 +68,10 @@ pub struct Request<P> {
     /// has.)
     pub memory_limit: Option<u64>,
     /// Descriptions of the textures, buffers and samplers that the host hands over, each under the
-    /// name of an input of the loaded document ([`Graph::inputs`](crate::Graph::inputs)). Planning
-    /// reports an error for an input without a description; names that are no inputs are ignored.
+    /// name of an input of the loaded document ([`Graph::inputs`](crate::Graph::inputs)), or of a
+    /// texture with a picture, in whose place it is then
+    /// ([`Graph::pictures`](crate::Graph::pictures)). Planning reports an error for an input
+    /// without a description; other names are ignored.
     pub imports: BTreeMap<String, Import>,
     /// Number of [items](crate#terms) that growing buffers (with `grow`) need, or of layers that
     /// growing textures need, by [full name](crate#terms) of the material

@@ -112,9 +112,10 @@ written!(FormatEntry, "Format", _generator => json_schema!({
 }));
 
 written!(Data, "Data", _generator => json_schema!({
-    "description": "Numbers, or tuples of them, one per scalar of the shader's type.",
+    "description": "Numbers, or tuples of them, one per scalar of the shader's type; expressions \
+        stand in quotes.",
     "type": "array",
-    "items": { "type": ["number", "array"] },
+    "items": { "type": ["number", "array", "string"] },
 }));
 
 written!(Expose, "Expose", generator => {
@@ -253,7 +254,14 @@ impl Kinds<'_> {
         let include = IncludeFields::json_schema(self.generator).to_value();
         let group = object(
             "Entries that have a name, a condition, a repetition in common.",
-            json!({ "passes": { "description": "The entries.", "$ref": "#/$defs/Entries" } }),
+            json!({
+                "passes": { "description": "The entries.", "$ref": "#/$defs/Entries" },
+                "while": {
+                    "description": "A buffer: rounds of the repetition run while its first u32 is \
+                        not 0.",
+                    "type": "string",
+                },
+            }),
             &["passes"],
         );
         let path = json!({ "description": "Its path: `\"blur.x\"` is `x` of the group `blur`.",

@@ -67,7 +67,12 @@ pub struct CompareArgs {
     pub map_curve: bool,
     /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
     /// semicolons) or a range (bias=0..0.01/5: five values) is compared. May be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
+    #[arg(
+        long = "set",
+        visible_alias = "image",
+        value_name = "NAME=VALUE,…",
+        allow_hyphen_values = true
+    )]
     pub params: Vec<Assignment>,
     /// Timed frames of each method on each view. The frame that is judged and pictured is another
     /// one, so that its readback is not timed.
@@ -359,7 +364,12 @@ pub struct ProfileArgs {
     pub map_size: Vec<u32>,
     /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
     /// semicolons) or a range (bias=0..0.01/5: five values) is timed. May be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
+    #[arg(
+        long = "set",
+        visible_alias = "image",
+        value_name = "NAME=VALUE,…",
+        allow_hyphen_values = true
+    )]
     pub params: Vec<Assignment>,
     /// The scene to run the methods on.
     #[command(flatten)]
@@ -411,7 +421,12 @@ pub struct StressArgs {
     pub map_size: Vec<u32>,
     /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
     /// semicolons) or a range (bias=0..0.01/5: five values) is a column. May be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE,…", allow_hyphen_values = true)]
+    #[arg(
+        long = "set",
+        visible_alias = "image",
+        value_name = "NAME=VALUE,…",
+        allow_hyphen_values = true
+    )]
     pub params: Vec<Assignment>,
     /// Judge this method as an exact one: no pixel may be wrong but those that rounding decides.
     /// May be repeated.
@@ -616,6 +631,11 @@ pub struct ViewArgs {
     #[arg(long, value_name = "N", value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Option<u32>,
     /// A param of the graphs that have it. May be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(
+        long = "set",
+        visible_alias = "image",
+        value_name = "NAME=VALUE",
+        allow_hyphen_values = true
+    )]
     pub params: Vec<Assignment>,
 }

@@ -245,7 +245,12 @@ pub struct MethodArgs {
     #[arg(long, value_name = "N", value_parser = texels(), allow_negative_numbers = true)]
     pub map_size: Option<u32>,
     /// A param of the graph. May be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(
+        long = "set",
+        visible_alias = "image",
+        value_name = "NAME=VALUE",
+        allow_hyphen_values = true
+    )]
     pub params: Vec<Assignment>,
 }
 

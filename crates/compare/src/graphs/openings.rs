@@ -1,5 +1,6 @@
 //! Resolves open includes: includes whose document a run may exchange. A graph with another
-//! document in an open include is a method of its own: `contact.ron@over=msm`.
+//! document in an open include is a method of its own: `contact.ron@over=msm`. So is one with
+//! another picture in a texture: `effect.ron@noise=other.png`.
 //!
 //! ```
 //! use skiagraph_compare::graphs::openings::arguments;
@@ -51,7 +52,8 @@ pub fn arguments(
         }
         // A graph with faults is told where it is loaded.
         let graph = preset::load(&argument.preset, sources)?.0.ok();
-        let openings = graph.iter().flat_map(|graph| graph.openings());
+        let graph = graph.iter();
+        let openings = graph.flat_map(|graph| graph.openings().chain(graph.pictures()));
         let openings: BTreeSet<String> = openings.map(|(name, _)| name.to_owned()).collect();
         taken.extend(
             params

@@ -189,11 +189,12 @@ impl Preset {
             .find(|param| param.name.as_str() == name)
     }
 
-    /// Returns the names that assignments can set: the graph's params, and its open includes, whose
-    /// document can be exchanged.
+    /// Returns the names that assignments can set: the graph's params, its open includes, whose
+    /// document can be exchanged, and its textures with a picture, likewise.
     pub fn settable(&self) -> impl Iterator<Item = &str> {
         let params = self.graph.params().iter().map(|param| param.name.as_str());
-        params.chain(self.graph.openings().map(|(name, _)| name))
+        let chosen = self.graph.openings().chain(self.graph.pictures());
+        params.chain(chosen.map(|(name, _)| name))
     }
 
     /// Plans the graph.
@@ -291,7 +292,8 @@ fn empty() -> Result<Graph, CompareError> {
 
 /// Loads the graph that an argument names: a preset's name or a path. Returns the graph or its
 /// faults, and the path of the graph. The argument `contact.ron@over=msm` puts the document `msm`
-/// in the place of the open include `over`.
+/// in the place of the open include `over`, and `effect.ron@noise=other.png` the picture
+/// `other.png` in that of the texture `noise`.
 ///
 /// # Errors
 /// A file that does not exist or cannot be read.
@@ -303,7 +305,13 @@ pub fn load(
     let path = locate(&named.preset, sources)?;
     let mut documents = BTreeMap::new();
     for Assignment { name, value } in named.own {
-        documents.insert(name, locate(&value, sources)?);
+        let is_picture = value.to_ascii_lowercase().ends_with(".png");
+        let path = if is_picture {
+            value
+        } else {
+            locate(&value, sources)?
+        };
+        documents.insert(name, path);
     }
     let graph = Graph::load_over(&path, &registry(), sources, &documents);
     Ok((graph, path))

@@ -17,9 +17,10 @@ use std::{
     rc::Rc,
 };
 
-/// The longest period that is looked for.
+/// The longest period that is looked for, unless the plan tells a longer one.
 const LONGEST: usize = 16;
-/// As many frames in a row must each be equal to the one a period before.
+/// As many frames in a row must each be equal to the one a period before, or as many as the plan's
+/// period has.
 const REPEATED: usize = 32;
 /// After so many frames nothing is waited for any more.
 const MOST: usize = 256;
@@ -28,7 +29,9 @@ const MOST: usize = 256;
 const SAME: f32 = 1.0 / 1024.0;
 
 /// Runs frames of a new executor until its output `visibility` repeats with a period of at most 16
-/// frames, for 32 frames in a row; after 256 frames it gives up. Answers 0 and 1 must repeat to the
+/// frames, for 32 frames in a row, or with one of at most the plan's own period
+/// ([`Plan::period`](skiagraph_graph::Plan::period)), if that is longer, for at least as many
+/// frames; after 256 frames it gives up. Answers 0 and 1 must repeat to the
 /// bit, shares of light within 1/1024. The pictures after 1, 4, 16 … frames are judged. Runs no
 /// frame and returns `None` if the method reuses no results of earlier frames.
 ///
@@ -42,7 +45,7 @@ pub async fn settle(
     if !executor.plan().remembers() {
         return Ok(None);
     }
-    let (mut pictures, mut begin) = (Pictures::default(), Vec::new());
+    let (mut pictures, mut begin) = (Pictures::new(executor.plan().period()), Vec::new());
     while pictures.period.is_none() && pictures.frames < MOST {
         session.check_stopped()?;
         let contents = frame::read(session, executor, &preset.judged()).await?;
@@ -101,12 +104,13 @@ impl Shown {
 }
 
 /// The pictures so far.
-#[derive(Default)]
 struct Pictures {
     /// As many of the last ones as the longest period has.
     last: VecDeque<Rc<Shown>>,
     frames: usize,
-    periods: [Period; LONGEST],
+    periods: Vec<Period>,
+    /// Number of frames in a row for which a period must be repeated.
+    enough: usize,
     /// The shortest period that has repeated long enough.
     period: Option<usize>,
 }
@@ -121,10 +125,21 @@ struct Period {
 }
 
 impl Pictures {
+    /// Begins with no picture of a plan whose passes run in turns of `turns` frames.
+    fn new(turns: usize) -> Self {
+        Self {
+            last: VecDeque::new(),
+            frames: 0,
+            periods: (0..LONGEST.max(turns)).map(|_| Period::default()).collect(),
+            enough: REPEATED.max(turns),
+            period: None,
+        }
+    }
+
     fn add(&mut self, shown: Shown) {
         let shown = Rc::new(shown);
         self.frames += 1;
-        if self.last.len() == LONGEST {
+        if self.last.len() == self.periods.len() {
             self.last.pop_front();
         }
         self.last.push_back(Rc::clone(&shown));
@@ -139,7 +154,7 @@ impl Pictures {
             period.first_turn = self.last.iter().skip(skipped).cloned().collect();
             period.repeated = 0;
         }
-        let is_steady = |period: &Period| period.repeated >= REPEATED;
+        let is_steady = |period: &Period| period.repeated >= self.enough;
         self.period = self
             .periods
             .iter()
@@ -149,8 +164,9 @@ impl Pictures {
 }
 
 /// Judges the next frame of a method on a still view. Of one in its steady state, those of one
-/// period are judged (16 if it has none): their means are written into `steady`, and the worst by
-/// [`Judgement::is_worse_than`] is returned. `layer` is the layer of the outputs that is judged.
+/// period are judged (if it has none, 16 or as many as the plan's has): their means are written
+/// into `steady`, and the worst by [`Judgement::is_worse_than`] is returned. `layer` is the layer
+/// of the outputs that is judged.
 ///
 /// # Errors
 /// An early end; the errors of the executor; outputs that are not those of a shadow method.
@@ -160,7 +176,8 @@ pub async fn judge(
     steady: Option<&mut Steady>,
     (ground_truth, layer): (&GroundTruth, usize),
 ) -> Result<(Outputs, Judgement), Stop> {
-    let period = |steady: &Steady| steady.period.unwrap_or(LONGEST as u32);
+    let longest = LONGEST.max(executor.plan().period()) as u32;
+    let period = |steady: &Steady| steady.period.unwrap_or(longest);
     let pictures = steady.as_deref().map_or(1, period);
     let mut judgements: Vec<Judgement> = Vec::new();
     let mut worst: Option<(usize, Outputs)> = None;
@@ -198,7 +215,11 @@ mod tests {
     use super::*;
 
     fn period(shown: impl IntoIterator<Item = Shown>) -> Option<usize> {
-        let mut pictures = Pictures::default();
+        in_turns(1, shown)
+    }
+
+    fn in_turns(turns: usize, shown: impl IntoIterator<Item = Shown>) -> Option<usize> {
+        let mut pictures = Pictures::new(turns);
         shown.into_iter().for_each(|shown| pictures.add(shown));
         pictures.period
     }
@@ -217,6 +238,16 @@ mod tests {
         }
         let too_long = LONGEST + 1;
         assert_eq!(period(cycle(0, too_long, 8 * too_long)), None);
+        // Unless the plan says that its passes take turns of as many frames.
+        let enough = REPEATED + too_long;
+        assert_eq!(
+            in_turns(too_long, cycle(0, too_long, enough)),
+            Some(too_long)
+        );
+        // What changes once in 64 frames is not steady after 32 that are alike.
+        assert_eq!(period(cycle(1, 1, 40)), Some(1));
+        assert_eq!(in_turns(64, cycle(1, 1, 64)), None);
+        assert_eq!(in_turns(64, cycle(1, 1, 65)), Some(1));
         assert_eq!(period([]), None);
     }
 

@@ -22,7 +22,8 @@ pub struct Steady {
     /// Number of frames that were run, the first without earlier ones to reuse, until the picture
     /// had repeated over 32 frames; 256 if it did not.
     pub frames: u32,
-    /// Number of frames after which the picture repeats, at most 16; [shares of light](crate#terms)
+    /// Number of frames after which the picture repeats, at most 16, or the period in which the
+    /// graph's passes take turns, if that is longer; [shares of light](crate#terms)
     /// may differ by 1/1024. Null if the picture did not repeat within `frames`.
     pub period: Option<u32>,
     /// The pictures after 1, 4, 16 … of these frames: how fast errors fall from empty memory.

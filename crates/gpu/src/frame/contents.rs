@@ -109,8 +109,15 @@ impl Contents {
     }
 
     /// Sets `runs` to true for each pass of the schedule that runs. A group runs if one of its
-    /// passes has a reason to, or if `forced` is set and its run condition is not false.
-    pub fn running(&self, plan: &Plan, passes: &[GpuPass], forced: bool, runs: &mut Vec<bool>) {
+    /// passes has a reason to, or if `forced` is set and its run condition is not false in every
+    /// frame. The frame's number counts from 0.
+    pub fn running(
+        &self,
+        plan: &Plan,
+        passes: &[GpuPass],
+        (frame, forced): (u32, bool),
+        runs: &mut Vec<bool>,
+    ) {
         let conditions = &plan.schedule().conditions;
         let groups = &conditions.group;
         runs.clear();
@@ -125,7 +132,7 @@ impl Contents {
         while added {
             added = false;
             for at in 0..passes.len() {
-                if !runs[groups[at]] && self.has_reason(plan, &passes[at], at, runs) {
+                if !runs[groups[at]] && self.has_reason(plan, &passes[at], (at, frame), runs) {
                     runs[groups[at]] = true;
                     added = true;
                 }
@@ -137,11 +144,21 @@ impl Contents {
         }
     }
 
-    fn has_reason(&self, plan: &Plan, pass: &GpuPass, at: usize, runs: &[bool]) -> bool {
+    fn has_reason(
+        &self,
+        plan: &Plan,
+        pass: &GpuPass,
+        (at, frame): (usize, u32),
+        runs: &[bool],
+    ) -> bool {
         let conditions = &plan.schedule().conditions;
         match (conditions.when[at], &self.seen[at]) {
             (When::Always, _) => true,
             (When::Never | When::Follows, _) => false,
+            (When::InTurn, _) => {
+                let turns = &plan.pass(plan.schedule().passes[at]).turns;
+                turns[frame as usize % turns.len()]
+            }
             (_, None) => true,
             (When::Once, Some(_)) => false,
             (When::OnChange, Some(seen)) => {

@@ -340,7 +340,10 @@ fn encode_draw(
     let colors: SmallVec<[_; 8]> = draw
         .colors
         .iter()
-        .map(|color| color_attachment(&color.target, color.resolve.as_ref(), color.clear))
+        .map(|color| {
+            let color = color.as_ref()?;
+            color_attachment(&color.target, color.resolve.as_ref(), color.clear)
+        })
         .chain(draw.canvas.iter().map(canvas_attachment))
         .collect();
     let depth = draw.depth.as_ref();
@@ -367,6 +370,10 @@ fn encode_draw(
         if let Some(stencil) = stencil {
             pass.set_stencil_reference(stencil.reference);
         }
+        let mut blended = draw.colors.iter().flatten();
+        if let Some([r, g, b, a]) = blended.find_map(|color| color.blend_constant) {
+            pass.set_blend_constant(wgpu::Color { r, g, b, a });
+        }
         for (index, group) in groups {
             pass.set_bind_group(*index, group, &[]);
         }
@@ -378,7 +385,7 @@ fn encode_draw(
             DrawCall::Direct {
                 vertices,
                 instances,
-            } => pass.draw(0..*vertices, 0..*instances),
+            } => pass.draw(vertices.clone(), instances.clone()),
             DrawCall::Indirect((buffer, offset)) => pass.draw_indirect(buffer, *offset),
         }
         if counted.is_some() {

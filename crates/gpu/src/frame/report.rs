@@ -18,7 +18,7 @@ pub struct Frame<'a> {
     /// `PIPELINE_STATISTICS_QUERY`; the counts come in [`FrameReport::statistics`].
     pub statistics: bool,
     /// Runs every pass whose results are needed, even if nothing that it reads has changed. Passes
-    /// whose `run: When(…)` condition in the document is false are still skipped.
+    /// whose `run: When(…)` condition in the document is false in every frame are still skipped.
     pub all: bool,
     /// Names of the outputs of the graph document and of the captures
     /// ([`PlanRequest::captures`](skiagraph_graph::PlanRequest)) to copy to the host; their

@@ -108,7 +108,8 @@ impl Runner {
         self.grow_by_itself()?;
         let is_measured = frame.timing || frame.statistics;
         let may_rest = !frame.all && !is_measured && self.knows_changes;
-        self.state.decide(frame.all, may_rest, &mut self.decision);
+        let number = (self.frames, frame.all);
+        self.state.decide(number, may_rest, &mut self.decision);
         let decision = &self.decision;
         self.state
             .bind(&decision.runs, &decision.ping_pong, &self.device)?;

@@ -179,9 +179,15 @@ impl State {
         }
     }
 
-    /// Decides which passes run in the next frame, and which allocations they use. None runs if
-    /// `may_rest` is set and nothing has changed since a frame that is done.
-    pub fn decide(&mut self, forced: bool, may_rest: bool, decision: &mut FrameDecision) {
+    /// Decides which passes run in the next frame, which has the number `frame`, and which
+    /// allocations they use. None runs if `may_rest` is set and nothing has changed since a frame
+    /// that is done.
+    pub fn decide(
+        &mut self,
+        (frame, forced): (u32, bool),
+        may_rest: bool,
+        decision: &mut FrameDecision,
+    ) {
         // Its content is another one in every frame.
         if let Some(uniform) = self.uniform {
             self.contents.touch(uniform);
@@ -193,7 +199,7 @@ impl State {
             runs.resize(self.passes.len(), false);
         } else {
             self.contents
-                .running(&self.plan, &self.passes, forced, runs);
+                .running(&self.plan, &self.passes, (frame, forced), runs);
         }
         let ping_pong = &mut decision.ping_pong;
         self.contents.ping_pong(&self.plan, runs, ping_pong);

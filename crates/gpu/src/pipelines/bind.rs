@@ -190,14 +190,18 @@ impl Binder<'_> {
 
     fn draw(&self, draw: &Draw<Ids>, program: GpuProgram) -> Result<Draw<Handles>, ExecuteError> {
         let attachment = |attachment: &Attachment| self.attachment(&attachment.target);
-        let color = |color: &ColorTarget<Ids>| {
-            Ok(ColorTarget {
+        let color = |color: &Option<ColorTarget<Ids>>| {
+            let Some(color) = color else {
+                return Ok(None);
+            };
+            Ok(Some(ColorTarget {
                 target: attachment(&color.target)?,
                 resolve: color.resolve.as_ref().map(attachment).transpose()?,
                 clear: color.clear,
                 blend: color.blend,
+                blend_constant: color.blend_constant,
                 write: color.write,
-            })
+            }))
         };
         let depth = |depth: &DepthTarget<Ids>| {
             Ok::<_, ExecuteError>(DepthTarget {

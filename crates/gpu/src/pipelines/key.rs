@@ -35,7 +35,8 @@ pub(crate) struct DrawKey {
     /// True if the vertex stage is that of a full-screen pass.
     pub fullscreen: bool,
     pub primitive: wgpu::PrimitiveState,
-    pub colors: Vec<wgpu::ColorTargetState>,
+    /// By location; `None` for one that nothing is written to.
+    pub colors: Vec<Option<wgpu::ColorTargetState>>,
     pub depth_stencil: Option<wgpu::DepthStencilState>,
     /// Samples of the attachments, which all have as many.
     pub samples: u32,
@@ -90,15 +91,19 @@ impl PipelineKey {
 
 impl DrawKey {
     fn new(draw: &Draw<Ids>) -> Self {
-        let colors = draw.colors.iter().map(|color| wgpu::ColorTargetState {
-            format: color.target.format,
-            blend: color.blend,
-            write_mask: color.write,
+        let colors = draw.colors.iter().map(|color| {
+            color.as_ref().map(|color| wgpu::ColorTargetState {
+                format: color.target.format,
+                blend: color.blend,
+                write_mask: color.write,
+            })
         });
-        let canvas = draw.canvas.iter().map(|canvas| wgpu::ColorTargetState {
-            format: canvas.format,
-            blend: None,
-            write_mask: wgpu::ColorWrites::empty(),
+        let canvas = draw.canvas.iter().map(|canvas| {
+            Some(wgpu::ColorTargetState {
+                format: canvas.format,
+                blend: None,
+                write_mask: wgpu::ColorWrites::empty(),
+            })
         });
         Self {
             fullscreen: draw.fullscreen,
@@ -139,7 +144,11 @@ fn depth_stencil(draw: &Draw<Ids>) -> Option<wgpu::DepthStencilState> {
 
 /// Samples of the attachments, which all have as many.
 fn samples(draw: &Draw<Ids>) -> u32 {
-    let colors = draw.colors.iter().map(|color| color.target.samples);
+    let colors = draw
+        .colors
+        .iter()
+        .flatten()
+        .map(|color| color.target.samples);
     let depth = draw.depth.iter().map(|depth| depth.target.samples);
     let stencil = draw.stencil.iter().map(|stencil| stencil.target.samples);
     colors.chain(depth).chain(stencil).next().unwrap_or(1)

@@ -261,14 +261,13 @@ fn make(
             buffers: &[],
         },
     };
-    let targets: Vec<_> = draw.colors.iter().cloned().map(Some).collect();
     let fragment = key
         .entry(ShaderStage::Fragment)
         .map(|name| wgpu::FragmentState {
             module: modules.own,
             entry_point: Some(name),
             compilation_options,
-            targets: &targets,
+            targets: &draw.colors,
         });
     let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(label),

@@ -19,6 +19,7 @@ mod tiny;
 mod changes;
 mod clears;
 mod compose;
+mod edges;
 mod embedding;
 mod features;
 mod features_depth;

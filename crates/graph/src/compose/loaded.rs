@@ -10,14 +10,11 @@ use crate::{
         list::Diagnostics,
         reports::{Reported, Reports},
     },
-    document::{
-        materials::{Material, TextureEntry},
-        typed::{Document, ImportEntry},
-    },
+    document::typed::{Document, ImportEntry},
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     expressions::parser,
     kinds::registry::{Registry, StandIn},
-    language::syntax::Leaf,
+    language::{name::Name, syntax::Leaf},
     param::{Param, ParamError, find},
     picture::Picture,
     shader::{
@@ -53,13 +50,13 @@ pub(crate) struct Loaded {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Decoded pictures of all documents, by the path of the document and the file name in it.
+/// Decoded pictures of all documents, by the path of the document and the name of the texture.
 #[derive(Debug, Default)]
 pub(crate) struct Pictures(HashMap<(Arc<str>, String), Reported<Picture>>);
 
 impl Pictures {
-    pub fn get(&self, document: &Document, file: &Located<String>) -> Reported<Picture> {
-        let key = (Arc::clone(&document.file.name), file.value.clone());
+    pub fn get(&self, document: &Document, texture: &Name) -> Reported<Picture> {
+        let key = (Arc::clone(&document.file.name), texture.to_string());
         self.0[&key].clone()
     }
 }
@@ -67,7 +64,7 @@ impl Pictures {
 impl Loaded {
     /// Reads the document at `path` with its includes, and all shaders and pictures that they name.
     /// Returns the readable part, and the errors. `chosen` maps names of open includes to paths of
-    /// the documents to include there.
+    /// the documents to include there, and names of textures to paths of other pictures.
     ///
     /// # Errors
     /// All diagnostics, if the document at `path` itself cannot be read.
@@ -104,7 +101,7 @@ impl Loaded {
             let module = shaders.module(&entry.of);
             is_default(entry) && module.is_some_and(|it| imported.contains(&**it))
         });
-        let pictures = load_pictures(&documents, sources, &mut reports);
+        let pictures = load_pictures(&documents, sources, chosen, &mut reports);
         let (required, asked_for) = (required(&documents), asked_for(&documents));
         // The uses of a missing shader are not known.
         let is_known = reports.errors() == 0;
@@ -287,22 +284,21 @@ fn asked_for(documents: &[&Document]) -> wgt::Features {
 fn load_pictures(
     documents: &[&Document],
     sources: &dyn Sources,
+    chosen: &BTreeMap<String, String>,
     reports: &mut Reports,
 ) -> Pictures {
     let mut pictures = HashMap::new();
-    for document in documents {
-        for material in &document.materials {
-            let Material::Texture(TextureEntry {
-                file: Some(file), ..
-            }) = material
-            else {
-                continue;
+    for (number, document) in documents.iter().enumerate() {
+        for (name, file) in document.pictures() {
+            let picture = match chosen.get(name.as_str()).filter(|_| number == 0) {
+                Some(path) => {
+                    let file = Located::new(path.clone(), file.span.clone());
+                    picture_at(&file, std::slice::from_ref(path), sources)
+                }
+                None => load_picture(file, sources),
             };
-            let key = (Arc::clone(&document.file.name), file.value.clone());
-            pictures.entry(key).or_insert_with(|| {
-                let picture = load_picture(file, sources);
-                picture.map_err(|error| reports.report(error))
-            });
+            let key = (Arc::clone(&document.file.name), name.to_string());
+            pictures.insert(key, picture.map_err(|error| reports.report(error)));
         }
     }
     Pictures(pictures)
@@ -314,12 +310,21 @@ fn load_picture(file: &Located<String>, sources: &dyn Sources) -> Result<Picture
     if escapes(file) {
         return Err(SizeError::NoPicture(file.clone(), candidates));
     }
-    for path in &candidates {
+    picture_at(file, &candidates, sources)
+}
+
+/// The picture at the first of these paths at which there is one.
+fn picture_at(
+    file: &Located<String>,
+    candidates: &[String],
+    sources: &dyn Sources,
+) -> Result<Picture, SizeError> {
+    for path in candidates {
         match sources.picture(path) {
             Ok(Some(picture)) => return Ok(picture),
             Ok(None) => {}
             Err(why) => return Err(SizeError::Picture(file.clone(), why)),
         }
     }
-    Err(SizeError::NoPicture(file.clone(), candidates))
+    Err(SizeError::NoPicture(file.clone(), candidates.to_vec()))
 }

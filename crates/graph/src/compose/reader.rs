@@ -50,13 +50,13 @@ pub(crate) struct Reader<'a> {
     open: Vec<(String, Option<Span>)>,
     /// Every place where a document is extended or included, in the order in which they were read.
     pub include_sites: Vec<IncludeSite>,
-    /// Documents for open includes of the root document, by path.
+    /// Paths of documents for open includes of the root document, and of pictures for its textures.
     chosen: &'a BTreeMap<String, String>,
 }
 
 impl<'a> Reader<'a> {
     /// Creates a reader. `chosen` maps names of open includes of the root document to paths of the
-    /// documents to include there.
+    /// documents to include there, and names of its textures to paths of pictures.
     pub fn new(
         registry: &'a Registry,
         sources: &'a dyn Sources,
@@ -84,7 +84,9 @@ impl<'a> Reader<'a> {
         let file = self.file(path)?;
         let document = self.document(file, None)?;
         let openings = document.openings();
-        let names: Vec<String> = openings.map(|(name, _)| name.to_string()).collect();
+        let names = openings.map(|(name, _)| name.to_string());
+        let pictures = document.pictures().map(|(name, _)| name.to_string());
+        let names: Vec<String> = names.chain(pictures).collect();
         for name in self.chosen.keys().filter(|name| !names.contains(name)) {
             let (name, names) = (name.clone(), names.clone());
             self.reports

@@ -99,7 +99,9 @@ const HEADER: [&str; 4] = ["name", "if", "repeat", "run"];
 const OF_INCLUDE: [&str; 6] = ["name", "if", "repeat", "run", "bind", "set"];
 
 /// Fields of a group.
-const OF_GROUP: [&str; 7] = ["name", "if", "repeat", "run", "bind", "set", "passes"];
+const OF_GROUP: [&str; 8] = [
+    "name", "if", "repeat", "run", "bind", "set", "while", "passes",
+];
 
 fn entry(
     mut raw: RawEntry,
@@ -121,6 +123,7 @@ fn entry(
     let (header, own): (Vec<Field>, Vec<Field>) = raw.fields.into_iter().partition(is_of_header);
     let header: Header = from_fields(&header, &raw.tag.span)?;
     let missing = |field| missing_field(&raw.tag, field);
+    let mut rounds = None;
     let (name, what) = match raw.tag.as_str() {
         "Include" => {
             let (include, name) = include(&raw.tag, &own, header.name)?;
@@ -128,8 +131,14 @@ fn entry(
         }
         "Group" => {
             let entries = raw.passes.ok_or_else(|| missing("passes"))?;
-            if let Some(field) = own.first() {
-                return Err(unknown_field(&field.name, OF_GROUP));
+            for field in &own {
+                if field.name.as_str() != "while" {
+                    return Err(unknown_field(&field.name, OF_GROUP));
+                }
+                if header.repeat.is_none() {
+                    return Err(DocumentError::WhileAlone(field.name.clone()).into());
+                }
+                rounds = Some(field.node.parse()?);
             }
             let name = header.name.ok_or_else(|| missing("name"))?;
             (name, What::Group(read(entries, registry, reports)))
@@ -150,6 +159,7 @@ fn entry(
         run: header.run,
         bind: parsed(raw.bind)?,
         set: parsed(raw.set)?,
+        rounds,
         what,
     })
 }

@@ -14,7 +14,7 @@ use crate::{
 use serde::{Deserialize, Deserializer};
 use skiagraph_located_ron::{
     mistakes::unknown_word,
-    reader::{Node, raw, read, refuse},
+    reader::{raw, read, refuse},
 };
 
 /// A declared material.
@@ -45,7 +45,7 @@ impl Material {
     }
 
     /// Calls `each` with every leaf (param, word, material, constant or feature) of the expressions
-    /// for the material's size, format and growth.
+    /// for the material's size, format, data and growth.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         let (grow, exprs) = match self {
             Self::Texture(texture) => {
@@ -61,7 +61,11 @@ impl Material {
                 let exprs = vec![format, mips, size, layers, texture.samples.as_ref()];
                 (texture.grow.as_deref(), exprs)
             }
-            Self::Buffer(buffer) => (buffer.grow.as_ref(), vec![buffer.count.as_ref()]),
+            Self::Buffer(buffer) => {
+                let data = buffer.data.iter().flat_map(|data| data.0.iter().map(Some));
+                let exprs = data.chain([buffer.count.as_ref()]).collect();
+                (buffer.grow.as_ref(), exprs)
+            }
             Self::Sampler(_) => return,
         };
         if let Some(grow) = grow {
@@ -172,39 +176,19 @@ pub(crate) struct GrowEntry {
     pub max: Expr,
 }
 
-/// Constant items of a buffer: one list per item, with one number per scalar of the shader's type.
+/// Constant items of a buffer: a number, or a tuple of numbers and tuples for one number per scalar
+/// of the shader's type.
 #[derive(Clone, Debug)]
-pub(crate) struct Data(pub Vec<Vec<f64>>);
+pub(crate) struct Data(pub Vec<Expr>);
 
 impl<'de> Deserialize<'de> for Data {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (_, span) = raw(deserializer)?;
         let wrong = || refuse(DocumentError::Data(span.clone()));
         let items = span.list().map_err(|_| wrong())?;
-        let mut data = Vec::new();
-        for item in items {
-            let mut numbers = Vec::new();
-            if item.text().starts_with('(') {
-                flatten(&item, &mut numbers).ok_or_else(wrong)?
-            } else {
-                numbers.push(read(item.text())?)
-            }
-            data.push(numbers);
-        }
-        Ok(Self(data))
+        let items = items.iter().map(|item| read(item.text()));
+        items.collect::<Result<_, _>>().map(Self)
     }
-}
-
-/// The numbers of a tuple, those of tuples in it in their places.
-fn flatten(tuple: &Node, numbers: &mut Vec<f64>) -> Option<()> {
-    for part in tuple.list().ok()? {
-        if part.text().starts_with('(') {
-            flatten(&part, numbers)?
-        } else {
-            numbers.push(part.text().replace('_', "").parse().ok()?)
-        }
-    }
-    Some(())
 }
 
 /// A sampler: how shaders read a texture between its texels.

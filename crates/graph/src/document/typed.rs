@@ -200,6 +200,9 @@ pub(crate) struct Entry {
     pub run: Option<Run>,
     pub bind: Vec<(Located<String>, Reference)>,
     pub set: Vec<(Located<String>, Expr)>,
+    /// Buffer of a group whose first u32 ends the group's repetition early, once it is 0; `None` to
+    /// run all of its rounds.
+    pub rounds: Option<Reference>,
     pub what: What,
 }
 
@@ -360,6 +363,14 @@ impl Document {
         })
     }
 
+    /// Iterates over the textures that hold a picture, each by its name with the name of the file.
+    pub fn pictures(&self) -> impl Iterator<Item = (&Name, &Located<String>)> {
+        self.materials.iter().filter_map(|material| match material {
+            Material::Texture(texture) => Some((&texture.name.value, texture.file.as_ref()?)),
+            _ => None,
+        })
+    }
+
     /// Calls `each` with every leaf (param, word, material, constant or feature) of the document's
     /// expressions and references.
     pub fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
@@ -414,6 +425,7 @@ impl Entry {
         let exprs = exprs.chain(mentions.iter().flat_map(|mentions| &mentions.exprs));
         exprs.for_each(|expr| expr.visit(each));
         let references = self.bind.iter().map(|(_, reference)| reference);
+        let references = references.chain(&self.rounds);
         let references =
             references.chain(mentions.iter().flat_map(|mentions| &mentions.references));
         references.for_each(|reference| reference.visit(each));

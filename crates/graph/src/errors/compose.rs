@@ -61,9 +61,10 @@ mistakes! {
         UnknownParam("`{document}` has no param `{name}`").at(&name, "").suggest(&name, params);
 
     NoOpening(name: String, document: String, openings: Vec<String>) =>
-        UnknownParam("`{document}` has no open include `{name}`")
+        UnknownParam("`{document}` has no open include `{name}`, and no picture of this name")
         .help_any(openings.is_empty().then_some(
-            "an include is left open by `open: \"…\"`; it has none",
+            "an include is left open by `open: \"…\"`, a texture has a picture by `file: \"…\"`; \
+             it has none",
         ))
         .suggest(&name, openings);
 

@@ -103,6 +103,25 @@ mistakes! {
     Area(place: Span) =>
         Syntax("an area is four whole numbers: `(x, y, width, height)`").at(place, "");
 
+    BlendFactors(place: Span) =>
+        Syntax("`Min` and `Max` have no factors but `One`")
+        .at(place, "").help("leave `source` and `target` out");
+
+    BlendConstant(place: Span, what: &'static str) =>
+        Syntax("{what}").at(place, "").help("write `constant: 0.5` or `constant: (r, g, b, a)`");
+
+    BlendConstants(place: Span) =>
+        Syntax("a draw has one blend constant")
+        .at(place, "this is a second one").help("draw to one of the targets in a pass of its own");
+
+    FirstOfIndirect(place: Span) =>
+        Syntax("the first vertex and instance of an indirect draw stand in its buffer")
+        .at(place, "").help("write them there as the third and fourth u32, and leave this out");
+
+    WhileAlone(field: Located<String>) =>
+        MissingField("`while` ends a repetition, and this group has none")
+        .at(field, "").help("write how many rounds there are at most: `repeat: 32`");
+
     Canvas(place: Span) =>
         Syntax("the size of a pass is one number or two: `(width, height)`").at(place, "");
 

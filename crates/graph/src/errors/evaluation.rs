@@ -76,6 +76,18 @@ mistakes! {
         Expression("{owner} has no such attribute")
         .at(span, "").help(format!("attributes are {}", attributes()));
 
+    /// A component that a value has not: `size.z` of two numbers, or any of one.
+    NoComponent { place: Span, owner: String, component: &'static str, value: Value } =>
+        Expression("`{owner}` has no component `{component}`")
+        .at(place, format!("`{owner}` is {value}"))
+        .help(match &value {
+            Value::List(list) => format!(
+                "its numbers are {}",
+                ["`x`", "`y`", "`z`", "`w`"][..list.len().min(4)].join(", ")
+            ),
+            _ => "only sizes and vectors have `x`, `y`, `z`, `w`".to_owned(),
+        });
+
     NoCount(name: Located<String>) =>
         Size("`{name}` has no number of items")
         .at(name, "it says no `count`")
@@ -108,6 +120,20 @@ mistakes! {
             Some(name) => format!("no repeated entry around this is called `{name}`"),
         })
         .help_any(entry.is_none().then_some("write a number, or `repeat: …`"));
+
+    /// The number of the frame where it has no value.
+    FrameNumber(place: Span) =>
+        Expression("`frame.index` stands in `run: When(…)` alone, with a remainder")
+        .at(place, "what is planned holds for every frame")
+        .help(
+            "write `run: When(\"frame.index % 4 == 0\")`; a shader reads `frame.index` of \
+             `shared/frame.wgsl`",
+        );
+
+    FramePeriod { place: Span, period: u64, most: u64 } =>
+        Expression("the conditions on `frame.index` repeat every {period} frames")
+        .at(place, format!("{most} are the most"))
+        .help("take remainders by numbers that divide each other, such as 4 and 8");
 
     NoSizes(place: Span, name: String) =>
         Expression("`{name}` has no size here: only params and features have values")
@@ -142,6 +168,14 @@ fn names(ring: &[Located<String>]) -> Vec<&str> {
 }
 
 impl EvaluationError {
+    /// Creates the error for the index of an entry, or of the innermost one, that is not repeated.
+    pub fn no_index(place: &Span, entry: Option<&Name>) -> Self {
+        match entry {
+            Some(name) if name.as_str() == "frame" => Self::FrameNumber(place.clone()),
+            entry => Self::NoIndex(place.clone(), entry.cloned()),
+        }
+    }
+
     /// Creates the error for the name of an expression that is not a param. `is_material` is true
     /// of a name that a material has.
     pub fn param(

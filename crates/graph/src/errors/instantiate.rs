@@ -108,6 +108,11 @@ mistakes! {
         Unused("`{document}` has no input, output or param `{name}`")
         .at(&name, "").suggest(&name, names);
 
+    RoundsInRounds(counters: [Located<String>; 2]) =>
+        RunCondition("a group that ends early stands in another one")
+        .at_all(counters.iter().zip(["ends the inner one", "ends the outer one"]))
+        .help("leave one `while` out");
+
     UnusedInGroup(group: String, name: Located<String>) =>
         Unused("nothing in the group `{group}` asks for `{name}`")
         .at(name, "")

@@ -21,6 +21,19 @@ mistakes! {
         .at(read, "read here").at(pass, "by this pass")
         .help(format!("add `{name}` to its `reads`, as the document calls it"));
 
+    /// A part of a pass that a round which does not run cannot leave out.
+    InRounds(pass: Span, what: &'static str, counter: Span) =>
+        RunCondition("a group that ends early cannot leave this out: {what}")
+        .at(pass, "in this pass").at(counter, "the group ends by this counter")
+        .help(
+            "dispatches and draws that clear nothing stand there; put the rest above or below the \
+             group",
+        );
+
+    Counter(name: Located<String>, kind: &'static str) =>
+        ResourceKind("`{name}` cannot count the rounds of a group")
+        .at(name, format!("this is {kind}, and a whole buffer of the document is needed"));
+
     NoShader =>
         Shader("a step of this pass has no shader");
 
@@ -299,7 +312,14 @@ mistakes! {
         .at(name, "").help("use a colour format that can be drawn to, or `depth: \"…\"`");
 
     NotBlendable(name: Located<String>, format: TextureFormat) =>
-        FormatMismatch("a target of format {format:?} cannot be blended").at(name, "");
+        FormatMismatch("a target of format {format:?} cannot be blended")
+        .at(name, "")
+        .help(match format.sample_type(None, None) {
+            Some(wgt::TextureSampleType::Float { .. }) => {
+                "write `requires: [\"FLOAT32_BLENDABLE\"]`, or use a format of 16 bits"
+            }
+            _ => "leave `blend` out, or use a format of floats or normalised numbers",
+        });
 
     Resolve(name: Located<String>, why: &'static str) =>
         ResourceKind("nothing can be resolved into `{name}`").at(name, why);
@@ -424,10 +444,10 @@ mistakes! {
         FormatMismatch("the shader declares {declared}");
 
     NoStorage =>
-        FormatMismatch("the adapter offers no storage access of this kind")
+        FormatMismatch("no storage access of this kind is offered")
         .help(
             "R32Uint, R32Float and the Rgba formats of 8, 16 and 32 bits can be written by every \
-             adapter",
+             adapter; others can be drawn to, as a `color`",
         );
 
     StorageSamples(samples: u32) =>

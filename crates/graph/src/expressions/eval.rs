@@ -5,7 +5,9 @@ use crate::{
     errors::evaluation::EvaluationError,
     language::{
         name::Name,
-        syntax::{Attribute, Binary, Expr, ExprKind, Function, Reference, Subject, Unary},
+        syntax::{
+            Attribute, Binary, Component, Expr, ExprKind, Function, Reference, Subject, Unary,
+        },
         value::{Scalar, Value, Word},
     },
     provided_kind::ProvidedKind,
@@ -33,11 +35,20 @@ pub(crate) trait Environment {
 
     fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
 
+    /// True if a param or a named value has this name.
+    fn is_param(&self, name: &str) -> bool;
+
     /// Returns the value of the param called `name`; `None` if there is none, so that the name is a
     /// word.
     fn word_or_param(&mut self, name: &Name) -> Option<Value>;
 
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
+
+    /// Returns the remainder of the frame's number by `length`, in a condition on frames; `None`
+    /// elsewhere.
+    fn turn(&mut self, _length: u32) -> Option<u32> {
+        None
+    }
 
     fn attribute(
         &mut self,
@@ -71,7 +82,13 @@ pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> 
             let list = list.iter().map(|expr| scalar(expr, env));
             Ok(Value::List(list.collect::<Result<_, _>>()?))
         }
-        ExprKind::Param(name) => env.param(name, &expr.span),
+        ExprKind::Param(name) => match expr.as_component() {
+            Some((owner, at)) if !env.is_param(name) && env.is_param(owner) => {
+                let whole = env.param(owner, &expr.span)?;
+                component(expr, owner, &whole, at, env)
+            }
+            _ => env.param(name, &expr.span),
+        },
         ExprKind::Attribute(subject, attribute) => match subject {
             Subject::Viewport => of_viewport(expr, *attribute, env),
             Subject::Repetition(entry) => env.index(entry.as_ref(), &expr.span).map(Value::whole),
@@ -97,7 +114,33 @@ pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> 
             }
         }
         ExprKind::Call(function, arguments) => call(expr, *function, arguments, env),
+        ExprKind::Component(whole, at) => {
+            let numbers = value(whole, env)?;
+            component(expr, whole.text(), &numbers, *at, env)
+        }
     }
+}
+
+/// Returns one of the numbers of the value `whole`, that of `owner`.
+fn component(
+    expr: &Expr,
+    owner: &str,
+    whole: &Value,
+    at: Component,
+    env: &mut dyn Environment,
+) -> Evaluated<Value> {
+    let number = match whole {
+        Value::List(list) => list.get(at as usize),
+        _ => None,
+    };
+    let missing = || EvaluationError::NoComponent {
+        place: expr.span.clone(),
+        owner: owner.to_owned(),
+        component: at.as_str(),
+        value: whole.clone(),
+    };
+    let number = number.copied().ok_or_else(|| env.report(missing()))?;
+    Ok(Value::Scalar(number))
 }
 
 fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> Evaluated<Value> {
@@ -208,8 +251,19 @@ fn binary(
         Binary::LessEqual => Ordering::is_le,
         Binary::Greater => Ordering::is_gt,
         Binary::GreaterEqual => Ordering::is_ge,
+        Binary::Remainder
+            if left.is_frame_number()
+                && let length = count32(right, env)?
+                && length > 0
+                && let Some(turn) = env.turn(length) =>
+        {
+            return Ok(Value::whole(turn));
+        }
         _ => {
             let values = [value(left, env)?, value(right, env)?];
+            if matches!(operator, Binary::ShiftLeft | Binary::ShiftRight) {
+                whole_numbers(values.iter().zip([left, right]), env)?;
+            }
             let is_zero = |scalar: &Scalar| scalar.number() == 0.0;
             let by_zero = matches!(operator, Binary::Divide | Binary::Remainder);
             if by_zero && values[1].scalars().iter().any(is_zero) {
@@ -272,18 +326,25 @@ fn call(
     let first = values.next().transpose()?.unwrap_or(Value::whole(0));
     let second = values.next().transpose()?.unwrap_or(Value::whole(1));
     if function == Function::CeilDiv {
-        let is_whole = |value: &Value| match value {
-            Value::Scalar(Scalar::Whole(_)) => true,
-            Value::List(list) => list.iter().all(|part| matches!(part, Scalar::Whole(_))),
-            _ => false,
-        };
-        for (value, argument) in [&first, &second].into_iter().zip(arguments) {
-            if !is_whole(value) {
-                return Err(wrong(argument, "a whole number", value, env));
-            }
-        }
+        whole_numbers([&first, &second].into_iter().zip(arguments), env)?;
     }
     each(expr, [first, second], env, |a, b| apply(function, a, b))
+}
+
+/// Checks that all numbers of the values are whole; each value has its expression beside it.
+fn whole_numbers<'v>(
+    values: impl Iterator<Item = (&'v Value, &'v Expr)>,
+    env: &mut dyn Environment,
+) -> Evaluated<()> {
+    let is_whole = |value: &Value| match value {
+        Value::Scalar(Scalar::Whole(_)) => true,
+        Value::List(list) => list.iter().all(|part| matches!(part, Scalar::Whole(_))),
+        _ => false,
+    };
+    match values.into_iter().find(|(value, _)| !is_whole(value)) {
+        Some((value, expr)) => Err(wrong(expr, "a whole number", value, env)),
+        None => Ok(()),
+    }
 }
 
 /// Applies an operator number by number; one number goes with each of several.
@@ -331,6 +392,8 @@ fn arithmetic(operator: Binary, a: Scalar, b: Scalar) -> Option<Scalar> {
             Binary::Subtract => a.checked_sub(b),
             Binary::Multiply => a.checked_mul(b),
             Binary::Divide => a.checked_div(b),
+            Binary::ShiftLeft => shift_left(a, b),
+            Binary::ShiftRight => u32::try_from(b).ok().and_then(|bits| a.checked_shr(bits)),
             _ => a.checked_rem(b),
         }
         .map(Scalar::Whole);
@@ -343,6 +406,13 @@ fn arithmetic(operator: Binary, a: Scalar, b: Scalar) -> Option<Scalar> {
         Binary::Divide => a / b,
         _ => a % b,
     }))
+}
+
+/// `None` where bits are lost.
+fn shift_left(number: i64, bits: i64) -> Option<i64> {
+    let bits = u32::try_from(bits).ok()?;
+    let shifted = number.checked_shl(bits)?;
+    (shifted >> bits == number).then_some(shifted)
 }
 
 fn apply(function: Function, a: Scalar, b: Scalar) -> Option<Scalar> {
@@ -362,6 +432,9 @@ fn apply(function: Function, a: Scalar, b: Scalar) -> Option<Scalar> {
         (Function::Ceil, a, _) => rounded(a.number().ceil()),
         (Function::Exp, a, _) => Some(Scalar::Number(a.number().exp())),
         (Function::Log2, a, _) => Some(Scalar::Number(a.number().log2())),
+        (Function::Pow, Scalar::Whole(a), Scalar::Whole(b)) if b >= 0 => {
+            a.checked_pow(u32::try_from(b).ok()?).map(Scalar::Whole)
+        }
         (Function::Pow, a, b) => Some(Scalar::Number(a.number().powf(b.number()))),
         (Function::Sqrt, a, _) => Some(Scalar::Number(a.number().sqrt())),
     }

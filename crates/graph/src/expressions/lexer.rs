@@ -16,9 +16,9 @@ pub(crate) enum Token<'a> {
 }
 
 /// Two signs before one: `<=` is not `<` and `=`.
-const SIGNS: [&str; 23] = [
-    "||", "&&", "==", "!=", "<=", ">=", "..", "<", ">", "+", "-", "*", "/", "%", "!", "(", ")",
-    "[", "]", ",", "?", ":", ".",
+const SIGNS: [&str; 25] = [
+    "||", "&&", "==", "!=", "<=", ">=", "<<", ">>", "..", "<", ">", "+", "-", "*", "/", "%", "!",
+    "(", ")", "[", "]", ",", "?", ":", ".",
 ];
 
 /// Splits the bytes `range` of a file into tokens, each with its place. The last one is

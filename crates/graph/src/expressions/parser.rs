@@ -8,8 +8,8 @@ use crate::{
         formats::format_named,
         name::Name,
         syntax::{
-            Attribute, Binary, Expr, ExprKind, Function, Reference, Segment, Selection, Subject,
-            Unary,
+            Attribute, Binary, Component, Expr, ExprKind, Function, Reference, Segment, Selection,
+            Subject, Unary,
         },
         value::{Scalar, Value},
     },
@@ -198,9 +198,12 @@ impl<'a> Parser<'a> {
                 self.next();
                 let inner = self.expr()?;
                 self.expect(")")?;
-                return Ok(Expr::new(inner.kind, self.span(start)));
+                return self.component(Expr::new(inner.kind, self.span(start)));
             }
-            Token::Word(word) if self.tokens[self.at + 1].0 == Token::Sign("(") => self.call(word),
+            Token::Word(word) if self.tokens[self.at + 1].0 == Token::Sign("(") => {
+                let call = self.call(word)?;
+                return self.component(Expr::new(call, self.span(start)));
+            }
             Token::Word(word) if word.starts_with(|c: char| c.is_ascii_uppercase()) => {
                 self.next();
                 Ok(match format_named(word) {
@@ -214,6 +217,22 @@ impl<'a> Parser<'a> {
             }
             _ => return Err(self.unexpected("a number, a name or a bracket")),
         }?;
+        Ok(Expr::new(kind, self.span(start)))
+    }
+
+    /// The expression, or the component of it that is asked for behind a bracket: `max(a, b).x`.
+    fn component(&mut self, expr: Expr) -> Parsed<Expr> {
+        if !self.take(".") {
+            return Ok(expr);
+        }
+        let component = match self.peek() {
+            Token::Word(word) => Component::named(word),
+            _ => None,
+        };
+        let (_, component) = component.ok_or_else(|| self.unexpected("`x`, `y`, `z` or `w`"))?;
+        self.next();
+        let start = expr.span.range.start;
+        let kind = ExprKind::Component(Box::new(expr), *component);
         Ok(Expr::new(kind, self.span(start)))
     }
 
@@ -341,6 +360,18 @@ impl<'a> Parser<'a> {
         let last = path.last().filter(|last| last.selection.is_none());
         let attribute = last.and_then(|last| Some(Attribute::named(last.word)?.1));
         let alone = path.len() == 1;
+        if let [.., owner, _] = path.as_slice()
+            && let Some((_, component)) = last.and_then(|last| Component::named(last.word))
+            && path.len() > 2
+            && owner.selection.is_none()
+            && Attribute::named(owner.word).is_some()
+        {
+            path.pop();
+            let (first, owner) = (path[0].range.start, path[path.len() - 1].range.end);
+            let kind = self.value_of(path)?;
+            let whole = Expr::new(kind, self.file.span(first..owner));
+            return Ok(ExprKind::Component(Box::new(whole), *component));
+        }
         if alone && attribute == Some(Attribute::Index) {
             let innermost = Subject::Repetition(None);
             return Ok(ExprKind::Attribute(innermost, Attribute::Index));

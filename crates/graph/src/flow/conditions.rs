@@ -17,10 +17,12 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// In every frame: the pass has [`Run::Always`], or the condition of its [`Run::When`] is true
-    /// in this plan.
+    /// in every frame of this plan.
     Always,
-    /// In no frame: the condition of its [`Run::When`] is false in this plan.
+    /// In no frame: the condition of its [`Run::When`] is false in every frame of this plan.
     Never,
+    /// In the frames whose numbers [`LinkedPass::turns`] names.
+    InTurn,
     /// In the frames of [`Run::Once`].
     Once,
     /// In the frames of [`Run::OnChange`].
@@ -142,8 +144,11 @@ pub(crate) fn conditions(
     let when = |(&group, &pass): (&usize, &PassId)| match &view.pass(pass).run {
         _ if view.pass(pass).is_capture() && leads[group] => When::Follows,
         Run::Always => When::Always,
-        Run::When(_) if view.pass(pass).enabled => When::Always,
-        Run::When(_) => When::Never,
+        Run::When(_) => match view.pass(pass).turns.as_slice() {
+            turns if !turns.contains(&true) => When::Never,
+            turns if !turns.contains(&false) => When::Always,
+            _ => When::InTurn,
+        },
         Run::Once => When::Once,
         Run::OnChange => When::OnChange,
     };

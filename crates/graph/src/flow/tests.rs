@@ -104,7 +104,7 @@ fn case(uses: &[Vec<Use>]) -> Case {
             steps: Vec::new(),
             accesses,
             run: Run::Always,
-            enabled: true,
+            turns: vec![true],
         }
     };
     let in_file: Vec<LinkedPass> = uses.iter().enumerate().map(pass).collect();

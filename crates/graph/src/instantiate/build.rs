@@ -2,7 +2,7 @@
 //! includes.
 
 use super::{
-    flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Run},
+    flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Round, Run},
     include::{self, Call},
     merge::{Asks, Content, Site},
     modules::WaitingModules,
@@ -15,13 +15,13 @@ use crate::{
     compose::loaded::Loaded,
     diagnostics::reports::{ErrorGuaranteed, Reported, Reports},
     document::{
-        materials::{Input, InputKind},
+        materials::{FormatEntry, Input, InputKind, Material},
         raw::Invalid,
         typed::{Document, Entry, Include, Pass, Run as RunEntry, What},
     },
-    errors::instantiate::InterfaceError,
+    errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     expressions::eval,
-    language::name::Name,
+    language::{name::Name, syntax::Expr, value::least_common_multiple},
     param::ParamType,
     provider::Import,
     request::PlanRequest,
@@ -37,6 +37,10 @@ use std::{
 /// Greatest number of passes (groups and includes among them), and of materials, of a graph. It
 /// guards against documents that double with each include, which would take absurd time and memory.
 const MOST: usize = 16_384;
+
+/// Greatest number of frames after which the run conditions of a graph repeat: a method is
+/// judged over all of them.
+const LONGEST_PERIOD: u64 = 64;
 
 pub(super) struct Builder<'a> {
     pub symbols: SymbolTable<'a>,
@@ -56,6 +60,8 @@ pub(super) struct Builder<'a> {
     said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
     full: Option<ErrorGuaranteed>,
+    /// Number of frames after which all run conditions so far repeat.
+    period: u64,
 }
 
 /// Flattens a document with all that it includes. `merges`: includes of the same content are
@@ -81,6 +87,7 @@ pub(crate) fn flatten<'a>(
         said: Vec::new(),
         spent: 0,
         full: None,
+        period: 1,
     };
     let document = &graph.document;
     let instance = builder.symbols.scopes.add_instance(Instance {
@@ -117,19 +124,41 @@ impl<'a> Builder<'a> {
     /// Declares the inputs of the root document as the host's imports.
     fn imports(&mut self, document: &Document, scope: ScopeId) {
         for input in &document.inputs {
-            let name = &input.name;
-            let symbol = match self.import(input) {
-                Ok(kind) => {
-                    let id = self.symbols.add(Resource {
-                        declared: Some(name.span.clone()),
-                        ..Resource::new(name.value.to_string(), kind, Origin::Host)
-                    });
-                    Symbol::Target(self.symbols.whole(id))
-                }
-                Err(error) => Symbol::Invalid(self.symbols.reports.report(error)),
-            };
-            self.symbols.scopes.declare(scope, &name.value, symbol);
+            let symbol = self.imported(input);
+            let scopes = &mut self.symbols.scopes;
+            scopes.declare(scope, &input.name.value, symbol);
         }
+    }
+
+    fn imported(&mut self, input: &Input) -> Symbol {
+        let name = &input.name;
+        match self.import(input) {
+            Ok(kind) => {
+                let id = self.symbols.add(Resource {
+                    declared: Some(name.span.clone()),
+                    ..Resource::new(name.value.to_string(), kind, Origin::Host)
+                });
+                Symbol::Target(self.symbols.whole(id))
+            }
+            Err(error) => Symbol::Invalid(self.symbols.reports.report(error)),
+        }
+    }
+
+    /// Returns the input in the place of a texture whose picture the host replaces.
+    fn replaced_picture(&self, material: &Material, instance: InstanceId) -> Option<Input> {
+        let Material::Texture(texture) = material else {
+            return None;
+        };
+        let is_root = self.symbols.scopes.instance(instance).outer.is_none();
+        let name = &texture.name;
+        let is_replaced = self.symbols.request.imports.contains_key(name.as_str());
+        (is_root && is_replaced && texture.file.is_some()).then(|| Input {
+            name: name.clone(),
+            kind: InputKind::Texture(match texture.format {
+                FormatEntry::Named(format) => Some(format),
+                FormatEntry::Expr(_) => None,
+            }),
+        })
     }
 
     fn import(&self, input: &Input) -> Result<ResourceKind, InterfaceError> {
@@ -187,6 +216,11 @@ impl<'a> Builder<'a> {
             }
             let name = material.name();
             let instance = self.symbols.scopes.instance_of(scope);
+            if let Some(input) = self.replaced_picture(material, instance) {
+                let symbol = self.imported(&input);
+                self.symbols.scopes.declare(scope, &name.value, symbol);
+                continue;
+            }
             let mut at = self.symbols.at(scope.begin(), None);
             let symbol = match include::overridden(material, &mut at) {
                 Some(Ok(target)) => Symbol::Target(target),
@@ -343,14 +377,15 @@ impl<'a> Builder<'a> {
         match &entry.what {
             What::Pass(pass) => {
                 self.note_choices(pass, context.scope);
-                let (run, enabled) = run.unwrap_or((Run::Always, true));
+                let (run, turns) = run.unwrap_or((Run::Always, vec![true]));
                 let pass = FlatPass {
                     name: Located::new(name, entry.name.span.clone()),
                     entry,
                     pass,
                     position,
                     run,
-                    enabled,
+                    turns,
+                    round: context.round,
                     bind: self.asked(&context.bind, |name| {
                         self.asks_global(context.scope, entry, name)
                     }),
@@ -378,10 +413,31 @@ impl<'a> Builder<'a> {
                     }
                 };
                 let position = Position { scope, index: None };
+                let round = entry.rounds.as_ref().map(|counter| Round {
+                    counter,
+                    position,
+                    // A slash stands in no name: nothing in a document can mean this buffer.
+                    goes: self.symbols.add(Resource::new(
+                        format!("{name}/goes"),
+                        ResourceKind::Buffer(Buffer {
+                            count: Some(1),
+                            ..Buffer::default()
+                        }),
+                        Origin::Own,
+                    )),
+                });
+                if let (Some(inner), Some(outer)) = (&round, &context.round) {
+                    let counters = [inner, outer].map(|round| round.counter.located());
+                    return Err(self
+                        .symbols
+                        .reports
+                        .report(InterfaceError::RoundsInRounds(counters)));
+                }
                 let inner = EntryContext {
                     scope,
                     prefix: format!("{name}."),
                     run,
+                    round: round.or(context.round),
                     bind: self.say(&entry.bind, position, entry, &context.bind),
                     set: self.say(&entry.set, position, entry, &context.set),
                 };
@@ -500,15 +556,16 @@ impl<'a> Builder<'a> {
         entry: &Entry,
         position: Position,
         context: &EntryContext<'a>,
-    ) -> Reported<Option<(Run, bool)>> {
+    ) -> Reported<Option<(Run, Vec<bool>)>> {
+        let always = |run| Ok(Some((run, vec![true])));
         let condition = match &entry.run {
             None => return Ok(context.run.clone()),
-            Some(RunEntry::Always) => return Ok(Some((Run::Always, true))),
-            Some(RunEntry::Once) => return Ok(Some((Run::Once, true))),
-            Some(RunEntry::OnChange) => return Ok(Some((Run::OnChange, true))),
+            Some(RunEntry::Always) => return always(Run::Always),
+            Some(RunEntry::Once) => return always(Run::Once),
+            Some(RunEntry::OnChange) => return always(Run::OnChange),
             Some(RunEntry::When(condition)) => condition,
         };
-        let enabled = eval::boolean(condition, &mut self.symbols.at(position, None))?;
+        let turns = self.turns(condition, position)?;
         let instance = self.symbols.scopes.document(position.scope);
         let params = Arc::clone(&instance.params);
         let outer = instance.outer.as_ref();
@@ -516,21 +573,56 @@ impl<'a> Builder<'a> {
         // Conditions of two documents are one if they are made of the same params of the root;
         // attributes (`index` is one) are what they are here.
         let text = condition.canonical(&mut |leaf| {
+            if leaf.is_frame_number() && turns.len() > 1 {
+                return leaf.text().to_owned();
+            }
             if let Some(name) = leaf.as_param() {
+                let is_param = |name: &str| params.bound(name).is_some();
+                let part = leaf.as_component().filter(|(owner, _)| is_param(owner));
+                let (name, part) = match part.filter(|_| !is_param(name)) {
+                    Some((owner, part)) => (owner, format!(".{}", part.as_str())),
+                    None => (name, String::new()),
+                };
                 match params.bound(name).map(|bound| &bound.root) {
-                    Some(Some(root)) => return root.clone(),
-                    Some(None) => return format!("{private}{name}"),
+                    Some(Some(root)) => return format!("{root}{part}"),
+                    Some(None) => return format!("{private}{name}{part}"),
                     None => {}
                 }
                 let scopes = &self.symbols.scopes;
-                if scopes.find_value(position.scope, name).is_none() {
+                let owner = leaf.as_component().map_or(name, |(owner, _)| owner);
+                if [name, owner]
+                    .iter()
+                    .all(|it| scopes.find_value(position.scope, it).is_none())
+                {
                     return name.to_owned();
                 }
             }
             let value = eval::value(leaf, &mut self.symbols.at(position, None));
             value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
         });
-        Ok(Some((Run::When(text), enabled)))
+        Ok(Some((Run::When(text), turns)))
+    }
+
+    /// Returns the values of a run condition, frame by frame until they repeat.
+    fn turns(&mut self, condition: &Expr, position: Position) -> Reported<Vec<bool>> {
+        let mut turns = Vec::new();
+        let mut at = self.symbols.at(position, None);
+        let (mut frame, mut repeats) = (0, 1);
+        while frame < repeats {
+            at.frame = Some((frame, repeats));
+            turns.push(eval::boolean(condition, &mut at)?);
+            (frame, repeats) = (frame + 1, at.frame.map_or(repeats, |(_, repeats)| repeats));
+            let period = least_common_multiple(self.period, repeats);
+            if period > LONGEST_PERIOD {
+                return Err(at.report(EvaluationError::FramePeriod {
+                    place: condition.span.clone(),
+                    period,
+                    most: LONGEST_PERIOD,
+                }));
+            }
+        }
+        self.period = least_common_multiple(self.period, repeats);
+        Ok(turns)
     }
 
     /// Adds the settings of a group to those of the groups around it; the inner setting of a name

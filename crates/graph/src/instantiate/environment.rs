@@ -8,7 +8,7 @@ use crate::{
     language::{
         name::Name,
         syntax::{Attribute, Reference},
-        value::Value,
+        value::{Value, least_common_multiple},
     },
     provided_kind::ProvidedKind,
     resource::ResourceKind,
@@ -57,6 +57,13 @@ impl Environment for At<'_, '_> {
         Err(self.report(error))
     }
 
+    fn is_param(&self, name: &str) -> bool {
+        let scopes = &self.symbols.scopes;
+        let scope = self.position.scope;
+        scopes.document(scope).params.bound(name).is_some()
+            || scopes.find_value(scope, name).is_some()
+    }
+
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
         let instance = self.symbols.scopes.document(self.position.scope);
         if let Some(value) = instance.params.value(name, &mut self.symbols.reports) {
@@ -68,8 +75,13 @@ impl Environment for At<'_, '_> {
 
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
         let index = self.symbols.scopes.index(self.position, entry);
-        let missing = || EvaluationError::NoIndex(span.clone(), entry.cloned());
-        index.ok_or_else(|| self.report(missing()))
+        index.ok_or_else(|| self.report(EvaluationError::no_index(span, entry)))
+    }
+
+    fn turn(&mut self, length: u32) -> Option<u32> {
+        let (frame, period) = self.frame.as_mut()?;
+        *period = least_common_multiple(*period, length.into());
+        u32::try_from(*frame % u64::from(length)).ok()
     }
 
     fn attribute(

@@ -30,10 +30,9 @@ pub enum Run {
     /// are not compared: content has changed if a pass that writes it has run, or the host reports
     /// a change.
     OnChange,
-    /// In every frame if an expression over params is true in the plan, in no frame otherwise.
-    /// Holds the expression as text, which names params as the loaded document does; passes with
-    /// equal texts run in the same frames. [`LinkedPass::enabled`](crate::LinkedPass::enabled)
-    /// holds its value.
+    /// In the frames in which an expression over params and the frame's number is true. Holds the
+    /// expression as text, which names params as the loaded document does; passes with equal texts
+    /// run in the same frames. [`LinkedPass::turns`](crate::LinkedPass::turns) holds its values.
     When(String),
 }
 
@@ -85,15 +84,28 @@ pub(crate) struct FlatPass<'a> {
     pub pass: &'a Pass,
     pub position: Position,
     pub run: Run,
-    /// Value of the expression in [`Run::When`] with the plan's params; true for every other
-    /// [`Run`].
-    pub enabled: bool,
+    /// Values of the expression in [`Run::When`], frame by frame until they repeat; one true for
+    /// every other [`Run`].
+    pub turns: Vec<bool>,
+    /// The round that the pass belongs to, of a group that ends early.
+    pub round: Option<Round<'a>>,
     /// Bindings that groups around the pass give to globals of its shader, an inner group's in
     /// place of an outer one's.
     pub bind: Vec<Inherited<'a, Reference>>,
     /// Values that groups around the pass give to params and overrides of its shader, an inner
     /// group's in place of an outer one's.
     pub set: Vec<Inherited<'a, Expr>>,
+}
+
+/// A round of a group that ends early (`while`).
+#[derive(Clone, Copy)]
+pub(crate) struct Round<'a> {
+    /// Buffer whose first u32 is 0 once no round runs any more.
+    pub counter: &'a Reference,
+    /// Position at which the counter's reference is resolved.
+    pub position: Position,
+    /// Buffer of one u32: 1 if the round runs, else 0.
+    pub goes: ResourceId,
 }
 
 /// Settings that an entry inherits from the document and the groups around it.
@@ -103,7 +115,8 @@ pub(super) struct EntryContext<'a> {
     /// Prefix of the full names of the passes inside, such as `cascade[2].`; empty at the top of
     /// the loaded document.
     pub prefix: String,
-    pub run: Option<(Run, bool)>,
+    pub run: Option<(Run, Vec<bool>)>,
+    pub round: Option<Round<'a>>,
     pub bind: Vec<Inherited<'a, Reference>>,
     pub set: Vec<Inherited<'a, Expr>>,
 }
@@ -114,6 +127,7 @@ impl<'a> EntryContext<'a> {
             scope,
             prefix: String::new(),
             run: None,
+            round: None,
             bind: Vec::new(),
             set: Vec::new(),
         }
@@ -125,6 +139,7 @@ impl<'a> EntryContext<'a> {
         Self {
             prefix: self.prefix.clone(),
             run: self.run.clone(),
+            round: self.round,
             ..Self::new(scope)
         }
     }
@@ -174,13 +189,17 @@ impl PlanInputs {
         let Some(condition) = condition else {
             return Ok(true);
         };
-        let (symbols, scope) = (at.symbols(), at.position.scope);
+        self.note(condition, at.symbols(), at.position.scope);
+        eval::boolean(condition, at)
+    }
+
+    /// Notes the params and features in a condition.
+    pub fn note(&mut self, condition: &Expr, symbols: &SymbolTable<'_>, scope: ScopeId) {
         self.params.extend(symbols.roots(scope, condition));
         symbols.visit(scope, condition, &mut |_, leaf| {
             if let Leaf::Has(feature) = leaf {
                 self.features |= feature;
             }
         });
-        eval::boolean(condition, at)
     }
 }

@@ -43,7 +43,7 @@ pub(crate) struct Lowered<'a> {
 
 /// Lowers every pass.
 pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
-    let mut symbols = flat.symbols;
+    let (mut symbols, mut plan_inputs) = (flat.symbols, flat.plan_inputs);
     let passes = flat.passes.into_iter().map(|flat| {
         let (entry, pass) = (flat.entry, flat.pass);
         let before = symbols.reports.errors();
@@ -71,6 +71,9 @@ pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
         pass.body.lower(&mut lowering);
         let (steps, scratch, diagnostics) =
             (lowering.steps, lowering.scratch, lowering.diagnostics);
+        for condition in lowering.conditions {
+            plan_inputs.note(&condition, &symbols, flat.position.scope);
+        }
         for diagnostic in diagnostics {
             symbols.reports.report(diagnostic);
         }
@@ -99,6 +102,6 @@ pub(crate) fn lower(flat: Flat<'_>) -> Lowered<'_> {
         first_invalid: flat.first_invalid,
         interfaces: flat.interfaces,
         merged: flat.merged,
-        plan_inputs: flat.plan_inputs,
+        plan_inputs,
     }
 }

@@ -10,7 +10,10 @@ use crate::{
     document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
     errors::{evaluation::EvaluationError, resource::SizeError},
     expressions::eval,
-    language::{syntax::Expr, value::Value},
+    language::{
+        syntax::{Expr, ExprKind},
+        value::{Scalar, Value},
+    },
     request::PlanRequest,
     resource::{Buffer, Growth, ResourceKind, Sampler, Texture},
     source::span::{Located, Span},
@@ -66,7 +69,7 @@ fn texture(
     let picture = match &entry.file {
         None => None,
         Some(file) => {
-            let picture = graph.pictures.get(&declared.document, file)?;
+            let picture = graph.pictures.get(&declared.document, &entry.name)?;
             at.reports().check(check_picture(entry, file, format))?;
             Some(picture)
         }
@@ -164,12 +167,37 @@ fn buffer(entry: &BufferEntry, at: &mut impl Sizing) -> Reported<Buffer> {
             count => Some(count),
         },
     };
-    let data = entry.data.as_ref().map(|data| Arc::new(data.0.clone()));
+    let data = match &entry.data {
+        None => None,
+        Some(data) => {
+            let items = data.0.iter().map(|item| {
+                let mut numbers = Vec::new();
+                flatten(item, &mut numbers, at).map(|()| numbers)
+            });
+            Some(Arc::new(items.collect::<Reported<Vec<_>>>()?))
+        }
+    };
     Ok(Buffer {
         count,
         data,
         ..Buffer::default()
     })
+}
+
+/// Appends the numbers of an item, those of tuples and vectors in it in their places.
+fn flatten(item: &Expr, numbers: &mut Vec<f64>, at: &mut impl Sizing) -> Reported<()> {
+    if let ExprKind::Tuple(parts) = &item.kind {
+        return parts.iter().try_for_each(|part| flatten(part, numbers, at));
+    }
+    match eval::value(item, at)? {
+        Value::List(list) => numbers.extend(list.into_iter().map(Scalar::number)),
+        Value::Scalar(number) => numbers.push(number.number()),
+        value => {
+            let error = EvaluationError::Type(item.span.clone(), "a number", value);
+            return Err(at.reports().report(error));
+        }
+    }
+    Ok(())
 }
 
 fn check_texture(

@@ -33,7 +33,7 @@ pub(super) struct Content {
     scene: BTreeMap<String, Target>,
     /// Modules that replace others which its shaders import.
     replaced: Replaced,
-    run: Option<(Run, bool)>,
+    run: Option<(Run, Vec<bool>)>,
 }
 
 /// Value of a param, the param of the root document that it is (if any), and the params of the root
@@ -73,7 +73,7 @@ impl Content {
         inputs: &[Reported<Target>],
         scene: BTreeMap<String, Reported<Target>>,
         replaced: &Replaced,
-        run: Option<(Run, bool)>,
+        run: Option<(Run, Vec<bool>)>,
     ) -> Option<Self> {
         let params = params.list.iter().map(|bound| {
             let value = bound.value.clone().ok()?;

@@ -146,12 +146,16 @@ impl Environment for ParamsAlone<'_> {
         }
     }
 
+    fn is_param(&self, name: &str) -> bool {
+        self.params.bound(name).is_some()
+    }
+
     fn word_or_param(&mut self, name: &Name) -> Option<Value> {
         self.params.value(name, self.reports)?.ok()
     }
 
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
-        Err(self.report(EvaluationError::NoIndex(span.clone(), entry.cloned())))
+        Err(self.report(EvaluationError::no_index(span, entry)))
     }
 
     fn attribute(&mut self, material: &Reference, _: Attribute, span: &Span) -> Reported<Value> {

@@ -135,6 +135,7 @@ impl<'a> SymbolTable<'a> {
             symbols: self,
             position,
             shader,
+            frame: None,
         }
     }
 
@@ -545,6 +546,9 @@ pub(crate) struct At<'w, 'a> {
     pub position: Position,
     /// Shader of the pass, for an expression of a pass.
     pub(super) shader: Option<Reported<Arc<Shader>>>,
+    /// In a condition on frames, the number of the frame, and the number of frames after which the
+    /// condition repeats; `None` elsewhere.
+    pub(super) frame: Option<(u64, u64)>,
 }
 
 impl<'a> At<'_, 'a> {

@@ -39,8 +39,8 @@ impl PassKind for Fullscreen {
             canvas: None,
             area: area.and_then(|area| targets::area(area, pass)),
             call: DrawCall::Direct {
-                vertices: 3,
-                instances: 1,
+                vertices: 0..3,
+                instances: 0..1,
             },
             primitive: wgt::PrimitiveState::default(),
         };

@@ -63,6 +63,8 @@ pub struct Lowering<'a> {
     /// Name and size in bytes of each buffer that only this pass uses.
     pub(crate) scratch: Vec<(String, u64)>,
     pub(crate) diagnostics: Vec<Diagnostic>,
+    /// Conditions that decide the form of the pass.
+    pub(crate) conditions: Vec<Expr>,
 }
 
 impl<'a> Lowering<'a> {
@@ -83,6 +85,7 @@ impl<'a> Lowering<'a> {
             features: wgt::Features::empty(),
             scratch: Vec::new(),
             diagnostics: Vec::new(),
+            conditions: Vec::new(),
         }
     }
 
@@ -225,6 +228,14 @@ impl<'a> Lowering<'a> {
     /// loaded, and after a mistake, which is reported.
     pub fn boolean(&mut self, expr: &Expr) -> bool {
         self.evaluate(false, |environment| eval::boolean(expr, environment))
+    }
+
+    /// Evaluates a condition that decides the form of the pass, so that a document is checked for
+    /// either value. Returns true while a document is loaded, and after a mistake, which is
+    /// reported.
+    pub(crate) fn condition(&mut self, condition: &Expr) -> bool {
+        self.conditions.push(condition.clone());
+        self.evaluate(true, |environment| eval::boolean(condition, environment))
     }
 
     /// Returns the word for the kind of the resource `name` that the host's [provider](crate#terms)

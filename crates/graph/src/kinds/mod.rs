@@ -1,6 +1,7 @@
 //! Pass kinds: the kinds of entries that `passes` may have, and their lowering to steps. Each kind
 //! has its own file.
 
+mod blend;
 mod clear;
 mod compute;
 mod copy;

@@ -7,11 +7,13 @@ use super::{
     targets::{self, ColorEntry, DepthEntry, StencilEntry},
 };
 use crate::{
+    errors::{document::DocumentError, evaluation::EvaluationError},
     fields::Chosen,
     language::syntax::{Expr, Reference},
 };
 use serde::{Deserialize, Deserializer};
 use skiagraph_located_ron::reader::{raw, read};
+use std::ops::Range;
 
 /// One draw call, whose vertices the shader pulls by their index.
 #[derive(Clone, Debug, Deserialize)]
@@ -22,6 +24,10 @@ pub(super) struct Raster {
     draw: Call,
     /// How often they are drawn; once without it.
     instances: Option<Expr>,
+    /// Index of the first vertex; 0 without it.
+    first_vertex: Option<Expr>,
+    /// Index of the first instance; 0 without it.
+    first_instance: Option<Expr>,
     /// Colour attachments, in the order of the shader's locations.
     #[serde(default)]
     color: Vec<ColorEntry>,
@@ -137,15 +143,16 @@ impl PassKind for Raster {
         program.fragment = self.fragment.as_ref().and_then(|entry| entry.chosen(pass));
         program.no_fragment = self.fragment.is_some() && program.fragment.is_none();
         let call = match &self.draw {
-            Call::Vertices(count) => {
-                let vertices = pass.count32(count);
-                let instances = self.instances.as_ref();
-                DrawCall::Direct {
-                    vertices,
-                    instances: instances.map_or(1, |count| pass.count32(count)),
+            Call::Vertices(count) => DrawCall::Direct {
+                vertices: range(self.first_vertex.as_ref(), Some(count), pass),
+                instances: range(self.first_instance.as_ref(), self.instances.as_ref(), pass),
+            },
+            Call::Indirect(buffer) => {
+                if let Some(first) = self.first_vertex.as_ref().or(self.first_instance.as_ref()) {
+                    pass.report(DocumentError::FirstOfIndirect(first.span.clone()));
                 }
+                DrawCall::Indirect(Operand::from(buffer))
             }
-            Call::Indirect(buffer) => DrawCall::Indirect(Operand::from(buffer)),
         };
         let primitive = wgt::PrimitiveState {
             topology: match self.topology {
@@ -181,6 +188,18 @@ impl PassKind for Raster {
         };
         pass.step(Step::Draw(draw));
     }
+}
+
+/// Returns `count` indices (one without it) from `first` on (from 0 without it).
+fn range(first: Option<&Expr>, count: Option<&Expr>, pass: &mut Lowering<'_>) -> Range<u32> {
+    let start = first.map_or(0, |first| pass.count32(first));
+    let count = count.map_or(1, |count| pass.count32(count));
+    let end = start.checked_add(count);
+    if let (None, Some(first)) = (end, first) {
+        let last = u64::from(start) + u64::from(count);
+        pass.report(EvaluationError::Large(first.span.clone(), last));
+    }
+    start..end.unwrap_or(start)
 }
 
 #[cfg(feature = "schema")]

@@ -41,7 +41,7 @@
 //! ```
 
 use crate::{language::syntax::Reference, source::span::Located};
-use std::fmt::Debug;
+use std::{fmt::Debug, ops::Range};
 
 /// Types by which a [`Step`] refers to resources, shaders and sizes at one stage of processing. The
 /// stages are [`Names`] when a pass kind makes the step, [`Ids`](crate::Ids) in a plan, and the GPU
@@ -232,7 +232,8 @@ pub struct Draw<S: Stage> {
     /// vertices that [`call`](Self::call) must have, instead of an entry point of the program.
     pub fullscreen: bool,
     /// Colour attachments of the draw; the index in the list is the fragment shader's `@location`.
-    pub colors: Vec<ColorTarget<S>>,
+    /// `None` for one whose condition does not hold: what the shader writes there is lost.
+    pub colors: Vec<Option<ColorTarget<S>>>,
     /// Depth attachment of the draw; `None` for a draw without a depth test.
     pub depth: Option<DepthTarget<S>>,
     /// Stencil attachment of the draw; `None` for a draw without a stencil test. If there is a
@@ -259,10 +260,10 @@ pub struct Draw<S: Stage> {
 pub enum DrawCall<S: Stage> {
     /// Numbers that are known when the graph is planned.
     Direct {
-        /// Number of vertices of each instance.
-        vertices: u32,
-        /// Number of instances.
-        instances: u32,
+        /// Indices of the vertices of each instance.
+        vertices: Range<u32>,
+        /// Indices of the instances.
+        instances: Range<u32>,
     },
     /// Numbers that the GPU reads from this buffer: `vertex_count, instance_count, first_vertex,
     /// first_instance`, a u32 each.
@@ -284,8 +285,8 @@ impl<S: Stage> DrawCall<S> {
                 vertices,
                 instances,
             } => DrawCall::Direct {
-                vertices: *vertices,
-                instances: *instances,
+                vertices: vertices.clone(),
+                instances: instances.clone(),
             },
             Self::Indirect(from) => DrawCall::Indirect(arguments(from)?),
         })
@@ -306,6 +307,9 @@ pub struct ColorTarget<S: Stage> {
     /// Blending of the drawn colour with the colour in the target; `None` replaces the colour in
     /// the target.
     pub blend: Option<wgt::BlendState>,
+    /// Value of the blend factor `Constant`, equal in all attachments of a draw that have one;
+    /// `None` for 0.
+    pub blend_constant: Option<[f64; 4]>,
     /// Colour channels that the draw writes; the others keep their content.
     pub write: wgt::ColorWrites,
 }

@@ -1,6 +1,7 @@
 //! Attachments as documents write them.
 
 use super::{
+    blend::Blend,
     kind::Lowering,
     step::{ColorTarget, DepthTarget, Names, StencilTarget},
 };
@@ -13,7 +14,8 @@ use crate::{
 use serde::{Deserialize, Deserializer};
 use skiagraph_located_ron::reader::{raw, refuse};
 
-/// A colour attachment: `"image"`, or `(target: "image", load: …, blend: …, write: …, resolve: …)`.
+/// A colour attachment: `"image"`, or `(target: "image", load: …, blend: …, write: …, resolve: …,
+/// if: …)`.
 #[derive(Clone, Debug)]
 pub(super) struct ColorEntry(ColorFields);
 
@@ -33,6 +35,10 @@ pub(super) struct ColorFields {
     write: WriteMask,
     /// The texture that a multisampled target is resolved into.
     resolve: Option<Reference>,
+    /// Condition under which the target is there; what the shader writes to its location is lost
+    /// else.
+    #[serde(default, rename = "if")]
+    condition: Option<Expr>,
 }
 
 impl<'de> Deserialize<'de> for ColorEntry {
@@ -43,42 +49,9 @@ impl<'de> Deserialize<'de> for ColorEntry {
             blend: None,
             write: WriteMask::default(),
             resolve: None,
+            condition: None,
         };
         short_or_long(deserializer, Self, |target| Self(short(target)))
-    }
-}
-
-/// How what is drawn is mixed with what is there.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-enum Blend {
-    Alpha,
-    Premultiplied,
-    Additive,
-    Min,
-    Max,
-}
-
-impl Blend {
-    fn state(self) -> wgt::BlendState {
-        let same = |operation| {
-            let component = wgt::BlendComponent {
-                src_factor: wgt::BlendFactor::One,
-                dst_factor: wgt::BlendFactor::One,
-                operation,
-            };
-            wgt::BlendState {
-                color: component,
-                alpha: component,
-            }
-        };
-        match self {
-            Self::Alpha => wgt::BlendState::ALPHA_BLENDING,
-            Self::Premultiplied => wgt::BlendState::PREMULTIPLIED_ALPHA_BLENDING,
-            Self::Additive => same(wgt::BlendOperation::Add),
-            Self::Min => same(wgt::BlendOperation::Min),
-            Self::Max => same(wgt::BlendOperation::Max),
-        }
     }
 }
 
@@ -302,13 +275,27 @@ pub(super) fn colors(
     entries: &[ColorEntry],
     area: Option<&Expr>,
     pass: &mut Lowering<'_>,
-) -> Vec<ColorTarget<Names>> {
-    let color = |ColorEntry(entry): &ColorEntry| ColorTarget {
-        target: entry.target.clone(),
-        resolve: entry.resolve.clone(),
-        clear: clear(entry.load.as_ref(), 0.0, area, pass),
-        blend: entry.blend.map(Blend::state),
-        write: entry.write.0,
+) -> Vec<Option<ColorTarget<Names>>> {
+    let mut constants: Option<[f64; 4]> = None;
+    let color = |ColorEntry(entry): &ColorEntry| {
+        let condition = entry.condition.as_ref();
+        if !condition.is_none_or(|condition| pass.condition(condition)) {
+            return None;
+        }
+        let constant = entry.blend.as_ref().and_then(|blend| blend.constant(pass));
+        if let Some(constant) = &constant
+            && *constants.get_or_insert(constant.value) != constant.value
+        {
+            pass.report(DocumentError::BlendConstants(constant.span.clone()));
+        }
+        Some(ColorTarget {
+            target: entry.target.clone(),
+            resolve: entry.resolve.clone(),
+            clear: clear(entry.load.as_ref(), 0.0, area, pass),
+            blend: entry.blend.as_ref().map(|blend| blend.state(pass)),
+            blend_constant: constant.map(|constant| constant.value),
+            write: entry.write.0,
+        })
     };
     entries.iter().map(color).collect()
 }

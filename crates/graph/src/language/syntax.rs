@@ -29,6 +29,8 @@ pub(crate) enum ExprKind {
     Binary(Binary, Box<[Expr; 2]>),
     Ternary(Box<[Expr; 3]>),
     Call(Function, Vec<Expr>),
+    /// One of several numbers: `status.size.x`.
+    Component(Box<Expr>, Component),
 }
 
 /// Thing whose attribute an expression asks for.
@@ -98,11 +100,22 @@ spelt! {
     LessEqual = "<=" 2,
     Greater = ">" 2,
     GreaterEqual = ">=" 2,
-    Add = "+" 3,
-    Subtract = "-" 3,
-    Multiply = "*" 4,
-    Divide = "/" 4,
-    Remainder = "%" 4,
+    ShiftLeft = "<<" 3,
+    ShiftRight = ">>" 3,
+    Add = "+" 4,
+    Subtract = "-" 4,
+    Multiply = "*" 5,
+    Divide = "/" 5,
+    Remainder = "%" 5,
+}
+
+spelt! {
+    /// Component of a vector or size.
+    Component:
+    X = "x",
+    Y = "y",
+    Z = "z",
+    W = "w",
 }
 
 spelt! {
@@ -261,6 +274,20 @@ impl Expr {
         }
     }
 
+    /// Returns the param's name and the component if the expression may be one component of a
+    /// param: `direction.x`. It is none if a param has the whole text as its name, `left.x`.
+    pub(crate) fn as_component(&self) -> Option<(&str, Component)> {
+        let (owner, component) = self.as_param()?.rsplit_once('.')?;
+        Some((owner, Component::named(component)?.1))
+    }
+
+    /// True if the expression is `frame.index`: the number of the frame, unless an entry called
+    /// `frame` is repeated around it.
+    pub(crate) fn is_frame_number(&self) -> bool {
+        let frame = |name: &Name| name.as_str() == "frame";
+        matches!(&self.kind, ExprKind::Attribute(Subject::Repetition(Some(name)), _) if frame(name))
+    }
+
     /// True if the expression asks for an attribute of a material. A count of this kind may be 0
     /// without a mistake of the document.
     pub(crate) fn is_taken(&self) -> bool {
@@ -273,7 +300,12 @@ impl Expr {
     /// materials in it.
     pub(crate) fn visit<'a>(&'a self, each: &mut dyn FnMut(Leaf<'a>)) {
         match &self.kind {
-            ExprKind::Param(name) => each(Leaf::Param(name)),
+            ExprKind::Param(name) => {
+                each(Leaf::Param(name));
+                if let Some((owner, _)) = self.as_component() {
+                    each(Leaf::Param(owner));
+                }
+            }
             ExprKind::Word(word) => each(Leaf::Word(word)),
             ExprKind::Constant(name) => each(Leaf::Constant(name)),
             ExprKind::Has(feature) => each(Leaf::Has(*feature)),
@@ -282,7 +314,7 @@ impl Expr {
             ExprKind::Tuple(list) | ExprKind::Call(_, list) => {
                 list.iter().for_each(|expr| expr.visit(each));
             }
-            ExprKind::Unary(_, operand) => operand.visit(each),
+            ExprKind::Unary(_, operand) | ExprKind::Component(operand, _) => operand.visit(each),
             ExprKind::Binary(_, operands) => operands.iter().for_each(|expr| expr.visit(each)),
             ExprKind::Ternary(operands) => operands.iter().for_each(|expr| expr.visit(each)),
         }
@@ -301,6 +333,9 @@ impl Expr {
             ExprKind::Call(function, exprs) => format!("{}({})", function.as_str(), list(exprs)),
             ExprKind::Unary(Unary::Minus, operand) => format!("-{}", operand.canonical(leaf)),
             ExprKind::Unary(Unary::Not, operand) => format!("!{}", operand.canonical(leaf)),
+            ExprKind::Component(operand, component) => {
+                format!("({}).{}", operand.canonical(leaf), component.as_str())
+            }
             ExprKind::Binary(operator, operands) => {
                 let [a, b] = operands.each_ref().map(|expr| expr.canonical(leaf));
                 format!("({a} {} {b})", operator.as_str())

@@ -136,3 +136,12 @@ impl fmt::Display for Value {
         }
     }
 }
+
+/// Returns the least common multiple of two numbers above 0; `u64::MAX` where it is larger.
+pub(crate) fn least_common_multiple(a: u64, b: u64) -> u64 {
+    let (mut divisor, mut rest) = (a, b);
+    while rest > 0 {
+        (divisor, rest) = (rest, divisor % rest);
+    }
+    (a / divisor).saturating_mul(b)
+}

@@ -102,7 +102,7 @@ fn colors(
     draw: &Draw<Names>,
     program: Option<&LinkedProgram>,
     scope: &mut PassScope<'_>,
-) -> Reported<Vec<ColorTarget<Ids>>> {
+) -> Reported<Vec<Option<ColorTarget<Ids>>>> {
     let outputs = program.and_then(|program| {
         let entry = *program.entries.last()?;
         let outputs = Varyings::outputs(program.shader.module(), entry).locations;
@@ -118,6 +118,10 @@ fn colors(
     let mut bytes_per_sample = 0u32;
     let mut wrong = None;
     for (location, color) in (0u32..).zip(&draw.colors) {
+        let Some(color) = color else {
+            colors.push(None);
+            continue;
+        };
         let linked = match link_color(color, scope) {
             Ok(linked) => linked,
             Err(reported) => {
@@ -136,7 +140,7 @@ fn colors(
             let checked = check_output(location, &color.target, format, outputs, span);
             wrong = scope.check(checked).err().or(wrong);
         }
-        colors.push(linked);
+        colors.push(Some(linked));
     }
     let targets = draw.colors.len() as u32;
     if let Some((outputs, span)) = outputs.as_ref().filter(|_| draw.canvas.is_none()) {
@@ -185,6 +189,7 @@ fn link_color(color: &ColorTarget<Names>, scope: &mut PassScope<'_>) -> Reported
         resolve,
         clear: color.clear,
         blend: color.blend,
+        blend_constant: color.blend_constant,
         write: color.write,
     })
 }
@@ -370,8 +375,8 @@ fn attachment(reference: &Reference, scope: &mut PassScope<'_>) -> Reported<Atta
 /// Checks that all attachments of a draw have the same size and number of samples, that the area
 /// lies within them, and that depth and stencil are the same texture.
 fn alike(draw: &Draw<Ids>, scope: &PassScope<'_>) -> Result<(), LinkError> {
-    let colors = draw.colors.iter().map(|color| &color.target);
-    let resolved = draw.colors.iter();
+    let colors = draw.colors.iter().flatten().map(|color| &color.target);
+    let resolved = draw.colors.iter().flatten();
     let resolved = resolved.filter_map(|color| color.resolve.as_ref());
     let depth = draw.depth.as_ref().map(|depth| &depth.target);
     let stencil = draw.stencil.as_ref().map(|stencil| &stencil.target);

@@ -49,7 +49,7 @@ pub(super) fn texture(
     let Some(canvas) = &draw.canvas else {
         return Ok(None);
     };
-    let colors = draw.colors.iter().map(|color| &color.target);
+    let colors = draw.colors.iter().flatten().map(|color| &color.target);
     let depth = draw.depth.as_ref().map(|depth| &depth.target);
     let stencil = draw.stencil.as_ref().map(|stencil| &stencil.target);
     if let Some(target) = colors.chain(depth).chain(stencil).next() {

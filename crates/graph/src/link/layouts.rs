@@ -417,7 +417,9 @@ fn content(
     declared: Option<Span>,
 ) -> Result<Arc<[u8]>, LayoutError> {
     let Some(view) = seen.first() else {
-        return Ok(Arc::from([]));
+        // No shader sees it: these are arguments of draws or dispatches.
+        let words = data.iter().flatten().map(|number| *number as u32);
+        return Ok(words.flat_map(u32::to_le_bytes).collect());
     };
     let wrong = |what: String| LayoutError::Data {
         name: name.to_owned(),

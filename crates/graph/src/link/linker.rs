@@ -3,6 +3,7 @@
 use super::{
     capture,
     pass::{Access, LinkedPass},
+    rounds,
     scope::PassScope,
     steps,
 };
@@ -153,8 +154,11 @@ fn link_pass<'a>(mut pass: LoweredPass<'a>, scope: &mut PassScope<'a>) -> Report
     let flat = pass.flat;
     let mut linked = steps::link(flat.name, flat.pass.kind, &pass.steps, scope)?;
     linked.run = flat.run;
-    linked.enabled = flat.enabled;
+    linked.turns = flat.turns;
     scope.unasked()?;
+    if let (Some(round), Some(_)) = (flat.round, flat.pass.overwrites.first()) {
+        return Err(rounds::refused("`overwrites`", &round, scope));
+    }
     overwrites(&mut linked, &flat.pass.overwrites, scope)?;
     if let Some(reads) = &flat.pass.reads {
         self::reads(&linked, reads, scope)?;

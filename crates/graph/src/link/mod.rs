@@ -14,6 +14,7 @@ pub(crate) mod linker;
 pub(crate) mod params;
 pub(crate) mod pass;
 mod programs;
+mod rounds;
 mod scope;
 mod steps;
 mod textures;

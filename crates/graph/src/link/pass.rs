@@ -46,9 +46,10 @@ pub struct LinkedPass {
     pub accesses: Vec<Access>,
     /// Frames in which the pass runs, if it is [live](crate#terms).
     pub run: Run,
-    /// Value of the expression in [`Run::When`] with the plan's params; true for every other
-    /// [`Run`].
-    pub enabled: bool,
+    /// Values of the expression in [`Run::When`] with the plan's params, frame by frame until they
+    /// repeat: the pass runs in the frame `n`, counted from 0 since its [executor](crate#terms) was
+    /// made, if the value `n % turns.len()` is true. One true for every other [`Run`].
+    pub turns: Vec<bool>,
 }
 
 impl LinkedPass {

@@ -12,7 +12,10 @@ use crate::{
     errors::{instantiate::InterfaceError, link::LinkError},
     expressions::eval,
     instantiate::{
-        flat::Inherited, lower::LoweredPass, params::BoundParam, scopes::Position,
+        flat::{Inherited, Round},
+        lower::LoweredPass,
+        params::BoundParam,
+        scopes::Position,
         symbols::SymbolTable,
     },
     kinds::step::{Operand, Program},
@@ -50,6 +53,10 @@ pub(super) struct PassScope<'a> {
     pub own_shader: Option<Located<String>>,
     /// Names of the bindings and values that shaders of the pass have asked for.
     asked: BTreeSet<String>,
+    /// The round that the pass belongs to, of a group that ends early.
+    pub round: Option<Round<'a>>,
+    /// Buffers `goes` of the rounds that a pass has begun.
+    pub begun: BTreeSet<ResourceId>,
 }
 
 /// A value that a shader asks for by name.
@@ -77,6 +84,8 @@ impl<'a> PassScope<'a> {
             inherited_set: Vec::new(),
             own_shader: None,
             asked: BTreeSet::new(),
+            round: None,
+            begun: BTreeSet::new(),
         }
     }
 
@@ -90,10 +99,12 @@ impl<'a> PassScope<'a> {
         self.inherited_set = std::mem::take(&mut pass.flat.set);
         self.own_shader = Some(pass.shader.clone());
         self.asked.clear();
+        self.round = pass.flat.round;
     }
 
     /// Begins the linking of a capture, whose source and destination are known by id.
     pub fn enter_capture(&mut self, from: Target, to: Target) {
+        self.round = None;
         self.scratch = vec![from, to];
     }
 
@@ -166,6 +177,11 @@ impl<'a> PassScope<'a> {
     /// Returns the resource, or part of it, that a reference in the pass's document means.
     pub fn resolve(&mut self, reference: &Reference) -> Reported<Target> {
         self.symbols.resolve(reference, self.position)
+    }
+
+    /// Returns the resource, or part of it, that a reference at another position means.
+    pub fn resolve_at(&mut self, reference: &Reference, position: Position) -> Reported<Target> {
+        self.symbols.resolve(reference, position)
     }
 
     /// Resolves a full name, or a reference of the root document, from a request; `None` if the

@@ -2,7 +2,8 @@
 
 use super::{
     attachments, cpu, dispatch,
-    pass::{Ids, LinkedPass},
+    pass::{Ids, LinkedPass, Usage},
+    rounds,
     scope::PassScope,
     transfers,
 };
@@ -26,15 +27,38 @@ pub(super) fn link(
     scope.accesses = Vec::new();
     let mut linked = Vec::with_capacity(steps.len());
     let mut wrong = None;
-    for (index, step) in steps.iter().enumerate() {
+    let round = scope.round;
+    if let Some(round) = round.filter(|round| scope.begun.insert(round.goes)) {
+        let begun = rounds::begin(&round, scope);
+        wrong = push(begun, 0, &mut linked, scope).err();
+    }
+    for step in steps {
         let first = scope.accesses.len();
-        match self::step(step, scope) {
-            Ok(step) => linked.push(step),
-            Err(reported) => wrong = Some(reported),
+        let mut step = self::step(step, scope);
+        if let (Ok(linked_step), Some(round)) = (step.clone(), &round) {
+            let mut own = scope.accesses.split_off(first);
+            let guarded = rounds::guarded(linked_step, round, scope);
+            step = match guarded {
+                Err(reported) => Err(reported),
+                Ok(Err(step)) => Ok(step),
+                Ok(Ok(guarded)) => {
+                    wrong = push(Ok(guarded.guard), first, &mut linked, scope)
+                        .err()
+                        .or(wrong);
+                    let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
+                    let used = (true, false, false);
+                    let first = scope.accesses.len();
+                    scope.access(&guarded.arguments, used, usage, &round.counter.span);
+                    own.extend(scope.accesses.split_off(first));
+                    Ok(guarded.step)
+                }
+            };
+            let first = scope.accesses.len();
+            scope.accesses.append(&mut own);
+            wrong = push(step, first, &mut linked, scope).err().or(wrong);
+            continue;
         }
-        let own = &mut scope.accesses[first..];
-        own.iter_mut().for_each(|access| access.step = index);
-        wrong = feedback(first, scope).err().or(wrong);
+        wrong = push(step, first, &mut linked, scope).err().or(wrong);
     }
     let pass = LinkedPass {
         name,
@@ -42,9 +66,23 @@ pub(super) fn link(
         steps: linked,
         accesses: std::mem::take(&mut scope.accesses),
         run: Run::Always,
-        enabled: true,
+        turns: vec![true],
     };
     wrong.map_or(Ok(pass), Err)
+}
+
+/// Appends a step, whose accesses are those from `first` on.
+fn push(
+    step: Reported<Step<Ids>>,
+    first: usize,
+    linked: &mut Vec<Step<Ids>>,
+    scope: &mut PassScope<'_>,
+) -> Reported<()> {
+    let own = &mut scope.accesses[first..];
+    own.iter_mut().for_each(|access| access.step = linked.len());
+    let conflicts = feedback(first, scope);
+    linked.push(step?);
+    conflicts
 }
 
 fn step(step: &Step<Names>, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {

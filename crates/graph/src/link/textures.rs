@@ -130,7 +130,12 @@ fn storage(
     scope: &PassScope<'_>,
 ) -> Result<Bound, TextureMisfit> {
     let format = texture.format;
-    let features = format.guaranteed_format_features(scope.request().features);
+    let features = match scope.symbols().reports.any_adapter {
+        // A device may have any.
+        true => wgt::Features::all(),
+        false => scope.request().features,
+    };
+    let features = format.guaranteed_format_features(features);
     // naga's storage formats bear wgpu's names.
     if declared != format!("{format:?}") {
         return Err(TextureMisfit::StorageFormat(declared.to_owned()));
@@ -142,7 +147,7 @@ fn storage(
     let usages = features.allowed_usages;
     let allowed = usages.contains(TextureUsages::STORAGE_BINDING)
         && (!both || features.flags.contains(Flags::STORAGE_READ_WRITE));
-    if !allowed && !scope.symbols().reports.any_adapter {
+    if !allowed {
         return Err(TextureMisfit::NoStorage);
     }
     if target.part.mips.len() > 1 {

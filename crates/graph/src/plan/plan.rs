@@ -18,6 +18,7 @@ use crate::{
         schedule::Schedule,
         view::GraphView,
     },
+    language::value::least_common_multiple,
     link::{
         params::words,
         pass::{LinkedPass, PassId},
@@ -354,15 +355,23 @@ impl Plan {
 
     /// Returns true if the outputs may differ from frame to frame although the host changes
     /// nothing: a [live](Self::live) pass uses a resource with `keep`, reads a material of the
-    /// graph as it was in the frame before (`.previous`), or binds the uniform `frame`, which holds
-    /// the frame's index and time.
+    /// graph as it was in the frame before (`.previous`), binds the uniform `frame`, which holds
+    /// the frame's index and time, or runs in some frames by their number.
     pub fn remembers(&self) -> bool {
-        self.used().any(|resource| match resource.kind {
+        let remembered = self.used().any(|resource| match resource.kind {
             _ if resource.keep => true,
             ResourceKind::Frame => true,
             ResourceKind::Provided(_) => false,
             _ => matches!(resource.origin, Origin::Previous(_)),
-        })
+        });
+        remembered || self.period() > 1
+    }
+
+    /// Returns the number of frames, 1 to 64, after which the same [live](Self::live) passes run
+    /// again by their conditions on the frame's number; 1 without such conditions.
+    pub fn period(&self) -> usize {
+        let turns = self.live().map(|pass| pass.turns.len() as u64);
+        turns.fold(1, least_common_multiple) as usize
     }
 
     /// Returns the name, format and size of the outputs and captures that can be read back after a
@@ -435,7 +444,7 @@ impl Plan {
 
 fn is_same_pass((one, other): (&LinkedPass, &LinkedPass)) -> bool {
     one.name.value == other.name.value
-        && (one.enabled, &one.run) == (other.enabled, &other.run)
+        && (&one.turns, &one.run) == (&other.turns, &other.run)
         && one.steps == other.steps
         && one.params().eq(other.params())
 }

@@ -56,6 +56,17 @@ pub(crate) struct ImportLine {
 }
 
 impl Expanded {
+    /// Begins the expansion of a file, without text.
+    pub fn new(file: SourceFile) -> Self {
+        Self {
+            text: String::new(),
+            file,
+            pieces: Vec::new(),
+            imports: Vec::new(),
+            constants: Vec::new(),
+        }
+    }
+
     /// Maps a byte range of the expanded text to its place in the file that it came from. A range
     /// that spans several files is taken to lie in the first.
     pub fn locate(&self, range: Range<usize>) -> Span {
@@ -132,13 +143,7 @@ impl<'a> ShaderFiles<'a> {
         }
         let (missing, unreadable) = (ImportError::NoShader, ImportError::Unreadable);
         let file = self.found(name, candidates, missing, unreadable)?;
-        let mut expanded = Expanded {
-            text: String::new(),
-            file: file.clone(),
-            pieces: Vec::new(),
-            imports: Vec::new(),
-            constants: Vec::new(),
-        };
+        let mut expanded = Expanded::new(file.clone());
         let mut seen = vec![file.name.to_string()];
         self.append(&file, replaced, &mut expanded, &mut seen, 0)?;
         Ok(expanded)

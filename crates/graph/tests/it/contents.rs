@@ -264,7 +264,7 @@ fn numbers_that_do_not_fit_their_shader() {
             Code::LayoutMismatch,
         ),
         ("[]", array("f32"), "kernel[0]", Code::Size),
-        ("[\"1\"]", array("f32"), "kernel[0]", Code::Syntax),
+        ("[\"1 > 0\"]", array("f32"), "kernel[0]", Code::Expression),
         ("[1], count: 1", array("f32"), "kernel[0]", Code::Size),
         (
             "[1]",

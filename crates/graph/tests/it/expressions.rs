@@ -79,6 +79,10 @@ fn operators_bind_as_the_table_says() {
         ("false ? 1 : false ? 2 : 3", 3),
         ("true ? false ? 1 : 2 : 3", 2),
         ("1 != 2 && 2 <= 2 && 2 >= 2 && 3 > 2 ? 1 : 2", 1),
+        ("1 << 2 + 1", 8),
+        ("1 << 3 > 7 ? 1 : 2", 1),
+        ("96 >> 2 >> 1", 12),
+        ("10 + (-9 >> 1)", 5),
     ] {
         assert_eq!(value(expr), expected, "{expr}");
     }
@@ -102,6 +106,9 @@ fn whole_numbers_divide_towards_zero_and_become_numbers_where_needed() {
         ("min(3, 2) + 10 * max(3, 2)", 32),
         ("floor(10 * max(0.5, scale * 3))", 15),
         ("floor(log2(32))", 5),
+        ("pow(3, 4) / 2", 40),
+        ("floor(100 * pow(2, -1))", 50),
+        ("floor(pow(2.5, 2))", 6),
         ("floor(1e2)", 100),
         ("1_000", 1000),
         ("9007199254740993 > 9007199254740992 ? 1 : 2", 1),
@@ -134,6 +141,13 @@ fn attributes_of_materials_parts_and_the_viewport() {
         ("fog.size == fog.size - 1 ? 1 : 2", 2),
         ("fog.format == fine.format ? 1 : 2", 2),
         ("fog.format == fog.mip[1].format ? 1 : 2", 1),
+        ("depth.size.x * 100 + depth.size.y", 1207),
+        ("depth.mip[1].size.y", 3),
+        ("fog.size.z", 6),
+        ("viewport.size.x * 100 + viewport.size.y", 2011),
+        ("max(fog.size, 6).y", 6),
+        ("(viewport.size / 2).x", 10),
+        ("floor(pair.x) * 10 + floor(pair.y)", 25),
     ] {
         assert_eq!(value(expr), expected, "{expr}");
     }
@@ -210,6 +224,28 @@ const MISTAKES: &[(&str, Code, &str, &str)] = {
             "plan",
         ),
         ("raduis", UnknownParam, "unknown param `raduis`", "raduis"),
+        (
+            "depth.size.z",
+            Expression,
+            "`depth.size` has no component `z`",
+            "depth.size.z",
+        ),
+        (
+            "radius.x",
+            Expression,
+            "`radius` has no component `x`",
+            "radius.x",
+        ),
+        ("(1 + radius).v", Expression, "`x`, `y`, `z` or `w`", "v"),
+        ("pow(10, 19)", Expression, "larger than", "pow(10, 19)"),
+        ("1 << 63", Expression, "larger than", "1 << 63"),
+        ("1 >> 64", Expression, "larger than", "1 >> 64"),
+        (
+            "1 << scale",
+            Expression,
+            "a whole number is needed",
+            "scale",
+        ),
         ("items", UnknownParam, "`items` is a material", "items"),
         (
             "imgae.width",

@@ -3,7 +3,7 @@
 
 use crate::support::{Files, Triangle, checked, codes, load, names, right};
 use skiagraph_graph::{
-    Code, Ids, ParamValue, PartialBackend, Plan, PlanRequest,
+    Code, Graph, Ids, ParamValue, PartialBackend, Plan, PlanRequest, Registry,
     step::{Draw, DrawCall, Step},
 };
 use wgt::{ColorWrites, TextureAspect};
@@ -80,8 +80,8 @@ fn tests_and_operations_of_a_stencil() {
     let back = face(wgt::CompareFunction::Always, Zero, IncrementWrap, Replace);
     assert_eq!((stencil.state.front, stencil.state.back), (front, back));
     let call = DrawCall::Direct {
-        vertices: 24,
-        instances: 2,
+        vertices: 0..24,
+        instances: 0..2,
     };
     assert_eq!(draw.call, call);
 }
@@ -175,7 +175,8 @@ fn an_area_of_an_atlas_for_each_repetition() {
         .map(|pass| match &pass.steps[0] {
             Step::Draw(draw) => {
                 let depth = draw.depth.as_ref().expect("it has one");
-                assert_eq!((draw.colors[0].clear, depth.clear), (None, None));
+                let color = draw.colors[0].as_ref().expect("it is there");
+                assert_eq!((color.clear, depth.clear), (None, None));
                 draw.area.expect("it has one")
             }
             other => panic!("no draw: {other:?}"),
@@ -225,7 +226,7 @@ fn loads_blends_and_channels_of_a_target() {
         let plan = planned(&target(rest));
         let pass = plan.all_passes().last().expect("there are two").clone();
         match &pass.steps[0] {
-            Step::Draw(draw) => draw.colors[0].clone(),
+            Step::Draw(draw) => draw.colors[0].clone().expect("it is there"),
             other => panic!("no draw: {other:?}"),
         }
     };
@@ -287,7 +288,7 @@ fn fine(fine: &str, image: &str, rest: &str) -> Files {
 #[test]
 fn samples_are_resolved() {
     let plan = planned(&fine("Rgba8Unorm, samples: 4", "Rgba8Unorm", ""));
-    let color = &draw(&plan).colors[0];
+    let color = draw(&plan).colors[0].as_ref().expect("it is there");
     let resolve = color.resolve.as_ref().expect("it is resolved");
     assert_eq!((color.target.samples, resolve.samples), (4, 1));
     assert_eq!(plan.resource(resolve.target.id).name, "image");
@@ -453,4 +454,39 @@ fn a_pass_without_targets_has_memory_of_its_size() {
     let tight = wider.with(|request| request.memory_limit = Some(195));
     let message = tight.expect_err("it is too much").to_string();
     assert!(message.contains("first/canvas"), "{message}");
+}
+
+/// `check`, which knows no device, refuses what no device can run.
+#[test]
+fn storage_that_no_device_has_is_refused_without_one() {
+    let outcome = |format: &str| {
+        let files = Files::graph(&format!(
+            r#"materials: [Texture(name: "image", format: {format})],
+            passes: [Compute(name: "write", dispatch: Over("image.size"))],
+            outputs: ["image"]"#
+        ));
+        let (format, zero) = match format {
+            "Bgra8Unorm" => ("bgra8unorm", "vec4(0.0)"),
+            "R32Uint" => ("r32uint", "vec4(0u)"),
+            _ => ("r8uint", "vec4(0u)"),
+        };
+        let shader = format!(
+            "var image: texture_storage_2d<{format}, write>;
+            @compute @workgroup_size(8, 8) fn main(@builtin(global_invocation_id) at: vec3<u32>) {{
+                textureStore(image, at.xy, {zero});
+            }}"
+        );
+        let request = PlanRequest::new([8, 8], &Triangle).with_any_adapter(true);
+        let files = files.with("write.wgsl", shader);
+        let checked = Graph::check("graph.ron", &Registry::standard(), &files, &request);
+        checked.map(drop).map_err(|errors| errors.to_string())
+    };
+    let refused = outcome("R8Uint").expect_err("it has no storage access");
+    assert!(
+        refused.contains("no storage access of this kind"),
+        "{refused}"
+    );
+    assert_eq!(outcome("R32Uint"), Ok(()));
+    // With a feature that a device may have.
+    assert_eq!(outcome("Bgra8Unorm"), Ok(()));
 }

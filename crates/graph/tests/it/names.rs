@@ -257,7 +257,8 @@ fn constants_of_the_shader_stand_in_its_pass() {
     let skiagraph_graph::step::Step::Draw(draw) = &plan.all_passes()[0].steps[0] else {
         panic!("it draws");
     };
-    assert_eq!(draw.colors[0].clear, Some([4_294_967_295.0; 4]));
+    let color = draw.colors[0].as_ref().expect("it is there");
+    assert_eq!(color.clear, Some([4_294_967_295.0; 4]));
     for constant in ["NOTHIGN", "PAIR"] {
         let diagnostics = checked(&clear(constant));
         assert_eq!(codes(&diagnostics), [Code::Expression], "{constant}");

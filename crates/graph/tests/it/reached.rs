@@ -9,6 +9,7 @@ use std::{collections::BTreeSet, path::Path};
 /// that makes them.
 const BY_HAND: &[(&str, &str)] = &[
     ("DocumentError::Twice", "duplicate_material"),
+    ("DocumentError::BlendConstant", "blend_no_constant"),
     ("ComposeError::NoInclude", "include_missing"),
     ("ComposeError::SameName", "duplicate_pass"),
     ("EvaluationError::Words", "param_cull"),
@@ -21,6 +22,7 @@ const BY_HAND: &[(&str, &str)] = &[
     ("LayoutError::Alignment", "item_alignment"),
     ("LinkError::Alignment", "item_alignment_provided"),
     ("LinkError::SetValue", "set_vector"),
+    ("LinkError::InRounds", "rounds_clear"),
     ("LinkError::CopyFormat", "copy_format"),
     ("LinkError::CopySize", "copy_size"),
     ("LinkError::CopyKinds", "copy_kind"),

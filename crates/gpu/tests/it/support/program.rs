@@ -353,6 +353,17 @@ pub fn any_program() -> impl Strategy<Value = Program> {
                     let run = if kept[target] { pass.run } else { runs[target] };
                     pass.optional &= RUNS[run] != "Once";
                 }
+                // Without a pass that reads it a material may not be cleared first, and is made anew
+                // without that usage: what a pass that ran once has read of it is then gone.
+                if passes.iter().any(|pass| pass.optional) {
+                    let run = |pass: &Pass| match kept[pass.target] {
+                        true => pass.run,
+                        false => runs[pass.target],
+                    };
+                    for pass in passes.iter_mut().filter(|pass| RUNS[run(pass)] == "Once") {
+                        pass.reads.retain(|read| !matches!(read, Read::Now(_)));
+                    }
+                }
                 // A pass that comes may make others needed: a history that one of those reads would
                 // begin with that plan.
                 if passes.iter().any(|pass| {

@@ -325,13 +325,26 @@ pub fn any_program() -> impl Strategy<Value = Program> {
             MATERIALS,
         ),
         prop::collection::vec(prop::bool::weighted(0.3), MATERIALS),
-        prop::collection::vec(any_pass(), 1..7),
+        (prop::collection::vec(any_pass(), 1..12), any::<bool>()),
         prop::collection::btree_set(0..MATERIALS, 1..3),
         prop::collection::vec((any_event(), any_loss()), 3..9),
         prop_oneof![Just(None), Just(Some(0xa5))],
     )
         .prop_map(
-            |(runs, mut kept, mut passes, mut outputs, events, poison)| {
+            |(mut runs, mut kept, (mut passes, is_plain), mut outputs, events, poison)| {
+                if is_plain {
+                    // Nothing outlives the frame but the output: most of the memory is shared.
+                    (runs, kept) = (vec![0; MATERIALS], vec![false; MATERIALS]);
+                    outputs = passes.last().map(|pass| pass.target).into_iter().collect();
+                    for pass in &mut passes {
+                        pass.optional = false;
+                        for read in &mut pass.reads {
+                            if let Read::Before(material) = *read {
+                                *read = Read::Now(material);
+                            }
+                        }
+                    }
+                }
                 // A material that is read must be written, whichever passes are there.
                 for (material, kept) in kept.iter_mut().enumerate() {
                     let writes = |pass: &Pass| pass.target == material && !pass.optional;
@@ -352,6 +365,17 @@ pub fn any_program() -> impl Strategy<Value = Program> {
                     // make it.
                     let run = if kept[target] { pass.run } else { runs[target] };
                     pass.optional &= RUNS[run] != "Once";
+                }
+                // Without a pass that reads it a material may not be cleared first, and is made anew
+                // without that usage: what a pass that ran once has read of it is then gone.
+                if passes.iter().any(|pass| pass.optional) {
+                    let run = |pass: &Pass| match kept[pass.target] {
+                        true => pass.run,
+                        false => runs[pass.target],
+                    };
+                    for pass in passes.iter_mut().filter(|pass| RUNS[run(pass)] == "Once") {
+                        pass.reads.retain(|read| !matches!(read, Read::Now(_)));
+                    }
                 }
                 // A pass that comes may make others needed: a history that one of those reads would
                 // begin with that plan.

@@ -149,10 +149,12 @@ pub(super) fn refused(
 /// Resolves the counter, which must be a buffer, all of it: an item may begin where none is bound.
 fn counter(round: &Round<'_>, scope: &mut PassScope<'_>) -> Reported<Target> {
     let target = scope.resolve_at(round.counter, round.position)?;
-    let kind = &scope.get(target.id).kind;
-    let is_whole = target.part == SubresourceRange::WHOLE;
-    if !is_whole || !matches!(kind, ResourceKind::Buffer(_)) {
-        let kind = if is_whole { kind.describe() } else { "a part" };
+    let wrong = match &scope.get(target.id).kind {
+        ResourceKind::Buffer(_) if target.part == SubresourceRange::WHOLE => None,
+        ResourceKind::Buffer(_) => Some("a part of a buffer"),
+        kind => Some(kind.describe()),
+    };
+    if let Some(kind) = wrong {
         return Err(scope.report(LinkError::Counter(round.counter.located(), kind)));
     }
     let (base, span) = (scope.symbols().base(target.id), &round.counter.span);

@@ -404,13 +404,14 @@ fn extras_of_gltf_nodes_are_followed() {
 
 /// Answers of a preset for parts, held against the oracle over the mesh as it is now.
 fn parts_are_right(provider: &mut SceneProvider, scene: &Scene, preset: &str) -> Statistics {
+    let (preset, engine) = preset.split_once(' ').unwrap_or((preset, ""));
     let path = format!("pipelines/{preset}.ron");
     let camera = scene.views[0].camera(VIEWPORT);
     provider.set_camera(&camera);
     let plan = graphs::plan(&path, provider, VIEWPORT, |request| {
         request.captures.push(Capture::new("primitive"));
-        if preset == "rt_light_space" {
-            request.params.insert("engine".into(), word("light_space"));
+        if !engine.is_empty() {
+            request.params.insert("engine".into(), word(engine));
         }
     });
     let names = ["visibility", "status", "primitive"];
@@ -454,7 +455,7 @@ fn parts_cast_and_receive_as_their_meshes_say_while_they_come_move_and_go() {
     for turn in 0..3 {
         maps[2] = at(3.0 - f64::from(turn), 2.0);
         provider.set_transforms(&maps).unwrap();
-        for preset in ["rt", "light_buffer", "crsm"] {
+        for preset in ["rt", "rt light_space", "light_buffer", "crsm"] {
             shadows.push(parts_are_right(&mut provider, &scene, preset).pixels.shadow);
         }
     }
@@ -471,7 +472,7 @@ fn parts_cast_and_receive_as_their_meshes_say_while_they_come_move_and_go() {
     let seen = parts_are_right(&mut provider, &scene, "rt").pixels.shadow;
     assert!(seen > shadows[0], "{seen} {shadows:?}");
     provider.add_part(&ghost, &at(0.0, 5.0)).unwrap();
-    for preset in ["rt", "light_buffer", "crsm"] {
+    for preset in ["rt", "rt light_space", "light_buffer", "crsm"] {
         let counts = parts_are_right(&mut provider, &scene, preset);
         assert!(counts.pixels.shadow > 100, "{counts:?}");
     }

@@ -4,7 +4,7 @@
 
 use super::{
     lifetimes::Lifetimes,
-    placing::{Candidate, Placing, Slot, candidates},
+    placing::{ALIGNMENT, Candidate, Placing, Slot, candidates},
     view::GraphView,
 };
 use crate::{
@@ -45,6 +45,8 @@ pub enum Alone {
     WrittenInPart,
     /// Every other resource that could share is used while this one is needed.
     Overlaps,
+    /// It takes less than 256 bytes, and no other buffer of its size and usage could share.
+    Small,
     /// Every other resource with free memory is used by one of the steps that use this one, or has
     /// its clear encoded ahead of them.
     UsedTogether,
@@ -59,6 +61,7 @@ impl Alone {
         match &resource.kind {
             _ if !is_apart => Self::Overlaps,
             ResourceKind::Texture(_) => Self::OneOfItsKind,
+            kind if kind.bytes() < ALIGNMENT => Self::Small,
             _ => Self::UsedTogether,
         }
     }
@@ -70,6 +73,7 @@ impl Alone {
             Self::Grows => "grows",
             Self::WrittenInPart => "may be written in part",
             Self::Overlaps => "overlaps all others",
+            Self::Small => "small",
             Self::UsedTogether => "used together",
             Self::OneOfItsKind => "one of its kind",
         }

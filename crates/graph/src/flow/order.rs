@@ -69,6 +69,9 @@ struct State {
 /// and only as far as no pass with a mistake can have written the content.
 pub(crate) fn order(view: GraphView<'_>, first_invalid: usize, reports: &mut Reports) -> Order {
     let (order, uninitialized) = walk(view, |_| true);
+    if uninitialized.is_empty() {
+        return order;
+    }
     let (_, in_file_order) = writers(view, &order.subresources);
     let is_complete = first_invalid == view.passes.len();
     for (reader, access) in uninitialized {

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 /// Every place of a buffer in an allocation is a multiple of this number of bytes: the greatest
 /// alignment that a device may ask for in bindings.
-const ALIGNMENT: u64 = 256;
+pub(super) const ALIGNMENT: u64 = 256;
 
 /// A texture or buffer of the graph that needs memory.
 #[derive(Clone)]
@@ -47,11 +47,15 @@ impl Candidate<'_> {
     }
 
     /// True if both resources may be in one texture or buffer. A device knows the usage of a buffer
-    /// as a whole, so no step may use both.
+    /// as a whole, so no step may use both; a few bytes are not worth the usages of another buffer.
     fn may_join(&self, other: &Self) -> bool {
+        let is_small = self.bytes.min(other.bytes) < ALIGNMENT;
         match &self.resource.kind {
-            ResourceKind::Texture(_) => self.is_alike(other) && self.is_apart(other),
-            _ => self.is_apart(other) || !self.steps.iter().any(|step| other.steps.contains(step)),
+            ResourceKind::Buffer(_) if !is_small => {
+                let mut steps = self.steps.iter();
+                self.is_apart(other) || !steps.any(|step| other.steps.contains(step))
+            }
+            _ => self.is_alike(other) && self.is_apart(other),
         }
     }
 }

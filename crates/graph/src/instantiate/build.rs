@@ -21,7 +21,11 @@ use crate::{
     },
     errors::{evaluation::EvaluationError, instantiate::InterfaceError},
     expressions::eval,
-    language::{name::Name, syntax::Expr, value::least_common_multiple},
+    language::{
+        name::Name,
+        syntax::{Expr, Reference},
+        value::least_common_multiple,
+    },
     param::ParamType,
     provider::Import,
     request::PlanRequest,
@@ -413,31 +417,12 @@ impl<'a> Builder<'a> {
                     }
                 };
                 let position = Position { scope, index: None };
-                let round = entry.rounds.as_ref().map(|counter| Round {
-                    counter,
-                    position,
-                    // A slash stands in no name: nothing in a document can mean this buffer.
-                    goes: self.symbols.add(Resource::new(
-                        format!("{name}/goes"),
-                        ResourceKind::Buffer(Buffer {
-                            count: Some(1),
-                            ..Buffer::default()
-                        }),
-                        Origin::Own,
-                    )),
-                });
-                if let (Some(inner), Some(outer)) = (&round, &context.round) {
-                    let counters = [inner, outer].map(|round| round.counter.located());
-                    return Err(self
-                        .symbols
-                        .reports
-                        .report(InterfaceError::RoundsInRounds(counters)));
-                }
+                let round = self.round(entry, &name, position, context)?;
                 let inner = EntryContext {
                     scope,
                     prefix: format!("{name}."),
                     run,
-                    round: round.or(context.round),
+                    round,
                     bind: self.say(&entry.bind, position, entry, &context.bind),
                     set: self.say(&entry.set, position, entry, &context.set),
                 };
@@ -456,6 +441,35 @@ impl<'a> Builder<'a> {
                 self.include(entry, include, position, &context)
             }
         }
+    }
+
+    /// Returns the round that the entries of a group belong to, of this group or one around it.
+    fn round(
+        &mut self,
+        group: &'a Entry,
+        name: &str,
+        position: Position,
+        context: &EntryContext<'a>,
+    ) -> Reported<Option<Round<'a>>> {
+        let Some(counter) = &group.rounds else {
+            return Ok(context.round);
+        };
+        if let Some(outer) = &context.round {
+            let counters = [counter, outer.counter].map(Reference::located);
+            let error = InterfaceError::RoundsInRounds(counters);
+            return Err(self.symbols.reports.report(error));
+        }
+        let kind = ResourceKind::Buffer(Buffer {
+            count: Some(1),
+            ..Buffer::default()
+        });
+        // A slash stands in no name: nothing in a document can mean this buffer.
+        let goes = Resource::new(format!("{name}/goes"), kind, Origin::Own);
+        Ok(Some(Round {
+            counter,
+            position,
+            goes: self.symbols.add(goes),
+        }))
     }
 
     /// Adds one repetition of an include and returns the names that it gives. If the include has no

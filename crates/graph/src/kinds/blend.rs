@@ -27,6 +27,7 @@ impl<'de> Deserialize<'de> for Blend {
 /// How what is drawn is mixed with what is there.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "BlendWord"))]
 #[serde(rename = "blend")]
 pub(super) enum BlendWord {
     Alpha,
@@ -63,6 +64,7 @@ pub(super) struct BlendFields {
 /// Blending of alpha, where it is another than that of the colours.
 #[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(rename = "BlendAlpha"))]
 #[serde(rename = "alpha", deny_unknown_fields)]
 struct BlendAlpha {
     /// Factor of what is drawn; `One` without it.

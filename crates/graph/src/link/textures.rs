@@ -130,10 +130,11 @@ fn storage(
     scope: &PassScope<'_>,
 ) -> Result<Bound, TextureMisfit> {
     let format = texture.format;
-    let features = match scope.symbols().reports.any_adapter {
+    let features = if scope.symbols().reports.any_adapter {
         // A device may have any.
-        true => wgt::Features::all(),
-        false => scope.request().features,
+        wgt::Features::all()
+    } else {
+        scope.request().features
     };
     let features = format.guaranteed_format_features(features);
     // naga's storage formats bear wgpu's names.

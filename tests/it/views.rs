@@ -334,8 +334,11 @@ fn other_lights_than_planned_are_named() {
     let relies_on = |executor: &Executor| -> Vec<String> {
         executor.plan().relies_on().keys().cloned().collect()
     };
-    assert_eq!(relies_on(&executor), ["lights", "scene.masks"]);
-    assert_eq!(relies_on(&of_four), ["scene.masks"]);
+    assert_eq!(
+        relies_on(&executor),
+        ["lights", "scene.masks", "scene.shadows"]
+    );
+    assert_eq!(relies_on(&of_four), ["scene.masks", "scene.shadows"]);
     for lights in [&five[..3], &five] {
         provider.set_lights(lights).unwrap();
         let error = executor.refresh(&mut provider).unwrap_err();

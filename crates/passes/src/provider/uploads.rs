@@ -39,32 +39,23 @@ pub(super) struct Facts {
     pub masks: Vec<u32>,
     pub shadows: Vec<u32>,
     /// Casters, of a mesh with such words.
-    listed: Vec<u32>,
+    listed: Option<Vec<u32>>,
 }
 
 impl Facts {
     pub fn new(mesh: &Mesh) -> Self {
         let shadows = shadow_words(mesh);
-        let listed = if shadows.is_empty() {
-            Vec::new()
-        } else {
-            mesh.casters()
-        };
-        let masks = mask_words(mesh);
         Self {
-            masks,
+            masks: mask_words(mesh),
+            listed: (!shadows.is_empty()).then(|| mesh.casters()),
             shadows,
-            listed,
         }
     }
 
     /// Number of triangles that cast shadows.
     pub fn casters(&self, mesh: &Mesh) -> usize {
-        if self.shadows.is_empty() {
-            mesh.triangles.len()
-        } else {
-            self.listed.len()
-        }
+        let listed = self.listed.as_ref();
+        listed.map_or(mesh.triangles.len(), Vec::len)
     }
 }
 
@@ -210,10 +201,9 @@ impl Uploads {
             let [a, b, c] = mesh.triangles[id as usize];
             [a, b, c, id]
         };
-        let mut casters: Vec<[u32; 4]> = if self.facts.shadows.is_empty() {
-            (0..mesh.triangles.len() as u32).map(item).collect()
-        } else {
-            self.facts.listed.iter().copied().map(item).collect()
+        let mut casters: Vec<[u32; 4]> = match &self.facts.listed {
+            Some(listed) => listed.iter().copied().map(item).collect(),
+            None => (0..mesh.triangles.len() as u32).map(item).collect(),
         };
         if casters.is_empty() {
             casters.push([u32::MAX; 4]);

@@ -194,6 +194,8 @@ struct Placing<'a> {
     node: DMat4,
     /// Its instances, as its node sees them.
     instances: Vec<DMat4>,
+    /// The role in shadows that its node or its mesh gives it.
+    role: Option<Shadows>,
 }
 
 /// The arrays of a primitive, by vertex but for the indices.
@@ -218,6 +220,7 @@ impl<'a> Import<'a> {
                     joints: None,
                     node: DMat4::IDENTITY,
                     instances: vec![DMat4::IDENTITY],
+                    role: self.beside.mesh_roles.get(&mesh.index()).copied(),
                 };
                 self.read_mesh(&mesh, &placing)?;
             }
@@ -227,7 +230,6 @@ impl<'a> Import<'a> {
             let Some(mesh) = node.mesh() else { continue };
             let placing = self.placing(node, &mesh, nodes);
             let placing = placing.map_err(|why| (format!("node {}", node.index()), why))?;
-            let first = self.builder.triangles();
             if nodes.moved.contains(&node.index()) {
                 let shared_table = self.builder.positions.weld_to(Known::default());
                 self.read_mesh(&mesh, &placing)?;
@@ -235,12 +237,6 @@ impl<'a> Import<'a> {
             } else {
                 self.read_mesh(&mesh, &placing)?;
             }
-            let roles = &self.beside.roles;
-            let role = roles
-                .get(&node.index())
-                .or(self.beside.mesh_roles.get(&mesh.index()));
-            self.roles
-                .extend(role.map(|role| (first..self.builder.triangles(), *role)));
         }
         Ok(())
     }
@@ -265,21 +261,32 @@ impl<'a> Import<'a> {
             }
             None => vec![DMat4::IDENTITY],
         };
+        let Beside {
+            roles, mesh_roles, ..
+        } = self.beside;
         Ok(Placing {
             group: group(mesh, node.name()),
             weights: node.weights().or(mesh.weights()).unwrap_or_default(),
             joints: joints.transpose()?,
             node: nodes.worlds.get(&node.index()).copied().unwrap_or_default(),
             instances,
+            role: roles
+                .get(&node.index())
+                .or(mesh_roles.get(&mesh.index()))
+                .copied(),
         })
     }
 
     fn read_mesh(&mut self, mesh: &gltf::Mesh<'_>, placing: &Placing<'_>) -> Result<(), Fault> {
+        let first = self.builder.triangles();
         for primitive in mesh.primitives() {
             let place = format!("mesh {}, primitive {}", mesh.index(), primitive.index());
             let read = self.read_primitive(&primitive, placing);
             read.map_err(|why| (place, why))?;
         }
+        let triangles = first..self.builder.triangles();
+        self.roles
+            .extend(placing.role.map(|role| (triangles, role)));
         Ok(())
     }
 

@@ -185,7 +185,7 @@ fn numbers_of_lights_are_tried() {
         &folder,
         "check rt",
         0,
-        "rt: fine, 7 passes for 64×64 pixels, a small scene and one light",
+        "rt: fine, 6 passes for 64×64 pixels, a small scene and one light",
     );
 }
 

@@ -147,7 +147,10 @@ fn graph_draws_without_a_gpu_and_writes_whole_files() {
     assert_eq!(
         culled,
         [
+            "gbuffer.visibility_buffer.shading_normal",
+            "gbuffer.surface",
             "turn[0].fill_rays.dispatch_arguments",
+            "turn[0].write_rays",
             "turn[0].trace_rays",
             "turn[0].fix_pixels"
         ]
@@ -189,7 +192,7 @@ fn show_writes_out_what_a_document_extends_with_its_origins() {
     assert!(own.contains("extends: \"crsm.ron\""), "{own}");
     // Behind it, as comments, what runs.
     for part in [
-        "//   detect_uncertain\n//     reads camera, inner, light, map_fits, outer, position",
+        "//   detect_uncertain\n//     reads camera, inner, light, map_fits, outer, primitive",
         "\n//     writes status, visibility\n",
         "\n// caster_turns = 1\n",
     ] {

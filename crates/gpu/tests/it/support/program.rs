@@ -366,8 +366,8 @@ pub fn any_program() -> impl Strategy<Value = Program> {
                     let run = if kept[target] { pass.run } else { runs[target] };
                     pass.optional &= RUNS[run] != "Once";
                 }
-                // Without a pass that reads it a material may not be cleared first, and is made anew
-                // without that usage: what a pass that ran once has read of it is then gone.
+                // Without a pass that reads it a material may not be cleared first, and is made
+                // anew without that usage: what a pass that ran once has read of it is then gone.
                 if passes.iter().any(|pass| pass.optional) {
                     let run = |pass: &Pass| match kept[pass.target] {
                         true => pass.run,

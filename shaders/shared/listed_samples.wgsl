@@ -26,15 +26,16 @@ fn ray_limit() -> u32 {
 }
 
 fn ray_of(index: u32) -> AskedRay {
-    let place = ray_pixels[index % asked_count];
-    let sample = params.first + index / asked_count;
+    let part = divided(index, asked_count);
+    let place = ray_pixels[part.y];
+    let sample = params.first + part.x;
     let square = stratum_point(sample, samples_needed(params.samples), random_pair(place, sample));
     let asked = pixel_ray(listed_pixel(place, textureDimensions(primitive).x));
     return AskedRay(aimed(asked.ray, disk_point(square)), asked.skipped);
 }
 
 fn take(index: u32, hit: Hit) {
-    let slot = index % asked_count;
+    let slot = divided(index, asked_count).y;
     if hit.primitive == NO_PRIMITIVE {
         atomicAdd(&seen[slot], 1u);
     } else if hit.primitive == UNANSWERED {

@@ -17,6 +17,14 @@ fn outcome_bits(primitive: u32) -> u32 {
 }
 
 fn listed_pixel(entry: u32, width: u32) -> vec2<u32> {
-    let place = entry & PLACE;
-    return vec2(place % width, place / width);
+    return divided(entry & PLACE, width).yx;
+}
+
+// Returns the quotient, below 2^20, and the remainder of numbers below 2^31. A quotient of floats
+// is off by one at most; some adapters divide integers one by one.
+fn divided(a: u32, b: u32) -> vec2<u32> {
+    let near = u32(f32(a) / f32(b));
+    let rest = i32(a - near * b);
+    let quotient = select(near + select(0u, 1u, rest >= i32(b)), near - 1u, rest < 0);
+    return vec2(quotient, a - quotient * b);
 }

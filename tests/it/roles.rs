@@ -481,7 +481,7 @@ fn parts_cast_and_receive_as_their_meshes_say_while_they_come_move_and_go() {
 /// Ray queries meet casters alone; a suite of its own, as those of `ray_query`.
 #[test]
 #[ignore = "an adapter with ray queries: `.ci/run` runs it on Mesa 25"]
-fn ray_queries_of_roles_agree_with_the_oracle() {
+fn by_ray_query_roles_agree_with_the_oracle() {
     let scene = park();
     let mut bench = Bench::new(&scene, VIEWPORT);
     let counts = bench.judge("rt", &[("engine", word("ray_query"))]);

@@ -5,16 +5,43 @@ use crate::support::{
     graphs::{self, Extended, run_text, trace, trace_all, trace_by},
     meshes,
     random::Random,
+    scenes::load,
 };
 use glam::{DVec3, Vec3};
-use skiagraph_graph::Capture;
-use skiagraph_passes::SceneProvider;
+use skiagraph_graph::{Capture, Graph, PlanRequest};
+use skiagraph_passes::{SceneProvider, registry};
 use skiagraph_reference::{Error, Oracle, OracleMode, Progress, Statistics, statistics};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use std::sync::Arc;
 
 /// Weight by which a ray must miss or hit a triangle's border for f32 to be sure of it.
 const BORDER: f64 = 1e-5;
+
+#[test]
+fn rays_are_in_buffers_or_of_a_module() {
+    let provider = SceneProvider::new(load("park"));
+    for fields in [
+        r#"rays: "rays""#,
+        r#"of: "shared/ray_buffers.wgsl""#,
+        r#"of: "shared/ray_buffers.wgsl", most: "1", skip: "number""#,
+        r#"rays: "rays", hits: "hits", most: "1""#,
+    ] {
+        let document = format!(
+            r#"(format: 3, description: "rays", materials: [Buffer(name: "rays", count: 1),
+                Buffer(name: "hits", count: 1), Buffer(name: "number", count: 1, data: [1])],
+                passes: [Clear(name: "clear", target: "rays"),
+                    Trace(name: "trace", {fields}, count: "number", mode: Any)],
+                outputs: ["hits"])"#
+        );
+        let files = graphs::layered(&[("test.ron", &document)]);
+        let graph = Graph::load("test.ron", &registry(), &files);
+        let graph = graph.unwrap_or_else(|errors| panic!("{errors}"));
+        let errors = graph.plan(&PlanRequest::new([8, 8], &provider));
+        let errors = errors.expect_err(fields).to_string();
+        let says = "a `Trace` has either `rays` and `hits`, or `of` and `most`";
+        assert!(errors.contains(says), "{fields}: {errors}");
+    }
+}
 
 #[test]
 fn random_rays_through_a_soup() {

@@ -89,11 +89,12 @@ impl Loaded {
             let place = root.file.span(end.saturating_sub(1)..end);
             reports.report(ComposeError::NoOutputs(place));
         }
-        root.imports
-            .splice(0..0, default_imports(registry, sources));
+        let mut files = ShaderFiles::new(sources);
+        let defaults = default_imports(registry, &mut files);
+        root.imports.splice(0..0, defaults);
         let documents = [&root].into_iter();
         let documents: Vec<&Document> = documents.chain(included.iter().map(|d| &**d)).collect();
-        let shaders = store::load(&root, ShaderFiles::new(sources), &mut reports);
+        let shaders = store::load(&root, files, &mut reports);
         // All of the registry's or none: shaders were compiled so.
         let imported = shaders.imported();
         let is_default = |entry: &ImportEntry| entry.items_of.is_some();
@@ -241,11 +242,8 @@ impl Loaded {
 }
 
 /// Returns the imports of a registry of which the sources have both modules.
-fn default_imports(registry: &Registry, sources: &dyn Sources) -> Vec<ImportEntry> {
-    let is_there = |name: &str| {
-        let mut paths = module_candidates("", name).into_iter();
-        paths.any(|path| matches!(sources.read(&path), Ok(Some(_))))
-    };
+fn default_imports(registry: &Registry, files: &mut ShaderFiles<'_>) -> Vec<ImportEntry> {
+    let mut is_there = |name| matches!(files.find(&module_candidates("", name)), Ok(Some(_)));
     let stand_ins = registry.stand_ins().iter();
     let stand_ins = stand_ins.filter(|it| is_there(it.module) && is_there(it.is));
     let entry = |it: &StandIn| {

@@ -114,7 +114,7 @@ impl<'a> ShaderFiles<'a> {
         }
     }
 
-    pub(super) fn find(&mut self, candidates: &[String]) -> Result<Option<SourceFile>, String> {
+    pub fn find(&mut self, candidates: &[String]) -> Result<Option<SourceFile>, String> {
         for path in candidates {
             if !self.read.contains_key(path) {
                 let file =

@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::faults::GraphFaults;
 use crate::graphs::idle_params::IdleParams;
@@ -91,13 +91,6 @@ impl Default for Protocol {
     }
 }
 
-impl Protocol {
-    /// True if files are written for each run: pictures or data.
-    pub fn has_files(&self) -> bool {
-        self.pictures || self.data.is_some()
-    }
-}
-
 /// Methods, a scene, views or camera paths, viewports and the protocol. Every method runs on every
 /// view or path in every viewport.
 pub struct Comparison {
@@ -146,7 +139,7 @@ impl Comparison {
     ///
     /// # Errors
     /// The built-in G-buffer cannot be loaded.
-    pub fn new(scene: Arc<Scene>, methods: Vec<Method>) -> Result<Self, CompareError> {
+    pub fn new(scene: Arc<Scene>, methods: Vec<Method>) -> Result<Self> {
         let views = scene.views.iter().cloned().map(ViewOrPath::Still);
         Ok(Self {
             views: views.collect(),
@@ -173,7 +166,7 @@ impl Comparison {
     /// A protocol without timed frames; no method that can be planned, with the reasons of all; a
     /// GPU that cannot run the graph of the visible triangles in a viewport; runs whose pictures
     /// would have the same file name.
-    pub fn check(&self, session: Session) -> Result<(), CompareError> {
+    pub fn check(&self, session: Session) -> Result<()> {
         self.refusals(session)?.none_or_error()
     }
 
@@ -182,14 +175,14 @@ impl Comparison {
     ///
     /// # Errors
     /// The other errors of [`check`](Self::check).
-    pub fn refusals(&self, session: Session) -> Result<GraphFaults, CompareError> {
+    pub fn refusals(&self, session: Session) -> Result<GraphFaults> {
         if self.protocol.frames == 0 {
             let text = "a comparison needs at least one timed frame (`Protocol::frames`)";
             return Err(CompareError::Input(text.to_owned()));
         }
         let device = Capabilities::new(session.gpu);
         let mut provider = SceneProvider::new(self.scene.clone());
-        if self.protocol.has_files() {
+        if self.protocol.pictures || self.protocol.data.is_some() {
             self.check_pictures(session)?;
         }
         for &viewport in &self.viewports {
@@ -229,11 +222,8 @@ impl Comparison {
     /// Hashes the inputs that all runs share: mesh, lights, the graph of the visible triangles, and
     /// the protocol's rays and jitter.
     pub(crate) fn fingerprint(&self) -> Fingerprint {
-        let scene = &self.scene;
-        let mut fingerprint = self
-            .primary
-            .fingerprint
-            .with_scene(&scene.mesh, &scene.lights);
+        let (scene, primary) = (&self.scene, self.primary.fingerprint);
+        let mut fingerprint = primary.with_scene(&scene.mesh, &scene.lights);
         if self.views.iter().any(|view| view.light(scene).has_extent()) {
             fingerprint = fingerprint.with_text(&self.protocol.reference_samples.to_string());
         }
@@ -244,7 +234,7 @@ impl Comparison {
     }
 
     /// Refuses runs that would overwrite each other's pictures.
-    fn check_pictures(&self, session: Session) -> Result<(), CompareError> {
+    fn check_pictures(&self, session: Session) -> Result<()> {
         let methods = self.settled(session);
         let mut stems = Vec::new();
         for view in &self.views {

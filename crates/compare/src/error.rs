@@ -18,6 +18,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
+/// The outcome of a comparison, or of a part of it.
+pub type Result<T, E = CompareError> = std::result::Result<T, E>;
+
 /// Reason why a comparison, a step of one, or a command of `skiagraph` failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -149,11 +152,8 @@ pub fn io_advice(error: &io::Error) -> Option<&'static str> {
 
 /// Returns a GPU error, its causes and its [`advice`] in one line.
 pub fn explain(error: &ExecuteError) -> String {
-    let text = with_causes(error);
-    match advice(error) {
-        Some(advice) => format!("{text}; {advice}"),
-        None => text,
-    }
+    let advice = advice(error).map(|advice| format!("; {advice}"));
+    with_causes(error) + &advice.unwrap_or_default()
 }
 
 /// Iterates over the causes of an error, outermost first, without those whose text the text of the

@@ -61,11 +61,8 @@ impl OwnCamera {
                 let (min, max) = (min.as_dvec3(), max.as_dvec3());
                 (max - own.eye).abs().max((own.eye - min).abs()).length()
             });
-            own.far = self.far.unwrap_or_else(|| {
-                (farthest * 1.01)
-                    .max(self.near.unwrap_or(0.0) * 2.0)
-                    .max(f64::MIN_POSITIVE)
-            });
+            let least = (self.near.unwrap_or(0.0) * 2.0).max(f64::MIN_POSITIVE);
+            own.far = self.far.unwrap_or((farthest * 1.01).max(least));
             own.near = self.near.unwrap_or(own.far / NEAR_TO_FAR);
         }
         own

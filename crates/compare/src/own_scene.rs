@@ -16,7 +16,7 @@
 //! ```
 
 use crate::default_view::{Place, ViewRequest, default_views};
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::own_camera::OwnCamera;
 use crate::wording::unknown;
 use glam::DVec3;
@@ -152,11 +152,8 @@ impl OwnScene {
                 outside: options.ground,
                 subject: Some(subject),
             };
-            let defaults = match camera.eye {
-                None => default_views(&mesh, &request),
-                Some(_) => None,
-            };
-            if let Some(defaults) = defaults {
+            let defaults = camera.eye.is_none().then(|| default_views(&mesh, &request));
+            if let Some(defaults) = defaults.flatten() {
                 if chosen.light {
                     lights = vec![Light::only(defaults.light)];
                 }
@@ -195,7 +192,7 @@ impl OwnScene {
         name: Option<&str>,
         camera: &OwnCamera,
         sun: Option<DVec3>,
-    ) -> Result<Vec<View>, CompareError> {
+    ) -> Result<Vec<View>> {
         let views = self.named_views(name)?;
         let sun = sun.filter(|_| !self.chosen.light);
         if camera.is_empty() && sun.is_none() && !self.chosen.view {
@@ -223,7 +220,7 @@ impl OwnScene {
         views.into_iter().map(own).collect()
     }
 
-    fn named_views(&self, name: Option<&str>) -> Result<Vec<View>, CompareError> {
+    fn named_views(&self, name: Option<&str>) -> Result<Vec<View>> {
         let Scene {
             name: scene, views, ..
         } = &self.scene;
@@ -276,15 +273,11 @@ impl OwnScene {
 fn towards(mesh: &Mesh, eye: DVec3) -> View {
     let bounds = mesh.bounds();
     let middle = bounds.map(|(min, max)| (min.as_dvec3() + max.as_dvec3()) * 0.5);
-    let direction = middle.unwrap_or_default() - eye;
+    let direction = Some(middle.unwrap_or_default() - eye).filter(|way| *way != DVec3::ZERO);
     View {
         name: "main".into(),
         eye,
-        direction: if direction == DVec3::ZERO {
-            DVec3::NEG_Z
-        } else {
-            direction
-        },
+        direction: direction.unwrap_or(DVec3::NEG_Z),
         fov_y_degrees: DEFAULT_FOV,
         near: 1.0,
         far: 2.0,

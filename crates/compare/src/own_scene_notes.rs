@@ -91,20 +91,17 @@ fn choices(options: &MeshSceneOptions, scene: &Scene, chosen: &Chosen) -> Option
         views.extend(scene.views.iter().zip(places).map(|(view, place)| {
             let eye = || format!("--eye {}", three(view.eye));
             let look = || format!("--look {}", three(view.direction.normalize()));
-            let own = view
-                .light
-                .as_ref()
-                .and_then(|light| light.kind.directional());
+            let light = view.light.as_ref();
+            let own = light.and_then(|light| light.kind.directional());
             let parts = [
                 options.camera.eye.is_none().then(eye),
                 options.camera.direction.is_none().then(look),
                 own.map(|sun| format!("--light {}", three(sun.direction))),
             ];
             let parts = parts.into_iter().flatten().join(" ");
-            match (place, parts.is_empty()) {
-                (_, true) => parts,
-                (None, _) => parts,
-                (Some(place), _) => format!("`{}`, {}: {parts}", view.name, why(*place)),
+            match place.filter(|_| !parts.is_empty()) {
+                Some(place) => format!("`{}`, {}: {parts}", view.name, why(*place)),
+                None => parts,
             }
         }));
         views.retain(|view| !view.is_empty());

@@ -25,11 +25,8 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
         return Err(format!("{} numbers; {expected}", numbers.len()));
     };
     let vector = DVec3::new(x, y, z);
-    if vector.is_finite() {
-        Ok(vector)
-    } else {
-        Err("all three numbers must be finite".into())
-    }
+    let finite = Some(vector).filter(|vector| vector.is_finite());
+    finite.ok_or_else(|| "all three numbers must be finite".into())
 }
 
 /// Parses a direction as [`vector`] does; it must not be zero.

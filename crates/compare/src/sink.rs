@@ -22,7 +22,7 @@
 //! }
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::{Diagnostic, diagnostics};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -104,7 +104,7 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// [`CompareError::Interrupted`].
-    pub fn check_stopped(&self) -> Result<(), CompareError> {
+    pub fn check_stopped(&self) -> Result<()> {
         if self.is_stopped() {
             return Err(CompareError::interrupted());
         }

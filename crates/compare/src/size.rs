@@ -20,9 +20,8 @@ impl FromStr for Size {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (width, height) = text
-            .split_once(['x', 'X', '×'])
-            .ok_or("expected WIDTHxHEIGHT, for example 1024x1024")?;
+        let edges = text.split_once(['x', 'X', '×']);
+        let (width, height) = edges.ok_or("expected WIDTHxHEIGHT, for example 1024x1024")?;
         let edge = |text: &str| match text.trim().parse::<u32>() {
             Ok(0) => Err("a viewport must be at least 1x1".to_string()),
             Ok(edge) => Ok(edge),

@@ -69,17 +69,10 @@ pub fn length(length: f64) -> String {
     if length >= 100.0 {
         return thousands(length.round() as u64);
     }
-    let digits = if length > 0.0 {
-        (2 - length.log10().floor() as i32).clamp(0, 15)
-    } else {
-        0
-    };
+    let power = length.log10().floor() as i32;
+    let digits = 2i32.saturating_sub(power).clamp(1, 15);
     let text = format!("{length:.*}", digits as usize);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Returns a count with its noun, to which `s` is added unless the count is 1: `1 frame`, `2
@@ -131,10 +124,8 @@ pub fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
             format!("'{}'", text.replace('\'', r"'\''"))
         }
     };
-    ["skiagraph".into()]
-        .into_iter()
-        .chain(arguments.skip(1).map(quoted))
-        .join(" ")
+    let words = arguments.skip(1).map(quoted);
+    ["skiagraph".into()].into_iter().chain(words).join(" ")
 }
 
 #[cfg(test)]

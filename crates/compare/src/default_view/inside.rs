@@ -3,7 +3,7 @@
 use super::room::{Room, squares, turns};
 use glam::DVec3;
 use itertools::Itertools;
-use skiagraph_reference::sight::sights;
+use skiagraph_reference::sight::{Sight, sights};
 
 /// Columns of places that are tried along each of the two horizontal axes.
 const COLUMNS: u32 = 9;
@@ -100,10 +100,8 @@ fn is_shell(room: &Room<'_>) -> bool {
         let side = room.around(turn);
         let beside = side.cross(room.up);
         let aside = beside * (x * room.reach(beside)) + room.up * (y * room.reach(room.up));
-        (
-            room.middle + aside + side * (room.half.length() * 1.1),
-            -side,
-        )
+        let from = room.middle + aside + side * (room.half.length() * 1.1);
+        (from, -side)
     });
     let seen = sights(&room.oracle, &rays.collect_vec());
     let fronts = seen.iter().flatten().filter(|sight| sight.is_front).count();
@@ -113,14 +111,10 @@ fn is_shell(room: &Room<'_>) -> bool {
 /// True if light gets to some of the eyes, or if closed parts stand around them: furniture.
 fn is_used(room: &Room<'_>, eyes: &[Eye]) -> bool {
     let slopes = [-0.8, 0.1, 0.3, 1.0, 3.0];
-    let seen = eyes
-        .iter()
-        .flat_map(|eye| room.all_around(eye.place, 60, &slopes));
-    let seen = seen.collect_vec();
-    let parts = seen
-        .iter()
-        .flatten()
-        .map(|sight| room.parts().of[sight.primitive as usize]);
+    let around = |eye: &Eye| room.all_around(eye.place, 60, &slopes);
+    let seen = eyes.iter().flat_map(around).collect_vec();
+    let part = |sight: &Sight| room.parts().of[sight.primitive as usize];
+    let parts = seen.iter().flatten().map(part);
     let is_thing = |part: &u32| !room.parts().open[*part as usize];
     let (things, walls): (Vec<u32>, Vec<u32>) = parts.unique().partition(is_thing);
     seen.contains(&None) || !things.is_empty() && things.len() + walls.len() > 1
@@ -166,10 +160,8 @@ fn above_floors(room: &Room<'_>, from: DVec3) -> Vec<DVec3> {
 /// The eye at a place, if surfaces stand all around it, far enough, and the floor is level.
 fn standing(room: &Room<'_>, place: DVec3) -> Option<Eye> {
     let floor = room.sight(place, -room.up)?;
-    let slope = room
-        .normal(floor.primitive)
-        .normalize_or_zero()
-        .dot(room.up);
+    let normal = room.normal(floor.primitive).normalize_or_zero();
+    let slope = normal.dot(room.up);
     let seen = room.all_around(place, AROUND, &[TILT, -TILT]);
     let walls = seen.iter().flatten().filter(|sight| sight.is_front);
     let walls = walls.map(|sight| sight.distance).collect_vec();

@@ -348,14 +348,10 @@ impl Search<'_> {
 
     fn inside(&self, inside: &Inside) -> Option<Found> {
         let places = inside.eyes.iter().map(|eye| eye.place).collect_vec();
-        let groups = places
-            .chunks(EYES)
-            .map(|eyes| self.pictures(eyes, SLOPE))
-            .collect_vec();
-        let lights = match self.request.light {
-            Some(light) => vec![light],
-            None => self.suns_inside(&places),
-        };
+        let group = |eyes| self.pictures(eyes, SLOPE);
+        let groups = places.chunks(EYES).map(group).collect_vec();
+        let suns = || self.suns_inside(&places);
+        let lights = self.request.light.map_or_else(suns, |light| vec![light]);
         let groups = || groups.iter();
         let candidates = groups().map(|group| self.best(group, &lights, Place::Inside));
         let best = self.first_plenty(candidates);
@@ -389,10 +385,8 @@ impl Search<'_> {
         for slope in ABOVE {
             let candidate = self.outside_from(slope, &lights);
             best = self.first_plenty([best, candidate].into_iter());
-            if best
-                .as_ref()
-                .is_some_and(|best| best.is_plenty() || best.rank < NO_SHADOW)
-            {
+            let is_last = |best: &Found| best.is_plenty() || best.rank < NO_SHADOW;
+            if best.as_ref().is_some_and(is_last) {
                 break;
             }
         }
@@ -423,18 +417,14 @@ impl Search<'_> {
     /// Views from nearer, towards where most of the subject is seen.
     fn nearer(&self, framed: &[Picture], share: f64) -> Vec<Picture> {
         let views = framed.iter().map(|picture| {
-            let View {
-                eye,
-                direction,
-                fov_y_degrees,
-                ..
-            } = picture.view;
+            let (eye, fov_y_degrees) = (picture.view.eye, picture.view.fov_y_degrees);
+            let direction = picture.view.direction;
             let way = direction.normalize();
             let distance = (self.room.middle - eye).dot(way) * share;
             let radius = distance * (fov_y_degrees * 0.5).to_radians().tan();
             let seen = picture.densest(radius).unwrap_or(self.room.middle);
-            self.room
-                .view(seen - way * distance, direction, fov_y_degrees)
+            let eye = seen - way * distance;
+            self.room.view(eye, direction, fov_y_degrees)
         });
         let views = views.filter(|view| !self.room.is_buried(view.eye));
         self.few(views)

@@ -242,11 +242,8 @@ impl<'a> Room<'a> {
                 let own = bounds(self.oracle.mesh(), primitives.iter().copied());
                 own.is_some_and(|[_, half]| half.length() > SHELL * self.half.length())
             };
-            let mut shells = boxes.iter().filter(|(_, primitives)| is_shell(primitives));
-            shells
-                .next()
-                .map(|(part, _)| *part)
-                .filter(|_| boxes.len() > 1)
+            let shell = boxes.iter().find(|(_, primitives)| is_shell(primitives));
+            shell.map(|(part, _)| *part).filter(|_| boxes.len() > 1)
         })
     }
 
@@ -254,10 +251,8 @@ impl<'a> Room<'a> {
     /// of a room, which are turned inwards around what stands in it, do not count.
     pub(super) fn is_buried(&self, place: DVec3) -> bool {
         let buried = OBLIQUE.iter().filter(|way| {
-            let leaves = self.leaves(place, **way);
-            leaves
-                .iter()
-                .any(|(part, count)| *count > 0 || *count < 0 && self.shell() != Some(*part))
+            let mut leaves = self.leaves(place, **way).into_iter();
+            leaves.any(|(part, count)| count > 0 || count < 0 && self.shell() != Some(part))
         });
         buried.count() >= 2
     }
@@ -272,9 +267,8 @@ impl<'a> Room<'a> {
             };
             if !parts.is_open(sight.primitive) {
                 let side = self.normal(sight.primitive).dot(way).signum() as i32;
-                *leaves
-                    .entry(parts.of[sight.primitive as usize])
-                    .or_default() += side;
+                let part = parts.of[sight.primitive as usize];
+                *leaves.entry(part).or_default() += side;
             }
             from += way * (sight.distance + least);
         }
@@ -339,9 +333,8 @@ impl<'a> Room<'a> {
         let places = places.collect_vec();
         let distances = places.iter().map(|(_, place)| place.distance(view.eye));
         let median = median(distances.collect());
-        let subject = places
-            .iter()
-            .filter(|(primitive, _)| (*primitive as usize) < self.subject);
+        let is_own = |(primitive, _): &&(u32, DVec3)| (*primitive as usize) < self.subject;
+        let subject = places.iter().filter(is_own);
         Some(Picture {
             subject: subject.map(|(_, place)| *place).collect(),
             first_other: self.subject,
@@ -355,16 +348,11 @@ impl<'a> Room<'a> {
     /// How much a view is worth under a light.
     pub(super) fn worth(&self, picture: &Picture, light: &LightKind) -> Option<Worth> {
         let (mode, progress) = (OracleMode::Exact, Progress::default());
-        let Picture {
-            camera, primitives, ..
-        } = picture;
-        let truth = self
-            .oracle
-            .shade(camera, *light, primitives, mode, progress);
+        let (oracle, camera, primitives) = (&self.oracle, &picture.camera, &picture.primitives);
+        let truth = oracle.shade(camera, *light, primitives, mode, progress);
         let truth = truth.ok()?;
-        let [wide, square] = camera
-            .viewport
-            .map(|columns| Worth::within(picture, &truth, columns));
+        let within = |columns| Worth::within(picture, &truth, columns);
+        let [wide, square] = camera.viewport.map(within);
         Some(Worth {
             shown: wide.shown.min(square.shown),
             subject: wide.subject.min(square.subject),

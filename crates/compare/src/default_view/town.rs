@@ -57,9 +57,8 @@ struct Roofs {
 pub(super) fn street_eyes(room: &Room<'_>) -> Option<(Vec<DVec3>, f64)> {
     let roofs = Roofs::new(room)?;
     let height = roofs.eye_height()?;
-    let numbers = (0..COLUMNS * COLUMNS)
-        .filter(|number| roofs.is_street(*number))
-        .collect_vec();
+    let is_street = |number: &usize| roofs.is_street(*number);
+    let numbers = (0..COLUMNS * COLUMNS).filter(is_street).collect_vec();
     let step = numbers.len().div_ceil(PLACES).max(1);
     let places = numbers.iter().step_by(step).map(|number| {
         let [x, z] = [number % COLUMNS, number / COLUMNS];
@@ -67,11 +66,8 @@ pub(super) fn street_eyes(room: &Room<'_>) -> Option<(Vec<DVec3>, f64)> {
     });
     let open = |place: DVec3| {
         let seen = room.all_around(place, 16, &[0.05]);
-        let walls = seen
-            .iter()
-            .flatten()
-            .map(|sight| sight.distance)
-            .collect_vec();
+        let walls = seen.iter().flatten().map(|sight| sight.distance);
+        let walls = walls.collect_vec();
         let nearest = walls.iter().copied().fold(f64::INFINITY, f64::min);
         let most = 3.0 * HOUSE[1] / EYE * height;
         let total = walls.iter().map(|distance| distance.min(most)).sum::<f64>();
@@ -94,10 +90,8 @@ pub(super) fn raised(mesh: &Mesh, place: DVec3, up: DVec3, (height, error): (f64
         let sides = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
         let sum: f64 = sides.iter().sum();
         let is_in = sum != 0.0 && sides.iter().all(|side| side * sum >= 0.0);
-        let at = sides
-            .iter()
-            .zip(corners)
-            .map(|(side, corner)| corner * *side);
+        let at = sides.iter().zip(corners);
+        let at = at.map(|(side, corner)| corner * *side);
         is_in.then(|| -at.sum::<DVec3>().dot(up) / sum)
     });
     let floors = heights.filter(|below| (below - height).abs() <= 1.5 * error);
@@ -142,10 +136,8 @@ impl Roofs {
 
     fn median_rise(&self) -> f64 {
         let rises = self.rises.iter().zip(&self.is_roof);
-        let rises = rises
-            .filter(|(_, is_roof)| **is_roof)
-            .map(|(rise, _)| *rise);
-        median(rises.collect())
+        let rises = rises.filter(|(_, is_roof)| **is_roof);
+        median(rises.map(|(rise, _)| *rise).collect())
     }
 
     /// Share of the steps from column to column in which the floor rises or falls by so much.
@@ -189,14 +181,10 @@ impl Roofs {
             for row in 0..COLUMNS {
                 let numbers = (0..COLUMNS).map(|at| row * to_row + at * to_next);
                 let is_roof = numbers.map(|number| self.is_roof[number]);
-                let runs = is_roof.chunk_by(|it| *it);
-                let runs = runs
-                    .into_iter()
-                    .map(|(is_roof, run)| (is_roof, run.count()));
-                let runs = runs.collect_vec();
+                let runs = is_roof.dedup_with_count().collect_vec();
                 // Those at the ends go on beyond them.
                 let inner = runs.get(1..runs.len() - 1).unwrap_or_default();
-                for (is_roof, count) in inner {
+                for (count, is_roof) in inner {
                     let length = *count as f64 * step;
                     if *is_roof { &mut roofs } else { &mut streets }.push(length);
                 }
@@ -204,17 +192,14 @@ impl Roofs {
         }
         let sizes = [self.median_rise(), median(roofs), median(streets)];
         let ratios = sizes.iter().zip(HOUSE).map(|(size, house)| size / house);
-        let ratios = ratios
-            .zip(WEIGHTS)
-            .map(|(ratio, weight)| ratio.powf(weight));
+        let ratios = ratios.zip(WEIGHTS).map(|(ratio, power)| ratio.powf(power));
         let ratio = ratios.product::<f64>();
         if !(ratio > 0.0 && ratio.is_finite()) {
             return None;
         }
         let distance = |unit: &f64| (ratio / unit).ln().abs();
-        let units = UNITS
-            .into_iter()
-            .filter(|unit| distance(unit) < FACTOR.ln());
+        let is_near = |unit: &f64| distance(unit) < FACTOR.ln();
+        let units = UNITS.into_iter().filter(is_near);
         let unit = units.min_by(|one, other| distance(one).total_cmp(&distance(other)));
         Some(EYE * unit.unwrap_or(ratio))
     }

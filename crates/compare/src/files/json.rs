@@ -50,11 +50,9 @@ impl Mistake {
 
     /// Moves the mistake from a part of a text, such as a line, to the whole text, in which the
     /// part begins at the byte `at`.
-    pub fn behind(self, at: usize) -> Self {
-        Self {
-            at: self.at + at,
-            ..self
-        }
+    pub fn behind(mut self, at: usize) -> Self {
+        self.at += at;
+        self
     }
 
     /// Creates a mistake with the message `what` at the first occurrence of the string `field` in
@@ -75,12 +73,9 @@ impl Mistake {
         summary: &str,
     ) -> CompareError {
         // Rendering moves a place inside a character or behind the text to where it can be shown.
-        let error = Diagnostic::error(
-            Code::Syntax,
-            format!("`{}` is not a {what_for}: {}", file.name, self.what),
-        )
-        .at(file.span(self.at..self.at + 1), "")
-        .help(help);
+        let what = format!("`{}` is not a {what_for}: {}", file.name, self.what);
+        let error = Diagnostic::error(Code::Syntax, what).help(help);
+        let error = error.at(file.span(self.at..self.at + 1), "");
         CompareError::Diagnostics {
             faults: vec![vec![error]],
             summary: summary.into(),

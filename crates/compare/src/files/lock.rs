@@ -11,7 +11,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::sink::Sink;
 use std::{
     fs::{File, TryLockError},
@@ -47,7 +47,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// # Errors
 /// [`CompareError::Interrupted`] if the sink asks for an early end and the wait takes more than two
 /// seconds; a lock file that cannot be created.
-pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, CompareError> {
+pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked> {
     let began = Instant::now();
     let mut is_told = false;
     loop {
@@ -74,13 +74,11 @@ pub fn wait_for(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Locked, C
 ///
 /// # Errors
 /// The lock file cannot be created or locked.
-pub fn claim(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Option<Locked>, CompareError> {
+pub fn claim(folder: &Path, files: &str, sink: &dyn Sink) -> Result<Option<Locked>> {
     let path = folder.join(files);
-    let opened = File::options()
-        .create(true)
-        .truncate(false)
-        .write(true)
-        .open(&path);
+    let mut options = File::options();
+    options.create(true).truncate(false).write(true);
+    let opened = options.open(&path);
     let file = opened.map_err(|error| CompareError::write(&path, error))?;
     match file.try_lock() {
         Ok(()) => Ok(Some(Locked { _file: Some(file) })),

@@ -14,7 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::write::{folder_of, write_new};
 use skiagraph_scene::{MeshSource, SceneFile, View, scene_text};
 use std::{
@@ -30,16 +30,10 @@ use std::{
 /// # Errors
 /// The path does not end with `.ron`, a file of other content exists there (the user may have
 /// changed it), or the file cannot be written.
-pub fn write_scene(
-    path: &Path,
-    mut scene: SceneFile,
-    first: &[View],
-) -> Result<bool, CompareError> {
+pub fn write_scene(path: &Path, mut scene: SceneFile, first: &[View]) -> Result<bool> {
     let refused = |text: String| CompareError::Request(format!("{}: {text}", path.display()));
-    let is_scene = path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
-    if !is_scene {
+    let extension = path.extension();
+    if extension.is_none_or(|extension| !extension.eq_ignore_ascii_case("ron")) {
         return Err(refused("a scene file is called NAME.ron".into()));
     }
     let own_views = std::mem::take(&mut scene.views).into_iter();

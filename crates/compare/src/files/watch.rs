@@ -10,6 +10,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::files::write::folder_of;
 use notify::{EventKind, RecursiveMode, Watcher};
 use std::{
     collections::BTreeSet,
@@ -69,9 +70,7 @@ impl Watch {
 pub fn folders<'a>(arguments: impl Iterator<Item = &'a str>) -> BTreeSet<PathBuf> {
     let mut folders = BTreeSet::from([PathBuf::from(".")]);
     for argument in arguments.filter(|argument| argument.ends_with(".ron")) {
-        let parent = Path::new(argument).parent();
-        let folder = parent.filter(|folder| *folder != Path::new(""));
-        let folder = folder.unwrap_or(Path::new("."));
+        let folder = folder_of(Path::new(argument));
         let inside = std::fs::read_dir(folder).into_iter().flatten().flatten();
         let inside = inside.map(|entry| entry.path());
         folders.extend(inside.filter(|path| path.is_dir() && holds_shaders(path)));

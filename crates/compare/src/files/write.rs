@@ -12,7 +12,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use std::{
     fs,
     io::{self, Write},
@@ -27,16 +27,14 @@ use std::{
 ///
 /// # Errors
 /// Names the two writers of one file, or the file that cannot be written and the reason.
-pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CompareError> {
+pub fn check_writable(files: &[(String, &Path)]) -> Result<()> {
     let place = |file: &Path| -> PathBuf {
         let parts = file.components();
         parts.filter(|part| *part != Component::CurDir).collect()
     };
     for (index, (writer, file)) in files.iter().enumerate() {
-        let earlier = files[..index]
-            .iter()
-            .find(|(_, other)| place(other) == place(file));
-        if let Some((other, _)) = earlier {
+        let is_same = |(_, other): &&(String, &Path)| place(other) == place(file);
+        if let Some((other, _)) = files[..index].iter().find(is_same) {
             return Err(CompareError::Request(format!(
                 "{other} and {writer} both write {}; give each a file of its own",
                 file.display()
@@ -65,7 +63,7 @@ pub fn check_writable(files: &[(String, &Path)]) -> Result<(), CompareError> {
 ///
 /// # Errors
 /// The folder cannot be created, or no file can be created in it.
-pub fn check_folder(folder: &Path) -> Result<(), CompareError> {
+pub fn check_folder(folder: &Path) -> Result<()> {
     let made = fs::create_dir_all(folder).and_then(|()| try_out(folder));
     made.map_err(|error| CompareError::write(folder, error))
 }
@@ -126,7 +124,7 @@ pub fn remove_unfinished() {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let write = || -> io::Result<()> {
         if !is_replaced(path) {
             return fs::write(path, bytes);
@@ -146,7 +144,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_durable(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
+pub fn write_durable(path: &Path, bytes: &[u8]) -> Result<()> {
     let written = durable(path, bytes).and_then(|file| Ok(file.persist(path)?));
     written.map_err(|error| CompareError::write(path, error))?;
     Ok(())
@@ -157,12 +155,10 @@ pub fn write_durable(path: &Path, bytes: &[u8]) -> Result<(), CompareError> {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write_new(path: &Path, bytes: &[u8]) -> Result<bool, CompareError> {
+pub fn write_new(path: &Path, bytes: &[u8]) -> Result<bool> {
     let failed = |error| CompareError::write(path, error);
-    match durable(path, bytes)
-        .map_err(failed)?
-        .persist_noclobber(path)
-    {
+    let file = durable(path, bytes).map_err(failed)?;
+    match file.persist_noclobber(path) {
         Ok(_) => Ok(true),
         Err(kept) if kept.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
         Err(kept) => Err(failed(kept.error)),

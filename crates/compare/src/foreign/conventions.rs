@@ -169,6 +169,11 @@ impl CameraRecord {
         let camera = view.camera(viewport);
         let degrees = |half: f64| half.atan().to_degrees() * 2.0;
         let spaces = [("minus_z", -1.0), ("plus_z", 1.0)];
+        let named = |(name, z): (&str, f64)| NamedMatrix {
+            name: format!("looks_along_{name}"),
+            axes: ["right", "up", if z < 0.0 { "back" } else { "forward" }].map(Into::into),
+            world_to_camera: world_to_camera(&camera, z).into(),
+        };
         let projections = spaces.iter().flat_map(|space| {
             let sides = [("y_up", 1.0), ("y_down", -1.0)].into_iter();
             let each = sides.flat_map(|side| DEPTHS.map(|depth| (side, depth)));
@@ -191,15 +196,7 @@ impl CameraRecord {
             near: camera.near,
             far: camera.far,
             light: LightRecord::new(scene.light_of(view)),
-            views: spaces
-                .iter()
-                .map(|(name, z)| NamedMatrix {
-                    name: format!("looks_along_{name}"),
-                    axes: ["right", "up", if *z < 0.0 { "back" } else { "forward" }]
-                        .map(Into::into),
-                    world_to_camera: world_to_camera(&camera, *z).into(),
-                })
-                .collect(),
+            views: spaces.map(named).into(),
             projections: projections.collect(),
         }
     }

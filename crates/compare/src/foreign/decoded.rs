@@ -1,6 +1,7 @@
 //! Holds the numbers of a picture as its decoder finds them, and the bounds of their count.
 
 use crate::wording::thousands;
+use itertools::Itertools;
 use skiagraph_graph::caught;
 
 /// Longest edge of a picture in pixels.
@@ -48,11 +49,8 @@ impl Raster {
         let is_seen_through = |pixel: &&[f64]| has_alpha && pixel[stored - 1] != opaque;
         let pixels = || self.values.chunks_exact(stored);
         let seen_through = pixels().filter(is_seen_through).count();
-        let is_grey = pixels().all(|pixel| {
-            pixel[1..colours]
-                .iter()
-                .all(|it| it.to_bits() == pixel[0].to_bits())
-        });
+        let is_even = |pixel: &[f64]| pixel[..colours].iter().map(|it| it.to_bits()).all_equal();
+        let is_grey = pixels().all(is_even);
         let channels = if is_grey { 1 } else { colours };
         let kept = pixels().flat_map(|pixel| &pixel[..channels]);
         (self.values, self.channels) = (kept.copied().collect(), channels);

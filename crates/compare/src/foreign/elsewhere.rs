@@ -1,7 +1,7 @@
 //! Looks for the view or light of a scene that a foreign picture agrees with, if it does not agree
 //! with the one that it was held against.
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::foreign::suspicions::square;
 use crate::measuring::ground_truth::heard;
 use crate::sink::{Sink, Step};
@@ -31,7 +31,7 @@ pub(crate) fn elsewhere(
     view: &View,
     is_camera_known: bool,
     sink: &dyn Sink,
-) -> Result<Option<String>, CompareError> {
+) -> Result<Option<String>> {
     let views = scene.views.iter().flat_map(|other| {
         let lights = scene.lights_of(other).into_iter();
         lights.map(move |light| (other, light))

@@ -32,10 +32,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Raster, String> {
         reader.from_buffered(Cursor::new(bytes)).map_err(refused)
     })?;
     let list = &picture.layer_data.channel_data.list;
-    let find = |name: &&String| {
-        list.iter()
-            .find(|channel| channel.name.to_string() == **name)
-    };
+    let find = |name: &&String| list.iter().find(|it| it.name.to_string() == **name);
     let channels = chosen.iter().filter_map(find);
     let planes: Vec<&FlatSamples> = channels.map(|channel| &channel.sample_data).collect();
     let pixels = size[0] as usize * size[1] as usize;
@@ -80,16 +77,13 @@ fn check_window(header: &Header) -> Result<(), String> {
     if shown.position == position && shown.size == size {
         return Ok(());
     }
-    let text = |Vec2(x, y): Vec2<i32>| format!("({x}, {y})");
+    let window = |Vec2(wide, high): Vec2<usize>, Vec2(x, y): Vec2<i32>| {
+        format!("{wide}x{high} from ({x}, {y})")
+    };
+    let [own, shown] = [window(size, position), window(shown.size, shown.position)];
     Err(format!(
-        "its data window ({}x{} from {}) is not its display window ({}x{} from {}): save the whole \
-         picture, not cropped",
-        size.x(),
-        size.y(),
-        text(position),
-        shown.size.x(),
-        shown.size.y(),
-        text(shown.position)
+        "its data window ({own}) is not its display window ({shown}): save the whole picture, not \
+         cropped"
     ))
 }
 

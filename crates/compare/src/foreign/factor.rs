@@ -14,7 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::foreign::raster::{self, Raster, check_size};
 use std::{path::Path, str::FromStr};
 
@@ -81,11 +81,7 @@ impl Factor {
     /// # Errors
     /// The errors of [`raster::read`]; a picture in colours without `unshadowed`; pictures of
     /// different sizes or without a finite number.
-    pub fn read(
-        path: &Path,
-        unshadowed: Option<&Raster>,
-        reading: Reading,
-    ) -> Result<Self, CompareError> {
+    pub fn read(path: &Path, unshadowed: Option<&Raster>, reading: Reading) -> Result<Self> {
         let raster = raster::read(path)?;
         let mut light = light(&raster, reading)?;
         let mut is_black = Vec::new();
@@ -132,7 +128,7 @@ fn quotient(light: f64, whole: f64) -> f64 {
 }
 
 /// Sum of the colour channels of each pixel, in linear light.
-fn light(raster: &Raster, reading: Reading) -> Result<Vec<f64>, CompareError> {
+fn light(raster: &Raster, reading: Reading) -> Result<Vec<f64>> {
     if !raster.values.iter().any(|value| value.is_finite()) {
         return Err(CompareError::Input(format!(
             "{}: it has no finite number: all are NaN or infinite",
@@ -145,12 +141,11 @@ fn light(raster: &Raster, reading: Reading) -> Result<Vec<f64>, CompareError> {
         share => share,
     };
     let sums = raster.values.chunks_exact(raster.channels);
-    let sums: Vec<f64> = sums.map(|pixel| pixel.iter().map(linear).sum()).collect();
-    Ok(if reading.flipped {
-        flipped(&sums, raster.size)
-    } else {
-        sums
-    })
+    let mut sums: Vec<f64> = sums.map(|pixel| pixel.iter().map(linear).sum()).collect();
+    if reading.flipped {
+        sums = flipped(&sums, raster.size);
+    }
+    Ok(sums)
 }
 
 /// Returns the linear share of a number that is encoded by the transfer function of sRGB (IEC

@@ -20,14 +20,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::json::to_text;
 use crate::files::write::{check_folder, write_whole};
 use crate::foreign::elsewhere::elsewhere;
 use crate::foreign::factor::{Factor, Reading};
 use crate::foreign::raster::{self, Raster, check_size};
 use crate::foreign::surfaces::{by_depth, ids};
-use crate::foreign::suspicions::{Agreement, Suspect, Suspicions};
+use crate::foreign::suspicions::{Agreement, Suspect};
 use crate::graphs::ground_truth::Judgement;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::device::{self, GpuRequest};
@@ -129,7 +129,7 @@ impl Judged {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), CompareError> {
+    pub fn write(&self, folder: &Path) -> Result<()> {
         check_folder(folder)?;
         write_pictures(folder, &self.files)?;
         write_whole(&folder.join("judge.json"), to_text(&self.record).as_bytes())
@@ -165,7 +165,7 @@ pub async fn judge(
     view: &View,
     gpu: &GpuRequest,
     sink: &dyn Sink,
-) -> Result<Judged, CompareError> {
+) -> Result<Judged> {
     if judging.draws {
         let owner = |path: &PathBuf| (stem(path), format!("`{}`", path.display()));
         check_stems(judging.pictures.iter().map(owner))?;
@@ -234,7 +234,7 @@ pub async fn judge(
 }
 
 /// Reads the pictures, which are of one size.
-fn factors(judging: &Judging) -> Result<Vec<Factor>, CompareError> {
+fn factors(judging: &Judging) -> Result<Vec<Factor>> {
     let unshadowed = judging.unshadowed.as_deref().map(raster::read);
     let unshadowed = unshadowed.transpose()?;
     let read = |path: &PathBuf| Factor::read(path, unshadowed.as_ref(), judging.reading);
@@ -254,7 +254,7 @@ pub(crate) async fn truth<'a>(
     how: (OracleMode, u32),
     gpu: &GpuRequest,
     sink: &dyn Sink,
-) -> Result<Truth<'a>, CompareError> {
+) -> Result<Truth<'a>> {
     let (camera, light) = (view.camera(viewport), scene.light_of(view));
     let step = Step::begin(sink, &format!("hierarchy of {}", scene.name), 1, "steps");
     let oracle = Rc::new(Oracle::new(&scene.mesh));
@@ -315,30 +315,28 @@ async fn rasterised(
     viewport: [u32; 2],
     gpu: &GpuRequest,
     sink: &dyn Sink,
-) -> Result<Vec<u32>, CompareError> {
+) -> Result<Vec<u32>> {
     let gpu = device::open(gpu, [])?;
     let mut provider = SceneProvider::new(scene.clone());
     provider.set_view(view, viewport);
     let primary = PrimaryVisibility::load(&EmbeddedSources)?;
-    primary
-        .ids(Session::new(&gpu, sink), viewport, &mut provider)
-        .await
+    let ids = primary.ids(Session::new(&gpu, sink), viewport, &mut provider);
+    ids.await
 }
 
 /// Share of the pixels whose id may be that of a hidden surface.
 const MOST_HIDDEN: f64 = 0.01;
 
-fn check_ids(raster: &Raster, hidden: u64) -> Result<(), CompareError> {
+fn check_ids(raster: &Raster, hidden: u64) -> Result<()> {
     let pixels = raster.values.len() as u64;
     if hidden as f64 <= MOST_HIDDEN * pixels as f64 {
         return Ok(());
     }
+    let (file, share) = (&raster.file, percent(hidden, pixels));
     Err(CompareError::Input(format!(
-        "{}: at {} of the pixels it names a surface that the camera does not see there: it is of \
-         another camera, upside down, or its triangles are counted in another order than those of \
-         the scene's mesh; compare it with the ids that `skiagraph truth` writes",
-        raster.file,
-        percent(hidden, pixels)
+        "{file}: at {share} of the pixels it names a surface that the camera does not see there: \
+         it is of another camera, upside down, or its triangles are counted in another order than \
+         those of the scene's mesh; compare it with the ids that `skiagraph truth` writes"
     )))
 }
 
@@ -348,18 +346,15 @@ fn one(
     factor: &Factor,
     truth: &Truth,
     judged_truth: &GroundTruth,
-) -> Result<(JudgedPicture, Vec<PictureFile>, Agreement), CompareError> {
+) -> Result<(JudgedPicture, Vec<PictureFile>, Agreement)> {
     let named = |error: skiagraph_reference::Error| {
         CompareError::Input(format!("{}: {error}", factor.file))
     };
     let (own, pixels) = (&truth.view.ground_truth.pixels, &judged_truth.pixels);
     let outputs = Outputs::from_shares(factor.shares.clone(), own);
-    let is_judged: Vec<bool> = pixels
-        .classes
-        .iter()
-        .zip(&pixels.indeterminate)
-        .map(|(class, apart)| class.faces_light() && !apart)
-        .collect();
+    let is_judged = pixels.classes.iter().zip(&pixels.indeterminate);
+    let is_judged = is_judged.map(|(class, apart)| class.faces_light() && !apart);
+    let is_judged: Vec<bool> = is_judged.collect();
     let has_no_answer = |at: &usize| is_judged[*at] && !factor.shares[*at].is_finite();
     let unanswered: Vec<usize> = (0..is_judged.len()).filter(has_no_answer).collect();
     let mut answered_truth = Cow::Borrowed(judged_truth);
@@ -385,22 +380,18 @@ fn one(
         is_integer: factor.is_integer,
         is_camera_known: truth.is_camera_known(),
     };
-    let Suspicions { texts, agreement } = suspect.suspicions();
+    let (texts, agreement) = suspect.suspicions();
     warnings.extend(texts);
     let has_blockers = judgement.is_hard && wrong.certain > 0;
     let blockers = has_blockers.then(|| truth.view.blockers(&outputs, pixels));
-    let (images, files) = if judging.draws {
-        let (images, files) = draw(factor, &answered_truth, (&outputs, &judgement))?;
-        (Some(images), files)
-    } else {
-        Default::default()
-    };
+    let answers = (&outputs, &judgement);
+    let drawn = judging
+        .draws
+        .then(|| draw(factor, &answered_truth, answers));
+    let (images, files) = drawn.transpose()?.unzip();
+    let answer = outputs.shares.as_ref().map(|_| Answer::Graded);
     let picture = JudgedPicture {
-        answer: if outputs.shares.is_some() {
-            Answer::Graded
-        } else {
-            Answer::Hard
-        },
+        answer: answer.unwrap_or_default(),
         // Given below, to those that agree, or whose camera is the right one.
         rank: match agreement {
             Agreement::Fair => Some(0),
@@ -419,7 +410,7 @@ fn one(
         file: factor.file.clone(),
         format: factor.format.clone(),
     };
-    Ok((picture, files, agreement))
+    Ok((picture, files.unwrap_or_default(), agreement))
 }
 
 /// Beginning of the names of the pictures that are drawn of a file.
@@ -433,7 +424,7 @@ fn draw(
     factor: &Factor,
     judged_truth: &GroundTruth,
     answers: (&Outputs, &Judgement),
-) -> Result<(Images, Vec<PictureFile>), CompareError> {
+) -> Result<(Images, Vec<PictureFile>)> {
     let place = PicturePlace {
         stem: stem(Path::new(&factor.file)),
         view: "truth",
@@ -469,12 +460,8 @@ fn rank(record: &mut JudgedPictures) {
             picture.wrong_attributable() as f64
         }
     };
-    let ranked: Vec<f64> = record
-        .pictures
-        .iter()
-        .filter(|picture| picture.rank.is_some())
-        .map(figure)
-        .collect();
+    let ranked = record.pictures.iter().filter(|it| it.rank.is_some());
+    let ranked: Vec<f64> = ranked.map(figure).collect();
     for picture in &mut record.pictures {
         let own = figure(picture);
         let before = ranked.iter().filter(|other| **other < own).count() as u32;

@@ -75,12 +75,11 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Raster, String> {
     let size = checked(size, channels)?;
     let count = u64::from(size[0]) * u64::from(size[1]) * channels;
     let numbers = &bytes[begin + length..];
-    if numbers.len() as u64 != count * width as u64 {
+    let (promised, held) = (count * width as u64, numbers.len() as u64);
+    if held != promised {
         return Err(format!(
-            "its header promises {} bytes of numbers, and it has {}: write it anew with \
-             numpy.save",
-            count * width as u64,
-            numbers.len()
+            "its header promises {promised} bytes of numbers, and it has {held}: write it anew \
+             with numpy.save"
         ));
     }
     let number = |bytes: &[u8]| {
@@ -124,13 +123,9 @@ fn text_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
 }
 
 fn shape_of(header: &str) -> Option<Vec<u64>> {
-    let (inside, _) = value_of(header, "shape")?
-        .strip_prefix('(')?
-        .split_once(')')?;
-    let parts = inside
-        .split(',')
-        .map(str::trim)
-        .filter(|part| !part.is_empty());
+    let shape = value_of(header, "shape")?.strip_prefix('(')?;
+    let parts = shape.split_once(')')?.0.split(',').map(str::trim);
+    let parts = parts.filter(|part| !part.is_empty());
     parts.map(|part| part.parse().ok()).collect()
 }
 

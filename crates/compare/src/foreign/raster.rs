@@ -13,7 +13,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 pub use crate::foreign::decoded::Raster;
 use crate::foreign::decoded::{MOST_NUMBERS, checked, guarded};
 use crate::foreign::{exr_file, npy_file};
@@ -36,12 +36,11 @@ const PICTURE_FILE: Limit = Limit {
 /// [`CompareError::Input`] with the path: a file that cannot be read, is too large or in
 /// another format, is damaged, or has other channels than grey or red, green and blue (with or
 /// without alpha).
-pub fn read(path: &Path) -> Result<Raster, CompareError> {
+pub fn read(path: &Path) -> Result<Raster> {
     let file = path.display().to_string();
     let named = |why: String| CompareError::Input(format!("{file}: {why}"));
-    let bytes = PICTURE_FILE
-        .read(path)
-        .map_err(|error| named(error.to_string()))?;
+    let bytes = PICTURE_FILE.read(path);
+    let bytes = bytes.map_err(|error| named(error.to_string()))?;
     let decoded = match &bytes[..] {
         [0x89, b'P', b'N', b'G', ..] => png(&bytes),
         [0x76, 0x2f, 0x31, 0x01, ..] => exr_file::decode(&bytes),
@@ -109,16 +108,12 @@ fn samples(picture: &DynamicImage, bits: u32) -> Vec<f64> {
 ///
 /// # Errors
 /// [`CompareError::Input`] that names both files with their sizes.
-pub fn check_size(
-    (one, own): (&str, [u32; 2]),
-    (other, its): (&str, [u32; 2]),
-) -> Result<(), CompareError> {
+pub fn check_size((one, own): (&str, [u32; 2]), (other, its): (&str, [u32; 2])) -> Result<()> {
     if own == its {
         return Ok(());
     }
+    let [own, its] = [own, its].map(size);
     Err(CompareError::Input(format!(
-        "{one} has {} pixels, and {other} has {}: render both in one size",
-        size(own),
-        size(its)
+        "{one} has {own} pixels, and {other} has {its}: render both in one size"
     )))
 }

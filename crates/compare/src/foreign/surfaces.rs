@@ -13,7 +13,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::foreign::factor::flipped;
 use crate::foreign::raster::Raster;
 use crate::wording::{percent, thousands};
@@ -32,7 +32,7 @@ const MOST: f64 = 0.9;
 ///
 /// # Errors
 /// [`CompareError::Input`]: the picture has colours, or a number that is not an id of the mesh.
-pub fn ids(raster: &Raster, count: usize) -> Result<Vec<u32>, CompareError> {
+pub fn ids(raster: &Raster, count: usize) -> Result<Vec<u32>> {
     let refused = |why: String| CompareError::Input(format!("{}: {why}", raster.file));
     one_channel(raster, "an id")?;
     let width = raster.size[0] as usize;
@@ -53,7 +53,7 @@ pub fn ids(raster: &Raster, count: usize) -> Result<Vec<u32>, CompareError> {
     raster.values.iter().enumerate().map(id).collect()
 }
 
-fn one_channel(raster: &Raster, what: &str) -> Result<(), CompareError> {
+fn one_channel(raster: &Raster, what: &str) -> Result<()> {
     if raster.channels == 1 {
         return Ok(());
     }
@@ -108,10 +108,7 @@ impl DepthForm {
     /// infinite where nothing is.
     fn distances(self, raster: &Raster, depth: f64, camera: &Camera, at: [u32; 2]) -> [f64; 2] {
         let whole = raster.whole.unwrap_or(1.0);
-        let error = match raster.whole {
-            Some(_) => raster.precision,
-            None => raster.precision * depth.abs(),
-        };
+        let error = raster.precision * raster.whole.map_or(depth.abs(), |_| 1.0);
         let along = |depth| self.distance(depth, camera, at);
         let [one, other] = [along(depth / whole - error), along(depth / whole + error)];
         let [least, greatest] = [one.min(other), one.max(other)];
@@ -131,11 +128,8 @@ impl DepthForm {
             Self::Clip => forward((depth + 1.0) * 0.5),
         };
         // Cleared depths: 0 as a distance, 1 or 0 as a depth.
-        if distance.is_finite() && distance > 0.0 && distance < far * (1.0 - 1e-6) {
-            distance
-        } else {
-            f64::INFINITY
-        }
+        let is_before = |it: &f64| it.is_finite() && *it > 0.0 && *it < far * (1.0 - 1e-6);
+        Some(distance).filter(is_before).unwrap_or(f64::INFINITY)
     }
 }
 
@@ -166,7 +160,7 @@ pub fn by_depth(
     camera: &Camera,
     candidates: &mut [Vec<Candidate>],
     rasterised: &[u32],
-) -> Result<ByDepth, CompareError> {
+) -> Result<ByDepth> {
     one_channel(raster, "a depth")?;
     let count_in = |values: &[f64], form: DepthForm| {
         let pixels = candidates.iter().enumerate();
@@ -207,12 +201,8 @@ pub fn by_depth(
         let off = |candidate: &Candidate| {
             let middle = candidate.distances.iter().sum::<f64>() * 0.5;
             let is_other = candidate.primitive != rasterised[at];
-            let off = if middle.is_finite() {
-                (middle - nearest_to).abs()
-            } else {
-                0.0
-            };
-            if is_other { (1, off) } else { (0, 0.0) }
+            let off = Some((middle - nearest_to).abs()).filter(|_| middle.is_finite() && is_other);
+            (u8::from(is_other), off.unwrap_or(0.0))
         };
         let order = |one: &Candidate, other: &Candidate| {
             let ((one, off_one), (other, off_other)) = (off(one), off(other));

@@ -60,28 +60,19 @@ pub(crate) enum Agreement {
     NoAnswer,
 }
 
-/// Mistakes that are suspected in a picture.
-#[derive(Default)]
-pub(crate) struct Suspicions {
-    pub(crate) texts: Vec<String>,
-    pub(crate) agreement: Agreement,
-}
-
 impl Suspect<'_> {
-    /// Returns a text for each suspicion, with the way out.
-    pub(crate) fn suspicions(&self) -> Suspicions {
+    /// Returns a text for each suspicion, with the way out, and whether the picture agrees.
+    pub(crate) fn suspicions(&self) -> (Vec<String>, Agreement) {
         let right = self.truth.shares();
         let facing = self.is_judged.iter().filter(|it| **it).count();
         let has_answer = |at: &usize| self.is_judged[*at] && self.shares[*at].is_finite();
         let judged: Vec<usize> = (0..right.len()).filter(has_answer).collect();
         if ((facing - judged.len()) as f64) > MOST_WITHOUT_ANSWER * facing as f64 {
-            return Suspicions {
-                texts: vec![no_answer(judged.len() as u64, facing as u64)],
-                agreement: Agreement::NoAnswer,
-            };
+            let text = no_answer(judged.len() as u64, facing as u64);
+            return (vec![text], Agreement::NoAnswer);
         }
         if judged.len() < FEW {
-            return Suspicions::default();
+            return Default::default();
         }
         let error = |shares: &[f32]| {
             let off = judged.iter().map(|at| square(shares[*at] - right[*at]));
@@ -98,33 +89,23 @@ impl Suspect<'_> {
         let better = better.min_by(|(one, _), (other, _)| one.total_cmp(other));
         let is_explained = better.is_some();
         texts.extend(better.map(|(_, text)| text.to_owned()));
-        let acne = self
-            .acne(&judged, &right)
-            .filter(|_| !is_explained && own > LEAST);
+        let acne = self.acne(&judged, &right);
+        let acne = acne.filter(|_| !is_explained && own > LEAST);
         let is_hardly = even > LEAST && own > even * ALIKE && !self.is_one_sided(&judged, &right);
-        let agreement = match acne {
-            Some(acne) => {
-                texts.push(acne);
-                Agreement::Fair
-            }
-            None if !is_explained && is_hardly => {
-                texts.push(self.hardly(&judged, &right));
-                Agreement::Hardly
-            }
-            None => {
-                let ambient = self.ambient(&judged, &right);
-                texts.extend(ambient.filter(|_| !is_explained));
-                Agreement::Fair
-            }
-        };
-        Suspicions { texts, agreement }
+        let is_hardly = is_hardly && !is_explained && acne.is_none();
+        texts.extend(match acne {
+            None if is_hardly => Some(self.hardly(&judged, &right)),
+            None => self.ambient(&judged, &right).filter(|_| !is_explained),
+            acne => acne,
+        });
+        let agreement = is_hardly.then_some(Agreement::Hardly);
+        (texts, agreement.unwrap_or_default())
     }
 
     /// True if nearly all errors are lacking light, or nearly all light that is too much.
     fn is_one_sided(&self, judged: &[usize], right: &[f32]) -> bool {
-        let off = judged
-            .iter()
-            .map(|at| f64::from(self.shares[*at] - right[*at]));
+        let off = judged.iter();
+        let off = off.map(|at| f64::from(self.shares[*at] - right[*at]));
         let [lacking, too_much] = off.fold([0.0; 2], |[lacking, too_much], off| {
             [lacking + f64::max(-off, 0.0), too_much + f64::max(off, 0.0)]
         });
@@ -152,11 +133,8 @@ impl Suspect<'_> {
         let open: Vec<usize> = judged.iter().copied().filter(is_open).collect();
         let lacks = |at: usize| f64::from(1.0 - self.shares[at]).clamp(0.0, 1.0);
         let lacking: f64 = open.iter().map(|at| lacks(*at)).sum();
-        let dim: Vec<usize> = open
-            .iter()
-            .copied()
-            .filter(|at| lacks(*at) > 0.05)
-            .collect();
+        let is_dim = |at: &usize| lacks(*at) > 0.05;
+        let dim: Vec<usize> = open.iter().copied().filter(is_dim).collect();
         let is_scattered = |at: &&usize| {
             let mut around = self.around(**at).filter(|other| self.is_judged[*other]);
             let lack = lacks(**at);
@@ -164,9 +142,8 @@ impl Suspect<'_> {
         };
         let scattered = dim.iter().filter(is_scattered).count();
         let dark = judged.iter().filter(|at| right[**at] == 0.0);
-        let too_much: f64 = dark
-            .map(|at| f64::from(self.shares[*at]).clamp(0.0, 1.0))
-            .sum();
+        let light = |at: &usize| f64::from(self.shares[*at]).clamp(0.0, 1.0);
+        let too_much: f64 = dark.map(light).sum();
         let [least, most_solid] = ACNE;
         let is_acne = open.len() >= FEW
             && lacking > least * open.len() as f64

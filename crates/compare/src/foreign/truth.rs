@@ -17,7 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::json::to_text;
 use crate::files::write::{check_folder, write_whole};
 use crate::foreign::conventions::CameraRecord;
@@ -73,18 +73,12 @@ pub async fn write_truth(
     folder: &Path,
     gpu: &GpuRequest,
     sink: &dyn Sink,
-) -> Result<Vec<String>, CompareError> {
+) -> Result<Vec<String>> {
     check_folder(folder)?;
     let (viewport, scene) = (request.viewport, Arc::new(scene));
     let how = (request.oracle, request.reference_samples);
-    let truth = truth(
-        (&scene, view, viewport),
-        Surfaces::Rasterised,
-        how,
-        gpu,
-        sink,
-    )
-    .await?;
+    let seen = (&scene, view, viewport);
+    let truth = truth(seen, Surfaces::Rasterised, how, gpu, sink).await?;
     let (ground_truth, seen) = (&truth.view.ground_truth, truth.view.seen());
     let pixels = &ground_truth.pixels;
     let light = scene.light_of(view);
@@ -92,55 +86,29 @@ pub async fn write_truth(
     let blockers = by_rows(sink, &name, viewport[1], |progress| {
         truth.view.nearest_blockers(progress)
     })?;
+    let shares = ground_truth.shares().into_owned();
+    let (indeterminate, open) = (pixels.indeterminate.clone(), truth.unattributable.clone());
     let mut arrays = vec![
-        (
-            "visibility",
-            Values::F32(ground_truth.shares().into_owned()),
-            "share of the light that each pixel sees, 0 to 1",
-        ),
-        (
-            "status",
-            Values::U8(pixels.status()),
-            "0 background, 1 facing away, 2 lit, 3 in shadow",
-        ),
-        (
-            "indeterminate",
-            Values::Bool(pixels.indeterminate.clone()),
-            "1 where the answer hangs on the rounding of f32: the band",
-        ),
-        (
-            "unattributable",
-            Values::Bool(truth.unattributable.clone()),
-            "1 where surfaces within 1/16 of a pixel have other answers",
-        ),
-        (
-            "ids",
-            Values::U32(seen.primitives.to_vec()),
-            "triangle that each pixel shows, 4294967295 for none; judge --ids",
-        ),
-        (
-            "depth",
-            Values::F32(depths(seen, &light)?),
-            "distance along the view in scene units, infinite for none; judge --depth",
-        ),
-        (
-            "blockers",
-            Values::U32(blockers),
-            "triangle nearest to the surface on its way to the light, 4294967295 for none",
-        ),
+        ("visibility", Values::F32(shares)),
+        ("status", Values::U8(pixels.status())),
+        ("indeterminate", Values::Bool(indeterminate)),
+        ("unattributable", Values::Bool(open)),
+        ("ids", Values::U32(seen.primitives.to_vec())),
+        ("depth", Values::F32(depths(seen, &light)?)),
+        ("blockers", Values::U32(blockers)),
     ];
     if let Some(area) = &ground_truth.area {
         let errors = Values::F32(area.standard_errors.clone());
-        arrays.push(("standard_error", errors, "standard error of visibility"));
+        arrays.push(("standard_error", errors));
     }
     sink.begin_writing();
     let mut lines = Vec::new();
-    for (name, values, meaning) in arrays {
+    for (name, values) in arrays {
         let file = format!("{name}.{}", request.format.extension());
         let bytes = Array::of_pixels(viewport, values).encode(request.format);
         let bytes = bytes.map_err(|why| CompareError::Input(format!("{file} {why}")))?;
         write_whole(&folder.join(&file), &bytes)?;
-        lines.push(format!("{file}: {meaning}"));
+        lines.push(format!("{file}: {}", meaning(name)));
     }
     let camera = to_text(&CameraRecord::new(&scene, view, viewport));
     write_whole(&folder.join("camera.json"), camera.as_bytes())?;
@@ -148,8 +116,24 @@ pub async fn write_truth(
     Ok(lines)
 }
 
+/// The numbers of an array, in words.
+fn meaning(array: &str) -> &'static str {
+    match array {
+        "visibility" => "share of the light that each pixel sees, 0 to 1",
+        "status" => "0 background, 1 facing away, 2 lit, 3 in shadow",
+        "indeterminate" => "1 where the answer hangs on the rounding of f32: the band",
+        "unattributable" => "1 where surfaces within 1/16 of a pixel have other answers",
+        "ids" => "triangle that each pixel shows, 4294967295 for none; judge --ids",
+        "depth" => "distance along the view in scene units, infinite for none; judge --depth",
+        "blockers" => {
+            "triangle nearest to the surface on its way to the light, 4294967295 for none"
+        }
+        _ => "standard error of visibility",
+    }
+}
+
 /// Distance along the view of what each pixel shows.
-fn depths(seen: Seen, light: &LightKind) -> Result<Vec<f32>, CompareError> {
+fn depths(seen: Seen, light: &LightKind) -> Result<Vec<f32>> {
     let (camera, width) = (seen.camera, seen.camera.viewport[0]);
     let depth = |pixel: u32| {
         let place = [pixel % width, pixel / width];

@@ -54,15 +54,10 @@ impl MethodArgument {
     pub fn new(word: &str) -> Self {
         // Folders have any name.
         let split = word.split_once('@').filter(|_| !Path::new(word).is_file());
-        let Some((preset, own)) = split.filter(|(name, own)| !name.is_empty() && own.contains('='))
-        else {
-            return Self {
-                preset: word.to_owned(),
-                own: Vec::new(),
-            };
-        };
+        let split = split.filter(|(name, own)| !name.is_empty() && own.contains('='));
+        let (preset, own) = split.map_or((word, None), |(preset, own)| (preset, Some(own)));
         let mut assignments: Vec<Assignment> = Vec::new();
-        for part in own.split(',') {
+        for part in own.into_iter().flat_map(|own| own.split(',')) {
             match (part.parse::<Assignment>(), assignments.last_mut()) {
                 (Ok(assignment), _) => assignments.push(assignment),
                 (Err(_), Some(last)) => last.value += &format!(",{part}"),

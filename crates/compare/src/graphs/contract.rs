@@ -49,9 +49,8 @@ pub fn check_outputs(name: &str, plan: &Plan, provider: &dyn Provider) -> Result
         {
             continue;
         }
-        let kind = output
-            .format
-            .map_or("a buffer".into(), |format| format!("{format:?}"));
+        let format = output.format.map(|format| format!("{format:?}"));
+        let kind = format.unwrap_or("a buffer".into());
         let expected = match output.name.as_str() {
             VISIBILITY => format!("{INTEGERS} (0 or 1), {FLOATS} (0 to 1)"),
             TEXEL_DENSITY => "R32Float".to_owned(),
@@ -61,13 +60,11 @@ pub fn check_outputs(name: &str, plan: &Plan, provider: &dyn Provider) -> Result
             1 => String::new(),
             layers => format!(" and {layers} layers"),
         };
+        let ([own, wanted], lights) = ([output.size, viewport].map(size), plural(lights, "light"));
         let what = format!(
-            "`{name}`: the output `{}` is {kind} of {}{layers}; expected {expected} of the \
-             viewport's {}, in one layer or one for each of {}",
-            output.name,
-            size(output.size),
-            size(viewport),
-            plural(lights, "light")
+            "`{name}`: the output `{}` is {kind} of {own}{layers}; expected {expected} of the \
+             viewport's {wanted}, in one layer or one for each of {lights}",
+            output.name
         );
         return Err(Diagnostic::error(Code::Output, what));
     }

@@ -15,7 +15,7 @@
 //! println!("{error}");
 //! ```
 
-use crate::error::{CompareError, explain, with_causes};
+use crate::error::{CompareError, Result, explain, with_causes};
 use crate::sink::Sink;
 use crate::wording::plural;
 use itertools::Itertools;
@@ -53,7 +53,7 @@ impl GraphFaults {
     ///
     /// # Errors
     /// [`CompareError::Diagnostics`] with all faults that were added.
-    pub fn none_or_error(self) -> Result<(), CompareError> {
+    pub fn none_or_error(self) -> Result<()> {
         if self.is_empty() {
             Ok(())
         } else {
@@ -65,9 +65,8 @@ impl GraphFaults {
         let graphs = self.0.iter().map(|(graph, _)| graph).unique().count();
         let faults = self.0.iter().map(|(_, faults)| faults);
         let faults = faults.unique_by(|faults| faults.render(false));
-        let faults: Vec<Vec<_>> = faults
-            .map(|refusal| refusal.iter().cloned().collect())
-            .collect();
+        let faults = faults.map(|refusal| refusal.iter().cloned().collect());
+        let faults: Vec<Vec<_>> = faults.collect();
         let count = plural(errors(faults.iter().flatten()).count(), "error");
         let summary = format!("{count} in {}", plural(graphs, "graph"));
         CompareError::Diagnostics { faults, summary }

@@ -17,7 +17,7 @@
 //! # }
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::preset::Preset;
 use crate::graphs::shadow_method::Outputs;
 use skiagraph_gpu::Content;
@@ -95,7 +95,7 @@ pub fn judged(
     preset: &Preset,
     (contents, layer): (BTreeMap<String, Content>, usize),
     ground_truth: &GroundTruth,
-) -> Result<(Outputs, Judgement), CompareError> {
+) -> Result<(Outputs, Judgement)> {
     let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
     compared(preset, outputs, ground_truth)
 }
@@ -104,7 +104,7 @@ fn compared(
     preset: &Preset,
     outputs: Result<Outputs, String>,
     ground_truth: &GroundTruth,
-) -> Result<(Outputs, Judgement), CompareError> {
+) -> Result<(Outputs, Judgement)> {
     let broken = |reason: String| {
         let name = &preset.name;
         CompareError::InvalidOutputs(format!("`{name}` breaks the contract of outputs: {reason}"))
@@ -132,7 +132,7 @@ pub fn error(
     preset: &Preset,
     (contents, layer): (BTreeMap<String, Content>, usize),
     ground_truth: &GroundTruth,
-) -> Result<f64, CompareError> {
+) -> Result<f64> {
     let outputs = Outputs::from_contents(contents, layer, &ground_truth.pixels);
     if let (Ok(decoded), None) = (&outputs, &ground_truth.area) {
         // The errors of shares, FLIP among them, would take the most of the time.

@@ -11,7 +11,7 @@
 //! # Ok::<(), skiagraph_compare::error::CompareError>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::argument::{Assignment, MethodArgument};
 use crate::graphs::contract;
@@ -89,11 +89,9 @@ impl Method {
     }
 
     /// Returns the method with another name in results.
-    pub fn named(self, name: &str) -> Self {
-        Self {
-            name: name.to_owned(),
-            ..self
-        }
+    pub fn named(mut self, name: &str) -> Self {
+        self.name = name.to_owned();
+        self
     }
 
     /// Returns the method for an adapter with these features. Params that are not set get their
@@ -169,16 +167,11 @@ impl Method {
     /// and without `map_size`.
     pub fn given(&self) -> ParamValues {
         let words = self.name.split_once('@').map_or("", |(_, words)| words);
-        let is_named = |name: &str| {
-            words
-                .split(',')
-                .any(|word| word.split('=').next() == Some(name))
-        };
-        let given = self.params.iter();
-        let given = given.filter(|(name, _)| *name != MAP_SIZE && !is_named(name));
+        let named = words.split(',').map(|word| word.split('=').next());
+        let named = named.collect_vec();
+        let mut given = self.params.clone();
+        given.retain(|name, _| name != MAP_SIZE && !named.contains(&Some(name)));
         given
-            .map(|(name, value)| (name.clone(), value.clone()))
-            .collect()
     }
 
     /// Returns all params, defaults included, with the values that the method runs with, as JSON
@@ -209,7 +202,7 @@ fn json(value: &ParamValue) -> serde_json::Value {
 }
 
 /// A function that loads presets by names or paths, such as [`preset::load_all`].
-pub type Load = fn(&[String], &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareError>;
+pub type Load = fn(&[String], &dyn Sources) -> Result<Vec<Arc<Preset>>>;
 
 /// Loads the methods that `words` name (`crsm@n=1,depth=plane`, `my.ron@over=pcf`) with the
 /// function `load`. Returns each method in each setting that its word and `params` list, and with
@@ -225,7 +218,7 @@ pub fn load(
     map_sizes: &[u32],
     sources: &dyn Sources,
     load: Load,
-) -> Result<Vec<Method>, CompareError> {
+) -> Result<Vec<Method>> {
     let (arguments, params) = openings::arguments(words, params, sources)?;
     let presets = load(&variants::presets(&arguments), sources)?;
     methods(&presets, &arguments, &params, map_sizes)
@@ -240,7 +233,7 @@ fn methods(
     arguments: &[MethodArgument],
     params: &[Assignment],
     map_sizes: &[u32],
-) -> Result<Vec<Method>, CompareError> {
+) -> Result<Vec<Method>> {
     check_names(presets, params)?;
     let mut methods: Vec<Method> = Vec::new();
     for argument in unique(arguments) {
@@ -289,7 +282,7 @@ pub fn load_one(
     params: &[Assignment],
     map_size: Option<u32>,
     sources: &dyn Sources,
-) -> Result<(Arc<Preset>, ParamValues), CompareError> {
+) -> Result<(Arc<Preset>, ParamValues)> {
     let (arguments, params) = openings::arguments([word], params, sources)?;
     let [argument] = &arguments[..] else {
         return Err(CompareError::Request(
@@ -298,9 +291,8 @@ pub fn load_one(
     };
     let mut presets = preset::load_all(slice::from_ref(&argument.preset), sources)?;
     check_names(&presets, &params)?;
-    let preset = presets
-        .pop()
-        .ok_or_else(|| CompareError::Input("no graph".into()))?;
+    let none = || CompareError::Input("no graph".into());
+    let preset = presets.pop().ok_or_else(none)?;
     let set = [&params[..], &argument.own].concat();
     check_names(slice::from_ref(&preset), &argument.own)?;
     let params = param_values(&preset, &set, map_size)?;
@@ -317,10 +309,9 @@ pub fn param_values(
     preset: &Preset,
     assignments: &[Assignment],
     map_size: Option<u32>,
-) -> Result<ParamValues, CompareError> {
-    let own = assignments
-        .iter()
-        .filter(|set| preset.param(&set.name).is_some());
+) -> Result<ParamValues> {
+    let is_own = |set: &&Assignment| preset.param(&set.name).is_some();
+    let own = assignments.iter().filter(is_own);
     let own = own.map(|set| (set.name.as_str(), set.value.clone()));
     let size = map_size.map(|size| (MAP_SIZE, size.to_string()));
     let parsed = own.chain(size).map(|(name, value)| {
@@ -332,7 +323,7 @@ pub fn param_values(
 }
 
 /// Refuses an assignment that no preset has a param for. Where all have faults, none is known.
-fn check_names(presets: &[Arc<Preset>], assignments: &[Assignment]) -> Result<(), CompareError> {
+fn check_names(presets: &[Arc<Preset>], assignments: &[Assignment]) -> Result<()> {
     if presets.iter().all(|preset| preset.faults.is_some()) {
         return Ok(());
     }

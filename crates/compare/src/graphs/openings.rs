@@ -20,7 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::Result;
 use crate::graphs::argument::{Assignment, MethodArgument};
 use crate::graphs::preset;
 use crate::lists::unique;
@@ -42,7 +42,7 @@ pub fn arguments(
     words: impl IntoIterator<Item = impl AsRef<str>>,
     params: &[Assignment],
     sources: &dyn Sources,
-) -> Result<(Vec<MethodArgument>, Vec<Assignment>), CompareError> {
+) -> Result<(Vec<MethodArgument>, Vec<Assignment>)> {
     let (mut chosen, mut taken) = (Vec::new(), BTreeSet::new());
     for word in words {
         let argument = MethodArgument::new(word.as_ref());
@@ -55,12 +55,8 @@ pub fn arguments(
         let graph = graph.iter();
         let openings = graph.flat_map(|graph| graph.openings().chain(graph.pictures()));
         let openings: BTreeSet<String> = openings.map(|(name, _)| name.to_owned()).collect();
-        taken.extend(
-            params
-                .iter()
-                .map(|set| &set.name)
-                .filter(|name| openings.contains(*name)),
-        );
+        let names = params.iter().map(|set| &set.name);
+        taken.extend(names.filter(|name| openings.contains(*name)));
         chosen.extend(over(argument, params, &openings));
     }
     let left = params.iter().filter(|set| !taken.contains(&set.name));
@@ -73,25 +69,19 @@ fn over(
     params: &[Assignment],
     openings: &BTreeSet<String>,
 ) -> Vec<MethodArgument> {
-    let (documents, own): (Vec<Assignment>, Vec<Assignment>) = argument
-        .own
-        .into_iter()
-        .partition(|set| openings.contains(&set.name));
+    let own = argument.own.into_iter();
+    let (documents, own): (Vec<_>, Vec<_>) = own.partition(|set| openings.contains(&set.name));
     let is_own = |name: &str| documents.iter().any(|set| set.name == name);
-    let for_all = params
-        .iter()
-        .filter(|set| openings.contains(&set.name) && !is_own(&set.name));
+    let is_for_all = |set: &&Assignment| openings.contains(&set.name) && !is_own(&set.name);
+    let for_all = params.iter().filter(is_for_all);
     let mut names = vec![argument.preset];
     for (number, set) in documents.iter().chain(for_all).enumerate() {
         let sign = if number == 0 { '@' } else { ',' };
         let documents = unique(set.value.split(',').map(str::trim));
         let with =
             |(document, name): (&str, &String)| format!("{name}{sign}{}={document}", set.name);
-        names = documents
-            .into_iter()
-            .cartesian_product(&names)
-            .map(with)
-            .collect();
+        let pairs = documents.into_iter().cartesian_product(&names);
+        names = pairs.map(with).collect();
     }
     let with = |preset| MethodArgument {
         preset,

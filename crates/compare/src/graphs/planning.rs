@@ -179,9 +179,7 @@ pub fn check(
     };
     // Under a light that it refuses, other faults of a graph may follow from that.
     let refuses = |kind: &str| {
-        let graph = graph
-            .as_ref()
-            .filter(|graph| !light_kinds::takes(graph, kind))?;
+        let graph = graph.as_ref().filter(|it| !light_kinds::takes(it, kind))?;
         let takes = light_kinds::split(graph)[0].join(", ");
         let what = format!("`{}` takes no {kind} light", graph.path());
         Some(Diagnostic::error(Code::Light, what).help(format!("it takes: {takes}")))
@@ -213,10 +211,8 @@ pub fn check(
                 }
                 Err(faults) => {
                     let refused = refuses(host.1.light().word());
-                    return Err(refused.map_or_else(
-                        || for_which(faults, trial, &host, check),
-                        Diagnostics::from,
-                    ));
+                    let unplanned = || for_which(faults, trial, &host, check);
+                    return Err(refused.map_or_else(unplanned, Diagnostics::from));
                 }
             }
         }
@@ -258,13 +254,8 @@ pub(crate) fn of_every_host(path: &str, sources: &dyn Sources, faults: Diagnosti
     let planned = check(path, &registry(), sources, &Trial::default());
     let hangs = |fault: &Diagnostic| fault.help.iter().any(|help| help.starts_with(FOR_OTHERS));
     let faults = planned.err().unwrap_or(faults);
-    Diagnostics::new(
-        faults
-            .iter()
-            .filter(|fault| !hangs(fault))
-            .cloned()
-            .collect(),
-    )
+    let own = faults.iter().filter(|fault| !hangs(fault));
+    Diagnostics::new(own.cloned().collect())
 }
 
 /// Begins the message of each fault that does not hold for every host with the part of `host`, a
@@ -286,11 +277,8 @@ fn for_which(
             1 => format!("lights.count >= {count}"),
             _ => format!("lights.count <= {}", number - 1),
         };
-        (
-            count_of(number),
-            need,
-            (*viewport, lit(provider, lights, count)),
-        )
+        let host = (*viewport, lit(provider, lights, count));
+        (count_of(number), need, host)
     });
     let width = "viewport.width >= 1024".to_owned();
     let triangles = "scene.indices.count >= 1000000".to_owned();
@@ -343,10 +331,8 @@ fn count_of(lights: usize) -> String {
 /// Returns one example light of each kind that a graph takes, in the order of
 /// [`LightKind::EACH`]; one of every kind if it takes none of these.
 pub fn stand_ins(graph: &Graph) -> Vec<LightKind> {
-    let taken = LightKind::EACH
-        .iter()
-        .filter(|it| light_kinds::takes(graph, it.word()));
-    let taken: Vec<LightKind> = taken.copied().collect();
+    let is_taken = |light: &LightKind| light_kinds::takes(graph, light.word());
+    let taken: Vec<LightKind> = LightKind::EACH.into_iter().filter(is_taken).collect();
     if taken.is_empty() {
         LightKind::EACH.to_vec()
     } else {

@@ -11,7 +11,7 @@
 //! # Ok::<(), skiagraph_compare::error::CompareError>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::fingerprint::{Fingerprint, RecordedSources};
 use crate::files::picture_sources::PictureSources;
 use crate::graphs::argument::{Assignment, MethodArgument};
@@ -90,16 +90,13 @@ fn stand_ins(folder: &dyn Sources) -> Option<String> {
         };
         let files = folder.list(parent);
         let names = files.iter().filter(differs);
-        let names = names
-            .map(|file| file.strip_suffix(ending).unwrap_or(file))
-            .join(", ");
+        let mut names = names.map(|file| file.strip_suffix(ending).unwrap_or(file));
+        let names = names.join(", ");
         let text = format!("./{parent} stands in for built-in {what}, which differ: {names}");
         (!names.is_empty()).then_some(text)
     };
-    FOLDERS
-        .iter()
-        .filter_map(line)
-        .reduce(|text, line| text + "\n" + &line)
+    let lines = FOLDERS.iter().filter_map(line);
+    lines.reduce(|text, line| text + "\n" + &line)
 }
 
 /// Returns the names of all presets of `sources`, their files `pipelines/NAME.ron`, sorted and each
@@ -183,10 +180,8 @@ impl Preset {
 
     /// Returns the graph's param of this name; `None` if it has no such param.
     pub fn param(&self, name: &str) -> Option<&Param> {
-        self.graph
-            .params()
-            .iter()
-            .find(|param| param.name.as_str() == name)
+        let mut params = self.graph.params().iter();
+        params.find(|param| param.name.as_str() == name)
     }
 
     /// Returns the names that assignments can set: the graph's params, its open includes, whose
@@ -212,7 +207,7 @@ impl Preset {
     ///
     /// # Errors
     /// Those of [`plan_quietly`](Self::plan_quietly).
-    pub fn plan(&self, request: &PlanRequest, sink: &dyn Sink) -> Result<Plan, CompareError> {
+    pub fn plan(&self, request: &PlanRequest, sink: &dyn Sink) -> Result<Plan> {
         let plan = self.plan_quietly(request);
         let plan = plan.map_err(|diagnostics| GraphFaults::one(&self.name, &diagnostics))?;
         warn(sink, &self.graph, plan.warnings());
@@ -229,10 +224,7 @@ pub fn graphs(presets: &[Arc<Preset>]) -> impl Iterator<Item = &Graph> {
 ///
 /// # Errors
 /// The faults of all graphs together; those of [`load_each`].
-pub fn load_all(
-    arguments: &[String],
-    sources: &dyn Sources,
-) -> Result<Vec<Arc<Preset>>, CompareError> {
+pub fn load_all(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Preset>>> {
     sound(load_each(arguments, sources)?)
 }
 
@@ -240,13 +232,12 @@ pub fn load_all(
 ///
 /// # Errors
 /// The faults of all graphs together.
-pub(crate) fn sound(presets: Vec<Arc<Preset>>) -> Result<Vec<Arc<Preset>>, CompareError> {
+pub(crate) fn sound(presets: Vec<Arc<Preset>>) -> Result<Vec<Arc<Preset>>> {
     let mut faults = GraphFaults::default();
     for preset in &presets {
-        preset
-            .faults
-            .iter()
-            .for_each(|diagnostics| faults.add(&preset.name, diagnostics));
+        if let Some(diagnostics) = &preset.faults {
+            faults.add(&preset.name, diagnostics);
+        }
     }
     faults.none_or_error().map(|()| presets)
 }
@@ -256,10 +247,7 @@ pub(crate) fn sound(presets: Vec<Arc<Preset>>) -> Result<Vec<Arc<Preset>>, Compa
 ///
 /// # Errors
 /// A name without a preset; a file that does not exist or cannot be read.
-pub fn load_each(
-    arguments: &[String],
-    sources: &dyn Sources,
-) -> Result<Vec<Arc<Preset>>, CompareError> {
+pub fn load_each(arguments: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Preset>>> {
     let mut presets: Vec<Arc<Preset>> = Vec::new();
     for argument in arguments {
         if presets.iter().any(|preset| preset.name == *argument) {
@@ -282,7 +270,7 @@ pub fn load_each(
 }
 
 /// Returns the graph in the place of one that cannot be loaded: nothing is known of it.
-fn empty() -> Result<Graph, CompareError> {
+fn empty() -> Result<Graph> {
     const TEXT: &str = "(format: 3, materials: [Texture(name: \"none\", format: R8Uint)], \
                         passes: [Clear(name: \"clear\", target: \"none\")], outputs: [\"none\"])";
     let sources = MemorySources::default().with("empty.ron", TEXT);
@@ -297,10 +285,7 @@ fn empty() -> Result<Graph, CompareError> {
 ///
 /// # Errors
 /// A file that does not exist or cannot be read.
-pub fn load(
-    argument: &str,
-    sources: &dyn Sources,
-) -> Result<(Result<Graph, Diagnostics>, String), CompareError> {
+pub fn load(argument: &str, sources: &dyn Sources) -> Result<(Result<Graph, Diagnostics>, String)> {
     let named = MethodArgument::new(argument);
     let path = locate(&named.preset, sources)?;
     let mut documents = BTreeMap::new();
@@ -323,10 +308,9 @@ pub fn load(
 /// # Errors
 /// A file that does not exist or cannot be read. For an unknown preset, the message lists the known
 /// ones.
-pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String, CompareError> {
-    let is_path = Path::new(argument)
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
+pub fn locate(argument: &str, sources: &dyn Sources) -> Result<String> {
+    let extension = Path::new(argument).extension();
+    let is_path = extension.is_some_and(|extension| extension.eq_ignore_ascii_case("ron"));
     let path = if !is_path {
         format!("pipelines/{argument}.ron")
     } else if cfg!(windows) {

@@ -11,7 +11,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::Result;
 use crate::graphs::argument::Assignment;
 use crate::graphs::contract::{FLOATS, INTEGERS, layers};
 use crate::graphs::faults::{GraphFaults, is_mistake, reasons};
@@ -36,7 +36,7 @@ use std::{
 ///
 /// # Errors
 /// The faults of all graphs together; those of [`preset::load_each`].
-pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Preset>>, CompareError> {
+pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Preset>>> {
     preset::sound(load_each(names, sources)?)
 }
 
@@ -45,10 +45,7 @@ pub fn load_all(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Prese
 ///
 /// # Errors
 /// Those of [`preset::load_each`].
-pub fn load_each(
-    names: &[String],
-    sources: &dyn Sources,
-) -> Result<Vec<Arc<Preset>>, CompareError> {
+pub fn load_each(names: &[String], sources: &dyn Sources) -> Result<Vec<Arc<Preset>>> {
     let mut presets = preset::load_each(names, sources)?;
     for preset in presets.iter_mut().filter_map(Arc::get_mut) {
         if preset.faults.is_none() {
@@ -76,7 +73,7 @@ pub fn load_methods(
     params: &[Assignment],
     map_sizes: &[u32],
     sources: &dyn Sources,
-) -> Result<Vec<Method>, CompareError> {
+) -> Result<Vec<Method>> {
     method::load(words, params, map_sizes, sources, load_all)
 }
 

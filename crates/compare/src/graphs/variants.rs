@@ -13,7 +13,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::argument::{Assignment, MethodArgument};
 use crate::graphs::preset::Preset;
 use crate::lists::unique;
@@ -56,12 +56,11 @@ pub fn settings(
     preset: &Preset,
     argument: &MethodArgument,
     shared: &[Assignment],
-) -> Result<Vec<Setting>, CompareError> {
+) -> Result<Vec<Setting>> {
     let mut settings = vec![Setting::default()];
     let is_own = |name: &str| argument.own.iter().any(|own| own.name == name);
-    let inherited = shared
-        .iter()
-        .filter(|set| !is_own(&set.name) && preset.param(&set.name).is_some());
+    let inherited = shared.iter().filter(|set| !is_own(&set.name));
+    let inherited = inherited.filter(|set| preset.param(&set.name).is_some());
     let own = argument.own.iter().map(|set| (set, true));
     for (assignment, is_own) in own.chain(inherited.map(|set| (set, false))) {
         let name = &assignment.name;
@@ -83,11 +82,8 @@ pub fn settings(
             setting.set.push(Assignment { name, value });
             setting
         };
-        settings = settings
-            .iter()
-            .cartesian_product(&values)
-            .map(with)
-            .collect();
+        let pairs = settings.iter().cartesian_product(&values);
+        settings = pairs.map(with).collect();
         if settings.len() > MOST {
             return Err(CompareError::Input(format!(
                 "`{}` would run in {} settings; {MOST} are the most",
@@ -101,7 +97,7 @@ pub fn settings(
 
 /// The values of a list, `1,2,4`, or of a range, `0..0.01/5`: so many, evenly, both ends included.
 /// Those of a vector stand between semicolons, as its own numbers do between commas.
-fn values(assignment: &Assignment, ty: &ParamType) -> Result<Vec<String>, CompareError> {
+fn values(assignment: &Assignment, ty: &ParamType) -> Result<Vec<String>> {
     let text = &assignment.value;
     let is_vector = matches!(ty, ParamType::Vec2 | ParamType::Vec3 | ParamType::Vec4);
     if let (Some((ends, count)), false) = (text.rsplit_once('/'), is_vector)

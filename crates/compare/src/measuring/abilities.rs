@@ -53,11 +53,8 @@ pub fn meshes() -> String {
         "\nMeshes are searched beside the scene file, then (${ASSETS_VARIABLE}, cache folder) in\n"
     );
     for folder in &library.assets {
-        let there = if folder.is_dir() {
-            ""
-        } else {
-            " (no such folder)"
-        };
+        let is_there = folder.is_dir();
+        let there = if is_there { "" } else { " (no such folder)" };
         text += &format!("  {}{there}\n", folder.display());
     }
     for scene in library.list() {

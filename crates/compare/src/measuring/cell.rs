@@ -21,7 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::comparison::{Comparison, Protocol};
+use crate::comparison::Comparison;
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::method::Method;
 use crate::measuring::view_or_path::ViewOrPath;
@@ -47,18 +47,12 @@ pub fn id(
     view_lines(view, &mut lines);
     let params = method.all_params().into_iter();
     lines.extend(params.map(|(name, value)| format!("param {name}={value}")));
-    let Protocol {
-        oracle,
-        frames,
-        warmup,
-        regime_frames,
-        ..
-    } = comparison.protocol;
+    let protocol = &comparison.protocol;
     lines.extend([
-        format!("oracle {oracle}"),
-        format!("frames {frames}"),
-        format!("warmup {warmup}"),
-        format!("cached frames {regime_frames}"),
+        format!("oracle {}", protocol.oracle),
+        format!("frames {}", protocol.frames),
+        format!("warmup {}", protocol.warmup),
+        format!("cached frames {}", protocol.regime_frames),
     ]);
     lines.extend(sampling_lines(comparison, view));
     hash(&lines)
@@ -180,9 +174,8 @@ pub(crate) fn light_text(mut light: LightKind) -> String {
     } = light.parameters();
     let vectors = [position, direction].into_iter().flatten();
     let numbers = [angle_degrees, cone_degrees, radius].into_iter().flatten();
-    let words = vectors
-        .map(|it| vector(*it))
-        .chain(numbers.map(|it| it.to_string()));
+    let vectors = vectors.map(|it| vector(*it));
+    let words = vectors.chain(numbers.map(|it| it.to_string()));
     format!("light {word} {}", words.collect::<Vec<_>>().join(" "))
 }
 

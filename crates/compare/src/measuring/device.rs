@@ -19,8 +19,9 @@
 //! # Ok::<(), skiagraph_compare::error::CompareError>(())
 //! ```
 
-use crate::error::{CompareError, with_causes};
+use crate::error::{CompareError, Result, with_causes};
 use crate::records::results::{Adapter, Machine};
+use crate::wording::or_nothing;
 use skiagraph_gpu::{
     block_on,
     device::{self, Gpu, GpuError, Wanted},
@@ -52,10 +53,7 @@ pub struct GpuRequest {
 ///
 /// # Errors
 /// [`CompareError::NoGpu`] if no adapter can be used; the message says what to do.
-pub fn open<'a>(
-    request: &GpuRequest,
-    graphs: impl IntoIterator<Item = &'a Graph>,
-) -> Result<Gpu, CompareError> {
+pub fn open<'a>(request: &GpuRequest, graphs: impl IntoIterator<Item = &'a Graph>) -> Result<Gpu> {
     block_on(self::request(request, graphs))
 }
 
@@ -66,19 +64,17 @@ pub fn open<'a>(
 pub async fn request<'a>(
     request: &GpuRequest,
     graphs: impl IntoIterator<Item = &'a Graph>,
-) -> Result<Gpu, CompareError> {
+) -> Result<Gpu> {
     let union = |features, graph: &Graph| features | graph.features();
     let features = graphs.into_iter().fold(wgpu::Features::empty(), union);
     let mut wanted = Wanted::default().with_features(features);
     wanted.adapter = request.adapter.as_deref();
     wanted.backends = request.backends;
-    let mut gpu = device::request(&wanted)
-        .await
-        .map_err(|error: GpuError| CompareError::NoGpu(error.to_string()))?;
+    let opened = device::request(&wanted).await;
+    let mut gpu = opened.map_err(|error: GpuError| CompareError::NoGpu(error.to_string()))?;
     let is_software = gpu.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-    gpu.memory = request
-        .memory_limit
-        .or_else(|| is_software.then(free_memory).flatten());
+    let memory = || is_software.then(free_memory).flatten();
+    gpu.memory = request.memory_limit.or_else(memory);
     gpu.timeout = request.timeout;
     Ok(gpu)
 }
@@ -107,9 +103,7 @@ pub fn machine() -> Machine {
     let load = System::load_average().one;
     Machine {
         host: System::host_name(),
-        processor: cpus
-            .first()
-            .map_or(String::new(), |cpu| cpu.brand().trim().into()),
+        processor: or_nothing(cpus.first(), |cpu| cpu.brand().trim().into()),
         cores: cpus.len() as u32,
         // Windows has no such mean.
         load: cfg!(unix).then_some(load),
@@ -141,9 +135,8 @@ pub fn adapter(info: wgpu::AdapterInfo) -> Adapter {
 
 /// Returns the name and version of a driver as one text.
 pub fn driver(info: &wgpu::AdapterInfo) -> String {
-    format!("{} {}", info.driver, info.driver_info)
-        .trim()
-        .into()
+    let driver = format!("{} {}", info.driver, info.driver_info);
+    driver.trim().into()
 }
 
 /// Checks whether a GPU's timestamps can be trusted, by timing work on it.

@@ -93,14 +93,12 @@ pub async fn next<T>(
     draw: impl AsyncFnOnce(&mut Executor) -> Result<T, ExecuteError>,
 ) -> Result<Drawn<T>, ExecuteError> {
     let (built, uploaded) = (provider.built().to_vec(), provider.work().uploaded);
-    let times = |built: &[Built], name| {
-        let earlier = built.iter().find(|earlier| earlier.name == name);
-        earlier.map_or(0, |earlier| earlier.times)
-    };
+    let earlier = |name| built.iter().find(|earlier| earlier.name == name);
+    let times = |name| earlier(name).map_or(0, |earlier| earlier.times);
     let began = Instant::now();
     executor.refresh(provider)?;
     let time = began.elapsed();
-    let is_new = |made: &&Built| made.times > times(&built, made.name);
+    let is_new = |made: &&Built| made.times > times(made.name);
     let made = provider.built().iter().filter(is_new).copied().collect();
     let frame = draw(executor).await?;
     executor.grow(provider)?;
@@ -195,10 +193,9 @@ pub async fn grow(
 ) -> Result<Growth, ExecuteError> {
     let plan = executor.plan();
     let names = plan.growing().into_iter();
+    let names = names.map(|(id, _)| plan.resource(id).name.clone());
     let mut growth = Growth {
-        buffers: names
-            .map(|(id, _)| plan.resource(id).name.clone())
-            .collect(),
+        buffers: names.collect(),
         ..Growth::default()
     };
     while !growth.buffers.is_empty() && !growth.is_settled && growth.frames < GROWING {
@@ -274,10 +271,8 @@ pub async fn read(
 
 /// Returns the contents of readbacks by their names.
 pub fn contents(readbacks: Vec<Readback>) -> Contents {
-    let readbacks = readbacks.into_iter();
-    readbacks
-        .map(|readback| (readback.name, readback.content))
-        .collect()
+    let named = |readback: Readback| (readback.name, readback.content);
+    readbacks.into_iter().map(named).collect()
 }
 
 #[cfg(test)]

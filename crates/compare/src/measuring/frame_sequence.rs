@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::measuring::camera_pose::CameraPose;
 use crate::measuring::view_or_path::ViewOrPath;
 use skiagraph_passes::SceneProvider;
@@ -32,12 +32,16 @@ pub struct MovingParts {
 }
 
 impl MovingParts {
+    fn new(parts: Movable, elsewhere: Option<Mesh>) -> Arc<Self> {
+        let parts = Arc::new(parts);
+        Arc::new(Self { parts, elsewhere })
+    }
     /// Returns the parts that move on the first of `paths` on which any do, to be moved on still
     /// views, too; `None` if none does.
     ///
     /// # Errors
     /// The errors of [`FrameSequence::new`] on that path.
-    pub fn first(paths: &[CameraPath], mesh: &Mesh) -> Result<Option<Arc<Self>>, CompareError> {
+    pub fn first(paths: &[CameraPath], mesh: &Mesh) -> Result<Option<Arc<Self>>> {
         for path in paths {
             let Some(parts) = path.movable(mesh).map_err(CompareError::Input)? else {
                 continue;
@@ -45,10 +49,7 @@ impl MovingParts {
             for frame in 0..path.frames() {
                 let shape = path.shape(&parts, frame).map_err(CompareError::Input)?;
                 if shape.positions != parts.rest.positions {
-                    return Ok(Some(Arc::new(Self {
-                        parts: Arc::new(parts),
-                        elsewhere: Some(shape),
-                    })));
+                    return Ok(Some(Self::new(parts, Some(shape))));
                 }
             }
         }
@@ -84,7 +85,7 @@ impl FrameSequence {
         scene: &Scene,
         jitter: Option<u32>,
         count: Option<u32>,
-    ) -> Result<Self, CompareError> {
+    ) -> Result<Self> {
         let path = match view {
             ViewOrPath::Still(view) => {
                 let views = vec![view.clone(); count.unwrap_or(1) as usize];
@@ -102,19 +103,13 @@ impl FrameSequence {
         let parts = path.movable(&scene.mesh).map_err(CompareError::Input)?;
         let shapes = |parts: &Movable| {
             let shapes = (0..count).map(|frame| path.shape(parts, frame));
-            shapes
-                .collect::<Result<_, _>>()
-                .map_err(CompareError::Input)
+            let shapes: Result<_, _> = shapes.collect();
+            shapes.map_err(CompareError::Input)
         };
         Ok(Self {
             poses: CameraPose::numbered(views, jitter),
             meshes: parts.as_ref().map(shapes).transpose()?,
-            moving: parts.map(|parts| {
-                Arc::new(MovingParts {
-                    parts: Arc::new(parts),
-                    elsewhere: None,
-                })
-            }),
+            moving: parts.map(|parts| MovingParts::new(parts, None)),
             frames_per_second: path.frames_per_second,
         })
     }
@@ -170,7 +165,7 @@ impl FrameSequence {
         frame: usize,
         viewport: [u32; 2],
         provider: &mut SceneProvider,
-    ) -> Result<(), CompareError> {
+    ) -> Result<()> {
         self.poses[frame].show(provider, viewport);
         let rest = || Some(&self.moving.as_ref()?.parts.rest);
         let mesh = self.meshes.as_ref().map(|meshes| &meshes[frame]);

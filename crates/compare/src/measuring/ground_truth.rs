@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::fingerprint::{Fingerprint, RecordedSources};
 use crate::files::truth_file::Truth;
 use crate::graphs::faults::GraphFaults;
@@ -57,12 +57,11 @@ impl PrimaryVisibility {
     ///
     /// # Errors
     /// A file is missing or has a fault.
-    pub fn load(sources: &dyn Sources) -> Result<Self, CompareError> {
+    pub fn load(sources: &dyn Sources) -> Result<Self> {
         let recorded = RecordedSources::new(sources);
-        let graph = Graph::load(GBUFFER, &registry(), &recorded)
-            .map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))?;
+        let graph = Graph::load(GBUFFER, &registry(), &recorded);
         Ok(Self {
-            graph,
+            graph: graph.map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))?,
             fingerprint: recorded.fingerprint(),
         })
     }
@@ -76,12 +75,11 @@ impl PrimaryVisibility {
         session: Session,
         viewport: [u32; 2],
         provider: &dyn Provider,
-    ) -> Result<Plan, CompareError> {
+    ) -> Result<Plan> {
         let mut request = Capabilities::new(session.gpu).request(viewport, provider);
         request.outputs = Some(vec!["primitive".to_owned()]);
-        self.graph
-            .plan(&request)
-            .map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))
+        let plan = self.graph.plan(&request);
+        plan.map_err(|diagnostics| GraphFaults::one(GBUFFER, &diagnostics))
     }
 
     /// Renders and returns the id of the primitive that each pixel shows, row by row from the top
@@ -94,18 +92,13 @@ impl PrimaryVisibility {
         session: Session<'_>,
         viewport: [u32; 2],
         provider: &mut dyn Provider,
-    ) -> Result<Vec<u32>, CompareError> {
+    ) -> Result<Vec<u32>> {
         let plan = self.plan(session, viewport, provider)?;
-        let rendered = frame::render(session, plan, provider, &["primitive"]);
-        let (contents, _) = rendered
-            .await
-            .map_err(|error| frame::failed(session, GBUFFER, error))?;
-        contents
-            .get("primitive")
-            .and_then(Content::as_u32)
-            .ok_or_else(|| {
-                CompareError::Input(format!("{GBUFFER} has no output `primitive` of integers"))
-            })
+        let rendered = frame::render(session, plan, provider, &["primitive"]).await;
+        let (contents, _) = rendered.map_err(|error| frame::failed(session, GBUFFER, error))?;
+        let ids = contents.get("primitive").and_then(Content::as_u32);
+        let none = || format!("{GBUFFER} has no output `primitive` of integers");
+        ids.ok_or_else(|| CompareError::Input(none()))
     }
 }
 
@@ -152,7 +145,7 @@ impl<'a> GroundTruthView<'a> {
         primitives: Vec<u32>,
         how: (OracleMode, u32),
         listener: (&str, &dyn Sink),
-    ) -> Result<Self, CompareError> {
+    ) -> Result<Self> {
         let truth = trace(&oracle, &camera, light, &primitives, how, listener)?;
         let (camera, seen) = ((camera, light), (primitives, how.0));
         Ok(Self::traced(oracle, camera, seen, truth))
@@ -192,11 +185,7 @@ impl<'a> GroundTruthView<'a> {
     ///
     /// # Errors
     /// Outputs of another size than the [reference](crate#terms).
-    pub fn blockers(
-        &self,
-        outputs: &Outputs,
-        truth: &GroundTruthPixels,
-    ) -> Result<BlockerCounts, CompareError> {
+    pub fn blockers(&self, outputs: &Outputs, truth: &GroundTruthPixels) -> Result<BlockerCounts> {
         let (visibility, status) = (&outputs.visibility, &outputs.status);
         let pixels = Statistics::certain_wrong_pixels(visibility, status, truth);
         let (camera, light, primitives) = (&self.camera, &self.light, &self.primitives);
@@ -233,16 +222,10 @@ impl<'a> GroundTruthView<'a> {
     ///
     /// # Errors
     /// An [early end](crate#terms).
-    pub fn nearest_blockers(&self, progress: Progress) -> Result<Vec<u32>, CompareError> {
-        let (camera, primitives) = (&self.camera, &self.primitives);
-        let blockers = nearest_blockers(
-            &self.oracle,
-            camera,
-            self.light,
-            primitives,
-            self.mode,
-            progress,
-        );
+    pub fn nearest_blockers(&self, progress: Progress) -> Result<Vec<u32>> {
+        let (oracle, camera, light) = (&self.oracle, &self.camera, self.light);
+        let (primitives, mode) = (&self.primitives, self.mode);
+        let blockers = nearest_blockers(oracle, camera, light, primitives, mode, progress);
         blockers.map_err(|_| CompareError::interrupted())
     }
 
@@ -251,11 +234,7 @@ impl<'a> GroundTruthView<'a> {
     ///
     /// # Errors
     /// Outputs of another size than the reference.
-    pub fn edges(
-        &self,
-        outputs: &Outputs,
-        truth: &GroundTruthPixels,
-    ) -> Result<EdgeDistances, CompareError> {
+    pub fn edges(&self, outputs: &Outputs, truth: &GroundTruthPixels) -> Result<EdgeDistances> {
         let (visibility, status) = (&outputs.visibility, &outputs.status);
         let edges = EdgeDistances::measured(self.seen(), visibility, status, truth);
         edges.map_err(|error| CompareError::Input(format!("no distances from edges: {error}")))
@@ -267,7 +246,7 @@ impl<'a> GroundTruthView<'a> {
     ///
     /// # Errors
     /// A density of another length than the [reference](crate#terms)'s pixels.
-    pub fn footprints(&self, density: &[f32]) -> Result<Vec<Option<Footprint>>, CompareError> {
+    pub fn footprints(&self, density: &[f32]) -> Result<Vec<Option<Footprint>>> {
         let truth = &self.ground_truth.pixels;
         let footprints = texels::footprints(self.seen(), &self.light, density, truth);
         footprints.map_err(|error| CompareError::Input(format!("no texels per pixel: {error}")))
@@ -281,11 +260,7 @@ impl<'a> GroundTruthView<'a> {
     ///
     /// # Errors
     /// Outputs or layers of another size than the [reference](crate#terms).
-    pub fn layer_jump(
-        &self,
-        outputs: &Outputs,
-        layers: &[u32],
-    ) -> Result<Option<LayerJump>, CompareError> {
+    pub fn layer_jump(&self, outputs: &Outputs, layers: &[u32]) -> Result<Option<LayerJump>> {
         let (truth, shares) = (&self.ground_truth.pixels, self.ground_truth.shares());
         let shown = outputs.shown();
         let jump = LayerJump::measured(self.seen(), [&shown, &shares], layers, truth);
@@ -301,7 +276,7 @@ pub(crate) fn trace(
     primitives: &[u32],
     how: (OracleMode, u32),
     (what, sink): (&str, &dyn Sink),
-) -> Result<Truth, CompareError> {
+) -> Result<Truth> {
     let rows = camera.viewport[1];
     let failed = |error: Error| match error {
         Error::Interrupted => CompareError::interrupted(),
@@ -343,7 +318,7 @@ impl<'a> GroundTruthFrames<'a> {
         frames: &'a FrameSequence,
         truth_views: Vec<GroundTruthView<'a>>,
         sink: &dyn Sink,
-    ) -> Result<Self, CompareError> {
+    ) -> Result<Self> {
         let progress = heard(sink, &|_| ());
         let pairs = truth_views.windows(2);
         let same = pairs.map(|pair| same_receivers(pair[0].seen(), pair[1].seen(), progress));
@@ -359,8 +334,8 @@ impl<'a> GroundTruthFrames<'a> {
     /// Returns the number of pixels, over all frames, that the GPU rasterised with a surface that
     /// is hidden behind another one by more than rounding.
     pub fn wrong_surfaces(&self) -> u64 {
-        self.truth_views
-            .iter()
+        let truth_views = self.truth_views.iter();
+        truth_views
             .map(|truth_view| truth_view.wrong_surfaces)
             .sum()
     }
@@ -381,8 +356,8 @@ pub(crate) fn by_rows<T>(
     sink: &dyn Sink,
     name: &str,
     rows: u32,
-    work: impl FnOnce(Progress) -> Result<T, CompareError>,
-) -> Result<T, CompareError> {
+    work: impl FnOnce(Progress) -> Result<T>,
+) -> Result<T> {
     let step = Step::begin(sink, name, rows.into(), "rows");
     let outcome = work(heard(sink, &|rows| step.set_done(rows)))?;
     step.end();

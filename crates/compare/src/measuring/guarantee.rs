@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::faults::reasons;
 use crate::graphs::method::Method;
 use crate::records::results::Promise;
@@ -33,29 +33,24 @@ const CLAIMS: [Guarantee; 2] = [Guarantee::Exact, Guarantee::Certain];
 ///
 /// # Errors
 /// A claim that is not a [`Guarantee`], or whose condition cannot be evaluated.
-pub fn find(
-    method: &Method,
-    exact: &[String],
-) -> Result<Option<(Guarantee, String)>, CompareError> {
+pub fn find(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, String)>> {
     let preset = &method.preset;
     if exact.contains(&method.name) || exact.contains(&preset.name) {
         return Ok(Some((Guarantee::Exact, "asked for".into())));
     }
-    let claims = preset
-        .graph
-        .claims(&method.params, method.viewport, method.features);
+    let (viewport, features) = (method.viewport, method.features);
+    let claims = preset.graph.claims(&method.params, viewport, features);
     let claims = claims.map_err(|faults| CompareError::Input(reasons(faults.iter())))?;
     let words = CLAIMS.map(Guarantee::word);
-    if let Some(unknown) = claims
+    let mut unknown = claims
         .iter()
-        .find(|claim| !words.contains(&claim.name.as_str()))
-    {
+        .filter(|it| !words.contains(&it.name.as_str()));
+    if let Some(unknown) = unknown.next() {
+        let (preset, name) = (&preset.name, &unknown.name);
+        let (hint, words) = (did_you_mean(name, words.into_iter()), words.join(" or "));
         return Err(CompareError::Input(format!(
-            "`{}` claims `{}`, which is an unknown guarantee{}\n  a document claims {}",
-            preset.name,
-            unknown.name,
-            did_you_mean(&unknown.name, words.into_iter()),
-            words.join(" or ")
+            "`{preset}` claims `{name}`, which is an unknown guarantee{hint}\n  a document claims \
+             {words}"
         )));
     }
     let holds = |guarantee: Guarantee| {

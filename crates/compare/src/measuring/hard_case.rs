@@ -28,7 +28,7 @@
 //! # }
 //! ```
 
-use crate::error::{CompareError, with_causes};
+use crate::error::{CompareError, Result, with_causes};
 use crate::graphs::faults::reasons;
 use crate::graphs::ground_truth::Judgement;
 use crate::graphs::light_kinds;
@@ -76,11 +76,8 @@ impl MethodRun {
     /// in it is judged as guaranteed to be exact.
     pub fn new(method: Method, exact: &[String]) -> Self {
         let claim = guarantee::find(&method, exact).map(Option::unzip);
-        let faults = method
-            .preset
-            .faults
-            .as_ref()
-            .map(|faults| reasons(faults.iter()));
+        let faults = method.preset.faults.as_ref();
+        let faults = faults.map(|faults| reasons(faults.iter()));
         let unclear = claim.as_ref().err().map(|error| with_causes(error));
         let (guarantee, because) = claim.unwrap_or_default();
         Self {
@@ -111,10 +108,8 @@ impl MethodRun {
     /// with `cull=none`, otherwise one.
     pub fn stems(&self, case: &HardCase, viewport: [u32; 2]) -> Vec<(String, String)> {
         let owner = format!("`{}` on `{}`", self.method.name, case.name);
-        let variants = self.variants(case.casters);
-        variants
-            .map(|variant| (stem_of(variant, case, viewport), owner.clone()))
-            .collect()
+        let stem = |variant| (stem_of(variant, case, viewport), owner.clone());
+        self.variants(case.casters).map(stem).collect()
     }
 }
 
@@ -158,7 +153,7 @@ impl HardCaseContext<'_> {
     /// # Errors
     /// An [early end](crate#terms), a lost device, a picture that cannot be written. All other
     /// errors are part of the result.
-    pub async fn run(&self, hard: &HardCase) -> Result<Case, CompareError> {
+    pub async fn run(&self, hard: &HardCase) -> Result<Case> {
         let scene = Arc::new(hard.scene());
         let mut provider = SceneProvider::new(scene.clone());
         let mut case = Case {
@@ -240,16 +235,14 @@ impl HardCaseContext<'_> {
         &self,
         scene: &'s Scene,
         provider: &mut SceneProvider,
-    ) -> Result<GroundTruthView<'s>, CompareError> {
+    ) -> Result<GroundTruthView<'s>> {
         let [view] = &scene.views[..] else {
             let what = format!("{} has no single view", scene.name);
             return Err(CompareError::Input(what));
         };
         provider.set_view(view, self.viewport);
-        let ids = self
-            .primary
-            .ids(self.session, self.viewport, provider)
-            .await?;
+        let ids = self.primary.ids(self.session, self.viewport, provider);
+        let ids = ids.await?;
         let how = (OracleMode::Exact, REFERENCE_SAMPLES);
         let (camera, light) = (view.camera(self.viewport), scene.light_of(view));
         let (oracle, sink) = (Oracle::new(&scene.mesh), WithoutSteps(self.session.sink));
@@ -262,7 +255,7 @@ impl HardCaseContext<'_> {
         method: &Method,
         provider: &mut SceneProvider,
         ground_truth: &GroundTruth,
-    ) -> Result<(Outputs, Judgement, Counts), CompareError> {
+    ) -> Result<(Outputs, Judgement, Counts)> {
         let (session, preset, truth) = (self.session, &*method.preset, &ground_truth.pixels);
         let plan = method.plan(self.viewport, Capabilities::new(session.gpu), provider);
         let plan = plan.map_err(|faults| CompareError::Input(reasons(faults.iter())))?;

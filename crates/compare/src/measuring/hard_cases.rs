@@ -12,7 +12,7 @@
 //! # Ok::<(), skiagraph_compare::error::CompareError>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::lock::{self, Locked};
 use crate::files::write::check_folder;
 use crate::graphs::planning::Capabilities;
@@ -34,7 +34,7 @@ use std::{path::Path, sync::Arc};
 ///
 /// # Errors
 /// A name that no case has.
-pub fn cases(names: &[String]) -> Result<Vec<HardCase>, CompareError> {
+pub fn cases(names: &[String]) -> Result<Vec<HardCase>> {
     if names.is_empty() {
         return Ok(skiagraph_cases::cases());
     }
@@ -72,7 +72,7 @@ pub fn plan(
     methods: &mut [MethodRun],
     cases: &[HardCase],
     viewport: [u32; 2],
-) -> Result<Vec<String>, CompareError> {
+) -> Result<Vec<String>> {
     let (mut plans, device) = (PlanCheck::default(), Capabilities::new(session.gpu));
     for scene in one_of_each_light(cases) {
         let provider = SceneProvider::new(Arc::new(scene));
@@ -102,7 +102,7 @@ pub fn plan(
 ///
 /// # Errors
 /// Names the first one that is not.
-pub fn check_exact(exact: &[String], names: &[String]) -> Result<(), CompareError> {
+pub fn check_exact(exact: &[String], names: &[String]) -> Result<()> {
     let Some(name) = exact.iter().find(|name| !names.contains(name)) else {
         return Ok(());
     };
@@ -121,7 +121,7 @@ pub fn check_pictures(
     cases: &[HardCase],
     viewport: [u32; 2],
     folder: &Path,
-) -> Result<(), CompareError> {
+) -> Result<()> {
     let mut stems = Vec::new();
     for case in cases {
         let reference = reference_stem(case.name, viewport);
@@ -139,7 +139,7 @@ pub fn check_pictures(
 ///
 /// # Errors
 /// A folder that another process has claimed, or that cannot be written.
-pub fn claim(folder: &Path, sink: &dyn Sink) -> Result<Locked, CompareError> {
+pub fn claim(folder: &Path, sink: &dyn Sink) -> Result<Locked> {
     check_folder(folder)?;
     lock::claim(folder, lock::STRESS, sink)?.ok_or_else(|| {
         CompareError::Input(format!(

@@ -1,7 +1,7 @@
 //! Finds a setting that makes most of a method's wrong pixels right, by the casters that block
 //! their light.
 
-use crate::error::CompareError;
+use crate::error::Result;
 use crate::graphs::ground_truth;
 use crate::graphs::method::{Method, ParamValues};
 use crate::graphs::planning::Capabilities;
@@ -38,7 +38,7 @@ pub async fn find(
     (truth_view, layer): (&GroundTruthView<'_>, usize),
     (wrong, blockers): (u64, BlockerCounts),
     provider: &mut dyn Provider,
-) -> Result<Option<Hint>, CompareError> {
+) -> Result<Option<Hint>> {
     let classes = &truth_view.ground_truth.pixels.classes;
     let facing = classes.iter().filter(|class| class.faces_light()).count();
     let (open, none) = (blockers.open_part, blockers.none);
@@ -107,7 +107,7 @@ async fn wrong_with(
     method: &Method,
     (truth_view, layer): (&GroundTruthView<'_>, usize),
     provider: &mut dyn Provider,
-) -> Result<Option<u64>, CompareError> {
+) -> Result<Option<u64>> {
     let names = method.preset.judged();
     let truth = &truth_view.ground_truth;
     let capabilities = Capabilities::new(session.gpu);

@@ -20,12 +20,13 @@
 //! ```
 
 use crate::comparison::Comparison;
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::write::{check_folder, write_new};
 use crate::measuring::cell;
 use crate::measuring::series::Series;
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::records::cell_plan::{CellPlan, FILE, Head, PlannedCell, PlannedTruth};
+use crate::records::results::Run;
 use crate::records::shard::Shard;
 use crate::sink::{Session, Silent};
 use crate::wording::plural;
@@ -78,10 +79,9 @@ pub async fn plan(
     scenes: &[SceneCells<'_>],
     session: Session<'_>,
     arguments: Vec<String>,
-) -> Result<CellPlan, CompareError> {
-    let commit = scenes
-        .first()
-        .and_then(|scene| scene.comparison.commit.clone());
+) -> Result<CellPlan> {
+    let first = scenes.first();
+    let commit = first.and_then(|scene| scene.comparison.commit.clone());
     let mut plan = CellPlan {
         head: Head::new(arguments, commit),
         truths: Vec::new(),
@@ -122,10 +122,9 @@ pub async fn plan(
     let mut by_id: BTreeMap<&str, &PlannedCell> = BTreeMap::new();
     for cell in &plan.cells {
         if let Some(other) = by_id.insert(&cell.cell, cell) {
+            let [one, other] = [other, cell].map(|cell| plan.label(cell));
             return Err(CompareError::Input(format!(
-                "`{}` and `{}` are the same cell: leave one of them out",
-                plan.label(other),
-                plan.label(cell)
+                "`{one}` and `{other}` are the same cell: leave one of them out"
             )));
         }
     }
@@ -147,7 +146,7 @@ pub async fn measure(
     share: &Share<'_>,
     scenes: &[SceneCells<'_>],
     session: Session<'_>,
-) -> Result<ShardOutcome, CompareError> {
+) -> Result<ShardOutcome> {
     let Share { plan, shard, out } = *share;
     let own_plan = self::plan(scenes, session, plan.head.arguments.clone()).await?;
     check_alike(plan, &own_plan)?;
@@ -171,9 +170,7 @@ pub async fn measure(
         })?;
         let unavailable = series.results.runs.iter();
         let unavailable = unavailable.filter(|run| run.measured.is_none());
-        outcome
-            .unavailable
-            .extend(unavailable.map(|run| run.label()));
+        outcome.unavailable.extend(unavailable.map(Run::label));
         broken.append(&mut series.broken);
     }
     match broken.iter().join("\nerror: ") {
@@ -190,7 +187,7 @@ fn interrupted(share: &Share) -> CompareError {
 }
 
 /// Refuses to measure what was not planned.
-fn check_alike(plan: &CellPlan, own_plan: &CellPlan) -> Result<(), CompareError> {
+fn check_alike(plan: &CellPlan, own_plan: &CellPlan) -> Result<()> {
     let refused = |why: String| {
         Err(CompareError::Input(format!(
             "the plan is of other cells than this machine would measure\n  {why}\n  measure all \
@@ -226,7 +223,7 @@ fn check_alike(plan: &CellPlan, own_plan: &CellPlan) -> Result<(), CompareError>
 }
 
 /// Puts the plan into the folder of its cells, so that `merge` knows which are missing.
-fn copy_plan(plan: &CellPlan, out: &Path) -> Result<(), CompareError> {
+fn copy_plan(plan: &CellPlan, out: &Path) -> Result<()> {
     let refused = |what: &str| {
         Err(CompareError::Input(format!(
             "{} holds {what}: name another folder (--out), or delete it",

@@ -20,7 +20,7 @@
 //! # }
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::faults::GraphFaults;
 use crate::graphs::preset::Preset;
 use crate::measuring::frame::{self, Contents};
@@ -49,17 +49,14 @@ pub async fn check(
     plan: &Plan,
     provider: &mut dyn Provider,
     preset: &Preset,
-) -> Result<String, CompareError> {
+) -> Result<String> {
     let outputs = preset.graph.default_outputs();
     let mut render = async |pattern: u8| {
-        let plan = plan
-            .with(|request| request.poison = Some(pattern))
-            .map_err(|diagnostics| GraphFaults::one(&preset.name, &diagnostics))?;
+        let plan = plan.with(|request| request.poison = Some(pattern));
+        let plan = plan.map_err(|diagnostics| GraphFaults::one(&preset.name, &diagnostics))?;
         // Which items of a buffer that is too small have room is chance.
-        let rendered = frame::render(session, plan, provider, &outputs);
-        let rendered = rendered
-            .await
-            .map_err(|error| frame::failed(session, &preset.name, error));
+        let rendered = frame::render(session, plan, provider, &outputs).await;
+        let rendered = rendered.map_err(|error| frame::failed(session, &preset.name, error));
         rendered.map(|(contents, _)| contents)
     };
     let [low, high] = [render(PATTERNS[0]).await?, render(PATTERNS[1]).await?];
@@ -86,9 +83,8 @@ pub async fn check(
         }
         return Ok(text);
     }
-    let differing = differing
-        .iter()
-        .map(|(name, share)| format!("`{name}` ({share} of its bytes)"));
+    let differing = differing.iter();
+    let differing = differing.map(|(name, share)| format!("`{name}` ({share} of its bytes)"));
     Err(CompareError::Input(format!(
         "`{}` reads memory that no pass has written in the frame: with two patterns in it, {} \
          differ\n  clear what is written only in part, and promise by `overwrites` only what holds",

@@ -15,7 +15,7 @@
 //! # }
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame_sequence::FrameSequence;
@@ -44,7 +44,7 @@ pub async fn profile(
     method: &Method,
     scene: &Arc<Scene>,
     view: &View,
-) -> Result<(Profile, Vec<TimedFrame>), CompareError> {
+) -> Result<(Profile, Vec<TimedFrame>)> {
     let (preset, viewport) = (&method.preset, method.viewport);
     let mut provider = SceneProvider::new(scene.clone());
     provider.set_view(view, viewport);
@@ -52,11 +52,8 @@ pub async fn profile(
     request.params = method.params.clone();
     let plan = preset.plan(&request, session.sink)?;
 
-    let build = if cfg!(debug_assertions) {
-        "debug"
-    } else {
-        "release"
-    };
+    let is_debug = cfg!(debug_assertions);
+    let build = if is_debug { "debug" } else { "release" };
     let conditions = Conditions {
         program: PROGRAM.into(),
         build: build.into(),

@@ -1,7 +1,7 @@
 //! Measures one run: executes a method on one view or camera path, judges, times and pictures it.
 
 use crate::comparison::Protocol;
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::contract::{layer_of, layers};
 use crate::graphs::ground_truth::{Judgement, judged};
 use crate::graphs::method::Method;
@@ -57,17 +57,10 @@ pub struct Judged {
     pub method: Method,
     planned: Run,
     executor: Executor,
-    measured: Measured,
+    /// The measurements so far.
+    pub measured: Measured,
     /// Pictures of the method, to be written with its run.
     pub pictures: Vec<PictureFile>,
-}
-
-impl Judged {
-    /// Returns the bytes of the textures and buffers that the graph makes, without those of the
-    /// scene.
-    pub fn bytes(&self) -> u64 {
-        self.measured.memory_bytes
-    }
 }
 
 impl MeasureContext<'_> {
@@ -174,7 +167,7 @@ impl MeasureContext<'_> {
         (method, layer): (&Method, usize),
         account: &Account,
         provider: &mut SceneProvider,
-    ) -> Result<Option<Hint>, CompareError> {
+    ) -> Result<Option<Hint>> {
         let is_still = matches!(self.view, ViewOrPath::Still(_));
         let Some(blockers) = account.blockers.filter(|_| self.hints && is_still) else {
             return Ok(None);
@@ -264,7 +257,7 @@ impl MeasureContext<'_> {
         group: u32,
         provider: &SceneProvider,
         done: impl Fn(u64),
-    ) -> Result<Vec<Run>, CompareError> {
+    ) -> Result<Vec<Run>> {
         let viewport = self.truth_view.ground_truth.pixels.viewport;
         let executors = methods.iter_mut().map(|judged| &mut judged.executor);
         let frames = self.path.frames;
@@ -302,7 +295,7 @@ impl MeasureContext<'_> {
     }
 
     /// Writes the times of a method's turns into its measurements.
-    fn set_timed(&self, measured: &mut Measured, timed: &TimedKinds) -> Result<(), CompareError> {
+    fn set_timed(&self, measured: &mut Measured, timed: &TimedKinds) -> Result<()> {
         let kind = match &mut measured.sequence {
             Some(sequence) => {
                 let frames = timed.get(&Kind::Path).into_iter().flatten();
@@ -355,7 +348,7 @@ impl MeasureContext<'_> {
         frame: Option<usize>,
         ground_truth: &GroundTruth,
         (outputs, judgement, diagnostics): (&Outputs, &Judgement, &Diagnostics),
-    ) -> Result<(Option<Images>, Vec<PictureFile>), CompareError> {
+    ) -> Result<(Option<Images>, Vec<PictureFile>)> {
         let place = self.place(method, frame, ground_truth.pixels.viewport);
         let (mut images, mut files) = (None, Vec::new());
         if self.protocol.pictures {

@@ -54,14 +54,13 @@ pub fn scene_folders(scenes: &[String]) -> Vec<String> {
             name => name,
         };
         // Some file systems do not tell capitals from small letters.
-        let is_taken = |name: &String| {
-            folders
-                .iter()
-                .any(|it| it.to_lowercase() == name.to_lowercase())
-        };
+        let taken: Vec<String> = folders.iter().map(|it| it.to_lowercase()).collect();
         let numbered = (2..).map(|number| format!("{name}-{number}"));
         let free = [name.clone()].into_iter().chain(numbered);
-        folders.extend(free.into_iter().find(|name| !is_taken(name)));
+        folders.extend(
+            free.into_iter()
+                .find(|name| !taken.contains(&name.to_lowercase())),
+        );
     }
     folders
 }

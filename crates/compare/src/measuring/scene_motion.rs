@@ -1,7 +1,7 @@
 //! Moves the camera, the light or meshes of a scene a little, so that frames can be timed in which
 //! nothing else has changed.
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::measuring::frame_sequence::FrameSequence;
 use crate::records::regimes::Regime;
 use glam::Vec3;
@@ -36,7 +36,7 @@ pub fn step(
     (frames, index): (&FrameSequence, usize),
     viewport: [u32; 2],
     provider: &mut SceneProvider,
-) -> Result<(), CompareError> {
+) -> Result<()> {
     let shape = match regime {
         Regime::Nothing => None,
         Regime::Camera => {
@@ -83,11 +83,9 @@ fn moved_light(light: &LightKind, step: f64) -> LightKind {
 
 /// A mesh of which every position is shifted by a step.
 fn shifted(mesh: &Mesh) -> (Vec<Vec3>, Vec<Vec3>) {
-    let size = mesh
-        .positions
-        .iter()
-        .map(|position| position.abs().max_element());
-    let step = Vec3::splat(STEP as f32 * size.fold(0.0, f32::max));
+    let extent = |position: &Vec3| position.abs().max_element();
+    let size = mesh.positions.iter().map(extent).fold(0.0, f32::max);
+    let step = Vec3::splat(STEP as f32 * size);
     let positions = mesh.positions.iter().map(|position| *position + step);
     (positions.collect(), mesh.normals.clone())
 }

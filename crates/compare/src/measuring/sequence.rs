@@ -1,6 +1,6 @@
 //! Adds up the frames of a view or camera path as they are judged.
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::ground_truth::Judgement;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::ground_truth::GroundTruthFrames;
@@ -99,7 +99,7 @@ impl Account {
         index: usize,
         outputs: Outputs,
         judgement: Judgement,
-    ) -> Result<(), CompareError> {
+    ) -> Result<()> {
         let (truth_view, counts) = (&path.truth_views[index], judgement.counts);
         let truth = &truth_view.ground_truth.pixels;
         let edges = truth_view.edges(&outputs, truth)?;

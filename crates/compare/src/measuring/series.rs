@@ -25,8 +25,8 @@
 //! # }
 //! ```
 
-use crate::comparison::{Comparison, Protocol};
-use crate::error::CompareError;
+use crate::comparison::Comparison;
+use crate::error::{CompareError, Result};
 use crate::graphs::contract::layer_of;
 use crate::graphs::faults::{is_mistake, reasons};
 use crate::graphs::method::Method;
@@ -91,7 +91,7 @@ pub struct Series<'a> {
 /// # Errors
 /// The errors of [`Comparison::check`] and [`Series::measure`]; [`CompareError::InvalidOutputs`]
 /// for the graphs in [`Series::broken`].
-pub async fn run(comparison: &Comparison, session: Session<'_>) -> Result<Results, CompareError> {
+pub async fn run(comparison: &Comparison, session: Session<'_>) -> Result<Results> {
     comparison.check(session)?;
     let mut series = Series::new(comparison, session, None).await?;
     series.measure_all().await?;
@@ -122,7 +122,7 @@ impl<'a> Series<'a> {
         comparison: &'a Comparison,
         session: Session<'a>,
         kept_in: Option<(&Path, Kept)>,
-    ) -> Result<Self, CompareError> {
+    ) -> Result<Self> {
         let mut series = Self::in_memory(comparison, session).await;
         let opened = kept_in.map(|(folder, keep)| {
             let plan = (&series.results, &series.planned[..]);
@@ -190,7 +190,7 @@ impl<'a> Series<'a> {
         session: Session<'a>,
         folder: &Path,
         chosen: &BTreeSet<&str>,
-    ) -> Result<Self, CompareError> {
+    ) -> Result<Self> {
         let mut series = Self::in_memory(comparison, session).await;
         let planned = series.planned.iter();
         series.is_left_out = planned.map(|run| !chosen.contains(&*run.cell)).collect();
@@ -251,7 +251,7 @@ impl<'a> Series<'a> {
     ///
     /// # Errors
     /// Those of [`measure`](Self::measure).
-    pub async fn measure_all(&mut self) -> Result<(), CompareError> {
+    pub async fn measure_all(&mut self) -> Result<()> {
         for view in 0..self.comparison.views.len() {
             for viewport in 0..self.comparison.viewports.len() {
                 self.measure(view, viewport).await?;
@@ -271,7 +271,7 @@ impl<'a> Series<'a> {
     ///
     /// # Panics
     /// If an index is out of range.
-    pub async fn measure(&mut self, view: usize, viewport: usize) -> Result<(), CompareError> {
+    pub async fn measure(&mut self, view: usize, viewport: usize) -> Result<()> {
         let places = self.places(view, viewport);
         let view = &self.comparison.views[view];
         let viewport = self.comparison.viewports[viewport];
@@ -313,9 +313,8 @@ impl<'a> Series<'a> {
             hints: self.comparison.tuned.is_empty(),
         };
         let missing = places.zip(&methods);
-        let missing: Vec<(usize, &Method)> = missing
-            .filter(|(place, _)| self.is_missing(*place))
-            .collect();
+        let missing = missing.filter(|(place, _)| self.is_missing(*place));
+        let missing: Vec<(usize, &Method)> = missing.collect();
         self.measure_methods(&context, &missing).await
     }
 
@@ -326,7 +325,7 @@ impl<'a> Series<'a> {
         &mut self,
         context: &MeasureContext<'_>,
         missing: &[(usize, &Method)],
-    ) -> Result<(), CompareError> {
+    ) -> Result<()> {
         let room = self.session.gpu.memory.map_or(ROOM, |bytes| bytes / 2);
         let (mut places, mut group): (Vec<usize>, Vec<Judged>) = Default::default();
         let mut groups = 0;
@@ -339,8 +338,9 @@ impl<'a> Series<'a> {
                     continue;
                 }
             };
-            let bytes: u64 = group.iter().map(Judged::bytes).sum();
-            if group.len() > 1 && bytes + judged.bytes() > room {
+            let bytes = |judged: &Judged| judged.measured.memory_bytes;
+            let taken: u64 = group.iter().map(bytes).sum();
+            if group.len() > 1 && taken + bytes(&judged) > room {
                 self.time(context, &places, &mut group, groups).await?;
                 // The anchor stays.
                 places.truncate(1);
@@ -362,7 +362,7 @@ impl<'a> Series<'a> {
         places: &[usize],
         group: &mut [Judged],
         index: u32,
-    ) -> Result<(), CompareError> {
+    ) -> Result<()> {
         if group.is_empty() {
             return Ok(());
         }
@@ -372,9 +372,8 @@ impl<'a> Series<'a> {
         let name = format!("{methods} in turns, {} {viewport}", context.view.name());
         let step = Step::begin(self.session.sink, &name, turns, "turns");
         let set_done = |turns| step.set_done(turns);
-        let runs = context
-            .times(group, index, &self.provider, set_done)
-            .await?;
+        let runs = context.times(group, index, &self.provider, set_done);
+        let runs = runs.await?;
         step.end();
         // The anchor's run is that of its first group.
         let anchors = usize::from(index > 0);
@@ -397,7 +396,7 @@ impl<'a> Series<'a> {
         &mut self,
         context: &MeasureContext<'_>,
         (place, method): (usize, &Method),
-    ) -> Result<Result<Judged, Box<Run>>, CompareError> {
+    ) -> Result<Result<Judged, Box<Run>>> {
         let (planned, path) = (&self.planned[place], context.path.frames);
         path.show(0, planned.viewport, &mut self.provider)?;
         let unavailable = |reason| Box::new(context.run(method, planned, Err(reason)));
@@ -463,7 +462,7 @@ impl<'a> Series<'a> {
     /// # Errors
     /// A file that cannot be written; a cell that another process has meanwhile measured on another
     /// adapter or scene, with another protocol, or with other errors.
-    pub fn save(&mut self, pictures: &[PictureFile]) -> Result<(), CompareError> {
+    pub fn save(&mut self, pictures: &[PictureFile]) -> Result<()> {
         match &mut self.store {
             None => Ok(()),
             Some(store) => store.save(&self.results, pictures),
@@ -472,12 +471,7 @@ impl<'a> Series<'a> {
 
     /// A method that could not run and again cannot even be planned here needs no reference to say
     /// so.
-    fn plan_again(
-        &mut self,
-        place: usize,
-        method: &Method,
-        viewport: [u32; 2],
-    ) -> Result<(), CompareError> {
+    fn plan_again(&mut self, place: usize, method: &Method, viewport: [u32; 2]) -> Result<()> {
         let run = &self.planned[place];
         if run.unavailable.is_none() || self.is_done[place] {
             return Ok(());
@@ -512,15 +506,12 @@ impl<'a> Series<'a> {
         view: &ViewOrPath,
         frames: &'m FrameSequence,
         viewport: [u32; 2],
-    ) -> Result<Vec<GroundTruthView<'m>>, CompareError>
+    ) -> Result<Vec<GroundTruthView<'m>>>
     where
         'a: 'm,
     {
-        let Protocol {
-            oracle: mode,
-            reference_samples,
-            ..
-        } = self.comparison.protocol;
+        let protocol = &self.comparison.protocol;
+        let (mode, reference_samples) = (protocol.oracle, protocol.reference_samples);
         let (session, count) = (self.session, frames.poses.len());
         let id = cell::truth_id(self.comparison, view, viewport);
         let mut truth_views = Vec::with_capacity(count);
@@ -575,11 +566,8 @@ impl<'a> Series<'a> {
     }
 
     fn done(&mut self, place: usize, mut run: Run) {
-        attach(
-            &self.comparison.published,
-            &self.results.scene.name,
-            &mut run,
-        );
+        let (published, scene) = (&self.comparison.published, &self.results.scene.name);
+        attach(published, scene, &mut run);
         let index = self.done_before(place);
         self.results.runs.insert(index, run);
         self.is_done[place] = true;

@@ -155,11 +155,8 @@ impl Pictures {
             period.repeated = 0;
         }
         let is_steady = |period: &Period| period.repeated >= self.enough;
-        self.period = self
-            .periods
-            .iter()
-            .position(is_steady)
-            .map(|index| index + 1);
+        let shortest = self.periods.iter().position(is_steady);
+        self.period = shortest.map(|index| index + 1);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Reason why the frames of a method ended early.
 
-use crate::error::{CompareError, explain, is_fatal};
+use crate::error::{CompareError, Result, explain, is_fatal};
 use crate::graphs::method::Method;
 use crate::measuring::frame;
 use crate::sink::Session;
@@ -46,7 +46,7 @@ pub fn attempt<T>(
     session: Session,
     method: &Method,
     outcome: Result<T, impl Into<Stop>>,
-) -> Result<Result<T, String>, CompareError> {
+) -> Result<Result<T, String>> {
     match outcome.map_err(Into::into) {
         Ok(outcome) => Ok(Ok(outcome)),
         Err(Stop::Refused(error)) if !is_fatal(&error) => Ok(Err(explain(&error))),

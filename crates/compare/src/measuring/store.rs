@@ -2,7 +2,7 @@
 //! in a file of its own, of which `results.json` and `results.csv` are made.
 
 use crate::comparison::Comparison;
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::lists::unique;
 use crate::measuring::resume::{Kept, earlier};
 use crate::measuring::truth_folder::TruthFolder;
@@ -45,12 +45,10 @@ impl Store {
         keep: Kept,
         (now, planned): (&Results, &[Run]),
         sink: &dyn Sink,
-    ) -> Result<(Self, Vec<Option<Run>>), CompareError> {
+    ) -> Result<(Self, Vec<Option<Run>>)> {
         let (file, keeps) = (folder.join("results.json"), keep != Kept::Nothing);
-        let results = keeps
-            .then(|| read_back::results(&file))
-            .transpose()?
-            .flatten();
+        let results = keeps.then(|| read_back::results(&file)).transpose()?;
+        let results = results.flatten();
         if let Some(results) = &results {
             check_alike(&file, results, now)?;
         }
@@ -74,7 +72,7 @@ impl Store {
         (comparison, chosen): (&Comparison, &BTreeSet<&str>),
         (now, planned): (&Results, &[Run]),
         sink: &dyn Sink,
-    ) -> Result<(Self, Vec<Option<Run>>), CompareError> {
+    ) -> Result<(Self, Vec<Option<Run>>)> {
         let truths = TruthFolder::new(folder, comparison);
         truths.make()?;
         let names = chosen.iter().map(|id| format!("{id}.json")).collect();
@@ -101,7 +99,7 @@ impl Store {
         keep: Kept,
         planned: &[Run],
         sink: &dyn Sink,
-    ) -> Result<(Self, Vec<Option<Run>>), CompareError> {
+    ) -> Result<(Self, Vec<Option<Run>>)> {
         let names: Vec<String> = self.cells.files.keys().cloned().collect();
         self.check(&names)?;
         let cells = self.cells.in_order().into_iter();
@@ -116,7 +114,7 @@ impl Store {
     }
 
     /// Refuses files that cannot be read, and cells that were not measured alike.
-    fn check(&mut self, names: &[String]) -> Result<(), CompareError> {
+    fn check(&mut self, names: &[String]) -> Result<()> {
         if let Some(why) = self.cells.torn.pop() {
             return Err(why);
         }
@@ -132,7 +130,7 @@ impl Store {
     }
 
     /// Takes over what other processes have written; returns false if they have written nothing.
-    fn refresh(&mut self) -> Result<bool, CompareError> {
+    fn refresh(&mut self) -> Result<bool> {
         let changed = self.cells.refresh();
         self.check(&changed)?;
         Ok(!changed.is_empty())
@@ -160,7 +158,7 @@ impl Store {
     /// # Errors
     /// A file that cannot be written; a cell that another process has meanwhile measured under
     /// other conditions ([`check_alike`]) or with other errors.
-    pub fn save(&mut self, own: &Results, pictures: &[PictureFile]) -> Result<(), CompareError> {
+    pub fn save(&mut self, own: &Results, pictures: &[PictureFile]) -> Result<()> {
         self.refresh()?;
         write_pictures(&self.folder, pictures)?;
         for name in std::mem::take(&mut self.dropped) {
@@ -175,10 +173,8 @@ impl Store {
                 continue;
             }
             let path = self.cells.path(&self.cells.name_of(run));
-            return Err(CompareError::write(
-                &path,
-                "another process writes and removes it",
-            ));
+            let why = "another process writes and removes it";
+            return Err(CompareError::write(&path, why));
         }
         // The process that writes last has seen the cells of all.
         while self.share.is_none() {
@@ -192,7 +188,7 @@ impl Store {
 
     /// Writes the file of a run, unless it holds it already. Returns false if another process has
     /// just made that file.
-    fn keep(&mut self, run: &Run) -> Result<bool, CompareError> {
+    fn keep(&mut self, run: &Run) -> Result<bool> {
         let name = self.cells.name_of(run);
         let cell = self.cells.files.get(&name);
         let (is_there, is_foreign) = (cell.is_some(), cell.is_some_and(|cell| cell.is_foreign));
@@ -240,7 +236,7 @@ impl Store {
 ///
 /// # Errors
 /// Lists how they differ.
-pub fn check_alike(path: &Path, earlier: &Results, now: &Results) -> Result<(), CompareError> {
+pub fn check_alike(path: &Path, earlier: &Results, now: &Results) -> Result<()> {
     match &differences(earlier, now)[..] {
         [] => Ok(()),
         lines => Err(CompareError::Input(format!(
@@ -273,10 +269,9 @@ fn differences(earlier: &Results, now: &Results) -> Vec<String> {
         ]
     };
     let pairs = facts(earlier).into_iter().zip(facts(now));
-    pairs
-        .filter(|((_, earlier), (_, now))| earlier != now)
-        .map(|((what, earlier), (_, now))| format!("{what}: there {earlier}, here {now}"))
-        .collect()
+    let pairs = pairs.filter(|((_, earlier), (_, now))| earlier != now);
+    let line = |((what, there), (_, own))| format!("{what}: there {there}, here {own}");
+    pairs.map(line).collect()
 }
 
 #[cfg(test)]

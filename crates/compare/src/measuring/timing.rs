@@ -2,7 +2,7 @@
 //! of them, with the same camera, light and meshes.
 
 use crate::comparison::Protocol;
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::measuring::frame::{self, Contents};
 use crate::measuring::frame_sequence::FrameSequence;
 use crate::measuring::scene_motion::{self, regimes};
@@ -56,12 +56,8 @@ impl Turn {
 /// of them a frame of each regime; of a path, all its frames, then frames of each regime at places
 /// spread over it.
 pub fn schedule(view: &ViewOrPath, frames: &FrameSequence, protocol: &Protocol) -> Vec<Turn> {
-    let Protocol {
-        warmup,
-        frames: timed,
-        regime_frames,
-        ..
-    } = *protocol;
+    let (warmup, timed) = (protocol.warmup, protocol.frames);
+    let regime_frames = protocol.regime_frames;
     let every_pass = |frame, is_kept| Turn::new(Kind::EveryPass, frame, is_kept);
     let regimes = |frame| {
         let moved = move |regime: &Regime| Turn::new(Kind::Moved(*regime), frame, true);
@@ -161,7 +157,7 @@ impl<'t, 'e> Takes<'t, 'e> {
     ///
     /// # Errors
     /// An early end; positions that are not finite.
-    pub async fn take(&mut self, turn: Turn) -> Result<(), CompareError> {
+    pub async fn take(&mut self, turn: Turn) -> Result<()> {
         match turn.kind {
             Kind::EveryPass | Kind::Path => {
                 self.frames
@@ -326,9 +322,8 @@ pub fn timed_frame(
     began: Duration,
     wall: Duration,
 ) -> Result<TimedFrame, ExecuteError> {
-    let timing = report.timing.ok_or(ExecuteError::Internal(
-        "a timed frame came back without times",
-    ))?;
+    let none = ExecuteError::Internal("a timed frame came back without times");
+    let timing = report.timing.ok_or(none)?;
     Ok(TimedFrame {
         began,
         timing,
@@ -343,7 +338,7 @@ pub fn timed_frame(
 ///
 /// # Errors
 /// [`CompareError::Interrupted`] if there are no frames.
-pub fn times(timed: &[TimedFrame], has_gpu: bool) -> Result<(FrameTimes, Vec<Pass>), CompareError> {
+pub fn times(timed: &[TimedFrame], has_gpu: bool) -> Result<(FrameTimes, Vec<Pass>)> {
     let samples = Samples::new(timed, has_gpu);
     let frame = FrameTimes::new(samples.gpu, samples.upkeep, samples.wall);
     let pass = |PassSamples { name, gpu, cpu }| Pass {
@@ -359,7 +354,7 @@ pub fn times(timed: &[TimedFrame], has_gpu: bool) -> Result<(FrameTimes, Vec<Pas
 ///
 /// # Errors
 /// [`CompareError::Interrupted`] for a regime without frames.
-pub fn regime_times(timed: &TimedKinds, has_gpu: bool) -> Result<Vec<RegimeTimes>, CompareError> {
+pub fn regime_times(timed: &TimedKinds, has_gpu: bool) -> Result<Vec<RegimeTimes>> {
     let of_regimes = timed.iter().filter_map(|(kind, frames)| match kind {
         Kind::Moved(regime) => Some((*regime, frames)),
         Kind::EveryPass | Kind::Path => None,
@@ -368,16 +363,13 @@ pub fn regime_times(timed: &TimedKinds, has_gpu: bool) -> Result<Vec<RegimeTimes
         let upkeeps = frames.iter().filter_map(|frame| frame.upkeep.as_ref());
         let mut uploaded: Vec<u64> = upkeeps.map(|upkeep| upkeep.uploaded).collect();
         uploaded.sort_unstable();
+        let median = uploaded.get(uploaded.len() / 2).copied();
+        let skipped = frames.first().map(|frame| frame.skipped.clone());
         Ok(RegimeTimes {
             regime,
             frame: times(frames, has_gpu)?.0,
-            uploaded_bytes: uploaded
-                .get(uploaded.len() / 2)
-                .copied()
-                .unwrap_or_default(),
-            skipped: frames
-                .first()
-                .map_or_else(Vec::new, |frame| frame.skipped.clone()),
+            uploaded_bytes: median.unwrap_or_default(),
+            skipped: skipped.unwrap_or_default(),
         })
     };
     of_regimes.map(summary).collect()

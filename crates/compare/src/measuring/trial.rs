@@ -1,6 +1,6 @@
 //! Tries settings of a method on some views: runs and judges each once.
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::contract::layer_of;
 use crate::graphs::ground_truth;
 use crate::graphs::light_kinds::{self, kind_and_number};
@@ -65,7 +65,7 @@ pub struct Trials<'a> {
     views: Vec<&'a TrialView<'a>>,
     viewport: [u32; 2],
     provider: &'a mut SceneProvider,
-    limits: Limits,
+    pub limits: Limits,
     /// True to answer [`Trial::Worse`] for settings beyond the limit of memory.
     pub holds_memory: bool,
     /// Executor of the last setting.
@@ -103,10 +103,6 @@ impl<'a> Trials<'a> {
     }
 
     /// True if there are limits of memory or frame time.
-    pub fn has_budgets(&self) -> bool {
-        let budgets = &self.limits.budgets;
-        budgets.memory_bytes.is_some() || budgets.frame_ms.is_some()
-    }
 
     /// Tries the method with `params` on all views, and returns its error: the share of wrong
     /// pixels, or under lights with an extent the mean square error. Returns [`Trial::Worse`] as
@@ -114,7 +110,7 @@ impl<'a> Trials<'a> {
     ///
     /// # Errors
     /// An early end; a lost device.
-    pub async fn run(&mut self, params: &ParamValues, best: f64) -> Result<Trial, CompareError> {
+    pub async fn run(&mut self, params: &ParamValues, best: f64) -> Result<Trial> {
         self.session.check_stopped()?;
         if self.left < 1 + self.views.len() as u64 {
             return Ok(Trial::Ended);
@@ -138,7 +134,7 @@ impl<'a> Trials<'a> {
     ///
     /// # Errors
     /// A lost device.
-    pub fn is_small(&mut self, params: &ParamValues) -> Result<bool, CompareError> {
+    pub fn is_small(&mut self, params: &ParamValues) -> Result<bool> {
         let Some(most) = self.limits.budgets.memory_bytes else {
             return Ok(true);
         };
@@ -162,7 +158,7 @@ impl<'a> Trials<'a> {
     ///
     /// # Errors
     /// An early end, a lost device.
-    pub async fn is_quick(&mut self, params: &ParamValues) -> Result<bool, CompareError> {
+    pub async fn is_quick(&mut self, params: &ParamValues) -> Result<bool> {
         let (Some(most), Some(view)) = (self.limits.budgets.frame_ms, self.views.first()) else {
             return Ok(true);
         };
@@ -204,9 +200,8 @@ impl<'a> Trials<'a> {
     /// same.
     fn has_idle_param(&mut self, set: &Method) -> bool {
         let new = set.params.keys();
-        let mut idle: Vec<&String> = new
-            .filter(|name| !self.method.params.contains_key(*name))
-            .collect();
+        let new = new.filter(|name| !self.method.params.contains_key(*name));
+        let mut idle: Vec<&String> = new.collect();
         for view in self.one_of_each_light() {
             if idle.is_empty() {
                 return false;
@@ -250,11 +245,8 @@ impl<'a> Trials<'a> {
     /// little.
     fn counted(&self, view: &TrialView) -> f64 {
         let views = self.views.len() as f64;
-        views
-            * view
-                .facing_light()
-                .max(self.facing_light / (4.0 * views))
-                .max(1.0)
+        let least = (self.facing_light / (4.0 * views)).max(1.0);
+        views * view.facing_light().max(least)
     }
 
     /// The plan of a setting under the light of the provider; `None` if there is none.

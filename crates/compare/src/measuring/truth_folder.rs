@@ -1,7 +1,7 @@
 //! Keeps the reference's answers in a folder that several machines share.
 
 use crate::comparison::Comparison;
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::fingerprint::Fingerprint;
 use crate::files::lock;
 use crate::files::truth_file::Truth;
@@ -52,7 +52,7 @@ impl TruthFolder {
     ///
     /// # Errors
     /// It cannot be made.
-    pub fn make(&self) -> Result<(), CompareError> {
+    pub fn make(&self) -> Result<()> {
         fs::create_dir_all(&self.folder).map_err(|error| CompareError::write(&self.folder, error))
     }
 
@@ -68,8 +68,8 @@ impl TruthFolder {
         id: &str,
         seen: &SeenFrame,
         (what, sink): (&str, &dyn Sink),
-        trace: impl FnOnce() -> Result<Truth, CompareError>,
-    ) -> Result<Truth, CompareError> {
+        trace: impl FnOnce() -> Result<Truth>,
+    ) -> Result<Truth> {
         let name = format!("{id}-{}.truth", self.fingerprint(seen));
         let path = self.folder.join(&name);
         if let Some(truth) = read(&path)?.and_then(Result::ok) {
@@ -118,7 +118,7 @@ impl TruthFolder {
 }
 
 /// The answers in a file, or why it has none; `None` without one.
-fn read(path: &Path) -> Result<Option<Result<Truth, String>>, CompareError> {
+fn read(path: &Path) -> Result<Option<Result<Truth, String>>> {
     match fs::read(path) {
         Ok(bytes) => Ok(Some(Truth::from_bytes(&bytes))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
@@ -130,7 +130,7 @@ fn read(path: &Path) -> Result<Option<Result<Truth, String>>, CompareError> {
 }
 
 /// Writes a file of answers, unless one is there that holds the same.
-fn keep(path: &Path, truth: &Truth, what: &str) -> Result<(), CompareError> {
+fn keep(path: &Path, truth: &Truth, what: &str) -> Result<()> {
     let bytes = truth.bytes();
     if write_new(path, &bytes)? {
         return Ok(());

@@ -25,7 +25,7 @@
 
 use crate::comparison::Comparison;
 use crate::default_view::more_views;
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::graphs::method::{Method, ParamValues, as_json};
 use crate::graphs::variants::MAP_SIZE;
 use crate::lists::entry;
@@ -87,7 +87,7 @@ const LONGEST_SIDE: u32 = 8192;
 /// The errors of [`Comparison::check`]; a comparison of camera paths; no method with params to
 /// tune; no other view of the scene that can be generated; an [early end](crate#terms), a lost
 /// device, a reference that cannot be computed. The comparison is unchanged after an error.
-pub async fn tune(comparison: &mut Comparison, session: Session<'_>) -> Result<(), CompareError> {
+pub async fn tune(comparison: &mut Comparison, session: Session<'_>) -> Result<()> {
     comparison.check(Session::new(session.gpu, &Silent))?;
     let scene = comparison.scene.clone();
     let methods = comparison.settled(session);
@@ -95,17 +95,12 @@ pub async fn tune(comparison: &mut Comparison, session: Session<'_>) -> Result<(
     let is_soft = lights.any(|light| light.has_extent());
     check_methods(&methods, is_soft)?;
     let most = most_work(comparison);
-    let Split { chosen_on, judged } = Split::new(&comparison.views, &scene)?;
+    let (chosen_on, judged) = split(&comparison.views, &scene)?;
     let viewport = trial_viewport(comparison);
     let mut provider = SceneProvider::new(scene.clone());
-    let views = trial_views(
-        comparison,
-        &scene,
-        session,
-        &mut provider,
-        (chosen_on, viewport),
-    )
-    .await?;
+    let seen = (chosen_on, viewport);
+    let views = trial_views(comparison, &scene, session, &mut provider, seen);
+    let views = views.await?;
     let limits = Limits {
         work: most - most / RESERVE,
         budgets: comparison.budgets,
@@ -155,28 +150,24 @@ pub async fn tune(comparison: &mut Comparison, session: Session<'_>) -> Result<(
 /// The viewport that settings are chosen in.
 fn trial_viewport(comparison: &Comparison) -> [u32; 2] {
     let [width, height] = comparison.viewports.first().copied().unwrap_or([512; 2]);
-    let budgets = &comparison.budgets;
-    if budgets.frame_ms.is_some() || budgets.memory_bytes.is_some() {
+    if comparison.budgets.limits_cost() {
         return [width, height];
     }
     let fits = |times: &u32| times.saturating_mul(width.max(height)) <= LONGEST_SIDE;
     let pixels = |times: u32| u64::from(width * times) * u64::from(height * times);
-    let enough = (1..)
-        .take_while(fits)
-        .find(|times| pixels(*times) >= LEAST_PIXELS);
+    let is_enough = |times: &u32| pixels(*times) >= LEAST_PIXELS;
+    let enough = (1..).take_while(fits).find(is_enough);
     let times = enough.unwrap_or(1);
     [width * times, height * times]
 }
 
 /// Refuses methods among which none has params to tune.
-fn check_methods(methods: &[Method], is_soft: bool) -> Result<(), CompareError> {
+fn check_methods(methods: &[Method], is_soft: bool) -> Result<()> {
     if methods.iter().any(|method| needs_tuning(method, is_soft)) {
         return Ok(());
     }
-    let names = methods
-        .iter()
-        .map(|method| format!("`{}`", method.name))
-        .join(", ");
+    let mut names = methods.iter().map(|method| format!("`{}`", method.name));
+    let names = names.join(", ");
     Err(CompareError::Input(format!(
         "nothing to tune: {names} set or lack all params that a document marks with `tune`, or are \
          exact with any of them; params with `look` are tuned under lights with an extent alone"
@@ -230,52 +221,41 @@ fn most_work(comparison: &Comparison) -> u64 {
     (MOST_COST - 1) * runs * run
 }
 
-/// The views of a comparison, split.
-struct Split {
-    /// Views on which settings are chosen.
-    chosen_on: Vec<View>,
-    /// Views on which they are judged.
-    judged: Vec<ViewOrPath>,
-}
-
-impl Split {
-    /// Splits views; those that are one view under several lights stay together.
-    fn new(views: &[ViewOrPath], scene: &Scene) -> Result<Self, CompareError> {
-        let mut places: Vec<(&str, Vec<View>)> = Vec::new();
-        for view in views {
-            let ViewOrPath::Still(still) = view else {
-                let what = "settings are tuned on still views, not along camera paths";
-                return Err(CompareError::Input(what.into()));
-            };
-            let light = view.one_of_lights().map_or(0, |light| light.len() + 1);
-            let place = &still.name[..still.name.len() - light];
-            entry(&mut places, place).push(still.clone());
-        }
-        let is_one = places.len() < 2;
-        let places = places.into_iter().map(|(_, views)| views).collect_vec();
-        let judged = places.iter().step_by(2).cloned().collect_vec();
-        let chosen_on = places.iter().skip(1).step_by(2).cloned().collect_vec();
-        let missing = OTHERS.saturating_sub(chosen_on.len());
-        let mut chosen_on = chosen_on.concat();
-        if is_one {
-            chosen_on = others(&judged.concat(), scene)?;
-        } else {
-            // The others of a few may show nothing like those that are judged.
-            let each = missing.div_ceil(judged.len());
-            let like = judged.iter().enumerate();
-            let like = like.flat_map(|(index, views)| generated(views, scene, index * each, each));
-            chosen_on.extend(like.take(missing).flatten());
-        }
-        Ok(Self {
-            chosen_on,
-            judged: judged.concat().into_iter().map(ViewOrPath::Still).collect(),
-        })
+/// Splits views into those on which settings are chosen, and those on which they are judged; views
+/// that are one under several lights stay together.
+fn split(views: &[ViewOrPath], scene: &Scene) -> Result<(Vec<View>, Vec<ViewOrPath>)> {
+    let mut places: Vec<(&str, Vec<View>)> = Vec::new();
+    for view in views {
+        let ViewOrPath::Still(still) = view else {
+            let what = "settings are tuned on still views, not along camera paths";
+            return Err(CompareError::Input(what.into()));
+        };
+        let light = view.one_of_lights().map_or(0, |light| light.len() + 1);
+        let place = &still.name[..still.name.len() - light];
+        entry(&mut places, place).push(still.clone());
     }
+    let is_one = places.len() < 2;
+    let places = places.into_iter().map(|(_, views)| views).collect_vec();
+    let judged = places.iter().step_by(2).cloned().collect_vec();
+    let chosen_on = places.iter().skip(1).step_by(2).cloned().collect_vec();
+    let missing = OTHERS.saturating_sub(chosen_on.len());
+    let mut chosen_on = chosen_on.concat();
+    if is_one {
+        chosen_on = others(&judged.concat(), scene)?;
+    } else {
+        // The others of a few may show nothing like those that are judged.
+        let each = missing.div_ceil(judged.len());
+        let like = judged.iter().enumerate();
+        let like = like.flat_map(|(index, views)| generated(views, scene, index * each, each));
+        chosen_on.extend(like.take(missing).flatten());
+    }
+    let judged = judged.concat().into_iter().map(ViewOrPath::Still);
+    Ok((chosen_on, judged.collect()))
 }
 
 /// Other views than a given one, which stands there once for each of its lights: those of the
 /// scene, and generated ones. They are under the same lights.
-fn others(views: &[View], scene: &Scene) -> Result<Vec<View>, CompareError> {
+fn others(views: &[View], scene: &Scene) -> Result<Vec<View>> {
     let none = || CompareError::Input("no view of the scene to tune methods on".into());
     let like = views.first().ok_or_else(none)?;
     let is_other = |other: &&View| (other.eye, other.direction) != (like.eye, like.direction);
@@ -332,7 +312,7 @@ async fn trial_views<'s>(
     session: Session<'_>,
     provider: &mut SceneProvider,
     (views, viewport): (Vec<View>, [u32; 2]),
-) -> Result<Vec<TrialView<'s>>, CompareError> {
+) -> Result<Vec<TrialView<'s>>> {
     let step = Step::begin(session.sink, "hierarchy to tune with", 1, "steps");
     let oracle = Rc::new(Oracle::new(&scene.mesh));
     step.end();
@@ -358,7 +338,7 @@ async fn best(
     (method, is_soft): (&Method, bool),
     mut trials: Trials<'_>,
     most: u64,
-) -> Result<Option<(ParamValues, Tuned)>, CompareError> {
+) -> Result<Option<(ParamValues, Tuned)>> {
     if trials.facing_light == 0.0 {
         return Ok(None);
     }
@@ -405,9 +385,8 @@ async fn best(
     let (params, error) = chosen.unwrap_or((method.params.clone(), default_error));
     let set = method.with(params.clone());
     let (now, before) = (set.all_params(), method.all_params());
-    let changed = now
-        .into_iter()
-        .filter(|(name, value)| before.get(name) != Some(value));
+    let changed = now.into_iter();
+    let changed = changed.filter(|(name, value)| before.get(name) != Some(value));
     Ok(Some((
         params,
         Tuned {
@@ -430,7 +409,7 @@ async fn within_budgets(
     method: &Method,
     trials: &mut Trials<'_>,
     (params, error): (ParamValues, f64),
-) -> Result<Option<(ParamValues, f64)>, CompareError> {
+) -> Result<Option<(ParamValues, f64)>> {
     let keeps = async |params: &ParamValues, trials: &mut Trials| {
         Ok::<_, CompareError>(trials.is_small(params)? && trials.is_quick(params).await?)
     };
@@ -452,7 +431,7 @@ async fn within_budgets(
         return Ok(None);
     }
     let mut best = (params.clone(), error);
-    if trials.has_budgets() {
+    if trials.limits.budgets.limits_cost() {
         for size in larger {
             let params = with(size);
             if !keeps(&params, trials).await? {
@@ -479,10 +458,8 @@ fn map_sizes(method: &Method) -> (Vec<u32>, Vec<u32>) {
         ParamValue::U32(size) => Some(*size),
         _ => None,
     });
-    let (smaller, larger): (Vec<u32>, Vec<u32>) = sizes
-        .filter(|size| *size != own)
-        .sorted()
-        .partition(|size| *size < own);
+    let sizes = sizes.filter(|size| *size != own).sorted();
+    let (smaller, larger): (Vec<u32>, Vec<u32>) = sizes.partition(|size| *size < own);
     (larger, smaller.into_iter().rev().collect())
 }
 

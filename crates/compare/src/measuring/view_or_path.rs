@@ -16,7 +16,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::fingerprint::Fingerprint;
 use crate::wording::unknown;
 use skiagraph_scene::{CameraPath, LightKind, Scene, View};
@@ -79,7 +79,7 @@ impl ViewOrPath {
         paths: Vec<CameraPath>,
         name: &str,
         light: Option<&str>,
-    ) -> Result<Vec<Self>, CompareError> {
+    ) -> Result<Vec<Self>> {
         let names: Vec<&str> = paths.iter().map(|path| path.view.name.as_str()).collect();
         if names.is_empty() {
             return Err(CompareError::Input(format!(
@@ -95,11 +95,10 @@ impl ViewOrPath {
             return Err(CompareError::Input(text));
         }
         let mut views_or_paths = Vec::new();
-        for path in paths {
-            if name == "all" || path.view.name == name {
-                for view in under_lights(scene, vec![path.view.clone()], light)? {
-                    views_or_paths.push(Self::Path(lit(scene, &path, view)?));
-                }
+        let is_named = |path: &&CameraPath| name == "all" || path.view.name == name;
+        for path in paths.iter().filter(is_named) {
+            for view in under_lights(scene, vec![path.view.clone()], light)? {
+                views_or_paths.push(Self::Path(lit(scene, path, view)?));
             }
         }
         Ok(views_or_paths)
@@ -107,7 +106,7 @@ impl ViewOrPath {
 }
 
 /// The path under the light of a view; one that moves becomes the view's own.
-fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath, CompareError> {
+fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath> {
     if !path.light_keys.is_empty() {
         view.light = scene.lights_of(&view).into_iter().next();
     }
@@ -125,11 +124,7 @@ fn lit(scene: &Scene, path: &CameraPath, mut view: View) -> Result<CameraPath, C
 ///
 /// # Errors
 /// The scene has no such light.
-pub fn under_lights(
-    scene: &Scene,
-    views: Vec<View>,
-    name: Option<&str>,
-) -> Result<Vec<View>, CompareError> {
+pub fn under_lights(scene: &Scene, views: Vec<View>, name: Option<&str>) -> Result<Vec<View>> {
     let Some(name) = name else {
         return Ok(views);
     };
@@ -137,10 +132,9 @@ pub fn under_lights(
     for view in views {
         let lights = scene.lights_of(&view);
         let several = lights.len() > 1 && name == "all";
-        let chosen: Vec<_> = lights
-            .iter()
-            .filter(|light| name == "all" || light.name == name)
-            .collect();
+        let chosen = lights.iter();
+        let chosen = chosen.filter(|light| name == "all" || light.name == name);
+        let chosen: Vec<_> = chosen.collect();
         if chosen.is_empty() {
             let names = lights.iter().map(|light| &light.name);
             let (view, scene) = (&view.name, &scene.name);

@@ -42,10 +42,8 @@ pub fn within_lamp(view: &ViewOrPath, scene: &Scene, pixels: u64) -> Option<Stri
     let radius = kind.radius()?;
     let lights = view.view().light.iter().chain(&scene.lights);
     let light = lights.into_iter().find(|light| light.kind == kind);
-    let light = light.map_or_else(
-        || kind.word().to_owned(),
-        |light| format!("`{}`", light.name),
-    );
+    let light = light.map(|light| format!("`{}`", light.name));
+    let light = light.unwrap_or_else(|| kind.word().to_owned());
     (pixels > 0).then(|| {
         format!(
             "warning: view `{}` shows surfaces inside of the light {light}, in {} pixels: they \

@@ -50,10 +50,8 @@ pub fn to_csv(bytes: &[u8], item: Option<&Item>, first: usize) -> Result<String,
 
 /// A scalar in the shortest digits that read back as the same; empty if the bytes end before it.
 fn cell(bytes: &[u8], field: &Field) -> String {
-    let Some(Ok(word)) = bytes
-        .get(field.offset..field.offset + 4)
-        .map(<[u8; 4]>::try_from)
-    else {
+    let word = bytes.get(field.offset..).and_then(<[u8]>::first_chunk);
+    let Some(&word) = word else {
         return String::new();
     };
     match field.scalar {

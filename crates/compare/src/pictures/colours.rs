@@ -88,12 +88,9 @@ fn statuses(values: &[u32]) -> Vec<String> {
 }
 
 fn ids(values: &[u32]) -> Vec<String> {
-    let distinct: BTreeSet<u32> = values.iter().copied().collect();
+    let mut ids: BTreeSet<u32> = values.iter().copied().collect();
     let background = count(values, |value| value == BACKGROUND);
-    let ids: Vec<u32> = distinct
-        .into_iter()
-        .filter(|&id| id != BACKGROUND)
-        .collect();
+    ids.remove(&BACKGROUND);
     let of_ids = match (ids.first(), ids.last()) {
         (Some(first), Some(last)) => format!(
             "a colour per number, {} of them from {first} to {last}",
@@ -137,10 +134,7 @@ pub fn id_colour(id: u32) -> [u8; 3] {
 /// Returns the depth of a texel in which nothing was drawn: 0 with `planes`, as a camera's depths
 /// are reversed, 1 with `None` for a light.
 pub fn cleared(planes: Option<ClipPlanes>) -> f32 {
-    match planes {
-        Some(_) => 0.0,
-        None => 1.0,
-    }
+    planes.map_or(1.0, |_| 0.0)
 }
 
 /// Colours depths from black for the nearest to white for the farthest. Cleared depths have the
@@ -164,13 +158,10 @@ pub fn depths(values: &[f32], planes: Option<ClipPlanes>) -> (Vec<u8>, String) {
         ),
         None => format!("stored depth, black to white {}", span(stored)),
     }];
-    legend.extend(mark(
-        &format!("grey {}, nothing there", cleared(planes)),
-        count(values, is_cleared),
-    ));
-    legend.extend(non_finite_marks(
-        &values.iter().copied().map(distance).collect::<Vec<_>>(),
-    ));
+    let nothing = format!("grey {}, nothing there", cleared(planes));
+    legend.extend(mark(&nothing, count(values, is_cleared)));
+    let distances: Vec<f32> = values.iter().copied().map(distance).collect();
+    legend.extend(non_finite_marks(&distances));
     (values.iter().flat_map(colour).collect(), legend.join(", "))
 }
 
@@ -190,9 +181,8 @@ pub fn fractions(values: &[f32], channels: usize) -> (Vec<u8>, String) {
 /// [`INVALID`]. There are 1 to 4 channels: one channel is grey, others are red, green and blue; a
 /// fourth is not shown. Returns three bytes (RGB) per texel, and the legend.
 pub fn floats(values: &[f32], channels: usize) -> (Vec<u8>, String) {
-    let shown: Vec<(f32, f32)> = (0..channels.min(3))
-        .map(|index| range(channel(values, channels, index)))
-        .collect();
+    let shown = (0..channels.min(3)).map(|index| range(channel(values, channels, index)));
+    let shown: Vec<(f32, f32)> = shown.collect();
     let rgb = coloured(values, channels, &shown);
     let mut legend = vec![ranges(values, channels)];
     legend.extend(non_finite_marks(values));

@@ -39,14 +39,11 @@ impl Picture {
         let Content::Texture { format, parts, .. } = content else {
             return Err("is a buffer and has no picture; save it as .csv or .bin".into());
         };
-        let texels = parts
-            .iter()
-            .map(|size| size[0] as usize * size[1] as usize)
-            .sum::<usize>();
+        let texels = parts.iter().map(|size| size[0] as usize * size[1] as usize);
+        let texels: usize = texels.sum();
         let channels = usize::from(format.components());
-        let ids = content
-            .as_u32()
-            .filter(|ids| channels == 1 && ids.len() == texels);
+        let ids = content.as_u32();
+        let ids = ids.filter(|ids| channels == 1 && ids.len() == texels);
         let (rgb, legend) = if let Some(ids) = ids {
             integers(name, &ids)
         } else {

@@ -1,6 +1,6 @@
 //! Encodes and writes PNG files.
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use skiagraph_reference::Image;
@@ -10,7 +10,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// The picture cannot be encoded.
-pub fn encode(path: &Path, image: &Image) -> Result<Vec<u8>, CompareError> {
+pub fn encode(path: &Path, image: &Image) -> Result<Vec<u8>> {
     let mut png = Vec::new();
     let [width, height] = image.size;
     // Flat areas: the fast setting would make them five times as large.

@@ -8,7 +8,7 @@
 //! println!("{}, {}", reference_name("main", [64, 48]), graph_name("my/method.ron"));
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::write::write_whole;
 use crate::graphs::ground_truth::Judgement;
 use crate::graphs::method::Method;
@@ -36,7 +36,7 @@ pub struct PictureFile {
 ///
 /// # Errors
 /// A picture that cannot be written.
-pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<(), CompareError> {
+pub fn write_pictures(folder: &Path, files: &[PictureFile]) -> Result<()> {
     let mut files = files.iter();
     files.try_for_each(|file| write_whole(&folder.join(&file.name), &file.bytes))
 }
@@ -56,11 +56,7 @@ impl PicturePlace<'_> {
     ///
     /// # Errors
     /// Another size than the reference's; a picture that cannot be encoded.
-    pub fn shaded(
-        &self,
-        shown: &[f32],
-        truth: &GroundTruthPixels,
-    ) -> Result<PictureFile, CompareError> {
+    pub fn shaded(&self, shown: &[f32], truth: &GroundTruthPixels) -> Result<PictureFile> {
         self.picture(&self.own("shaded"), Image::shaded(shown, truth))
     }
 
@@ -70,11 +66,7 @@ impl PicturePlace<'_> {
     }
 
     /// Encodes a picture, under a name to which that of the frame is added.
-    fn picture(
-        &self,
-        name: &str,
-        image: Result<Image, Error>,
-    ) -> Result<PictureFile, CompareError> {
+    fn picture(&self, name: &str, image: Result<Image, Error>) -> Result<PictureFile> {
         let name = self.file(name.to_owned());
         let image =
             image.map_err(|error| CompareError::Input(format!("no picture {name}: {error}")))?;
@@ -102,11 +94,11 @@ pub fn draw_pictures(
     ground_truth: &GroundTruth,
     (outputs, judgement): (&Outputs, &Judgement),
     footprints: Option<&[Option<Footprint>]>,
-) -> Result<(Images, Vec<PictureFile>), CompareError> {
+) -> Result<(Images, Vec<PictureFile>)> {
     let counts = &judgement.counts;
     let (truth, visibility, status) = (&ground_truth.pixels, &outputs.shown(), &outputs.status);
     let mut files = Vec::new();
-    let mut draw = |name: String, image: Result<Image, Error>| -> Result<String, CompareError> {
+    let mut draw = |name: String, image: Result<Image, Error>| -> Result<String> {
         files.push(place.picture(&name, image)?);
         Ok(files[files.len() - 1].name.clone())
     };
@@ -150,7 +142,7 @@ pub fn data_files(
     ground_truth: &GroundTruth,
     outputs: &Outputs,
     format: DataFormat,
-) -> Result<Vec<PictureFile>, CompareError> {
+) -> Result<Vec<PictureFile>> {
     let reference = reference_stem(place.view, ground_truth.pixels.viewport);
     let arrays = [place.stem.clone(), reference].into_iter();
     let arrays = arrays.zip(data::judged(outputs, ground_truth));
@@ -182,7 +174,7 @@ pub fn numbered(file: &Path, frame: usize) -> PathBuf {
 ///
 /// # Errors
 /// Two items with the same beginning; the message has both names.
-pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<(), CompareError> {
+pub fn check_stems(stems: impl IntoIterator<Item = (String, String)>) -> Result<()> {
     let mut owners: BTreeMap<String, String> = BTreeMap::new();
     for (stem, owner) in stems {
         // Some file systems do not tell capitals from small letters.
@@ -234,10 +226,8 @@ pub fn reference_name(view: &str, viewport: [u32; 2]) -> String {
 pub(crate) fn slug(name: &str) -> String {
     let stem = name.strip_suffix(".ron").unwrap_or(name);
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
-    let text: String = stem
-        .chars()
-        .map(|c| if plain(c) { c } else { '-' })
-        .collect();
+    let dashed = |c: char| if plain(c) { c } else { '-' };
+    let text: String = stem.chars().map(dashed).collect();
     text.trim_matches(['-', '.']).replace("--", "-")
 }
 

@@ -15,7 +15,7 @@
 //! # }
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::write::write_whole;
 use crate::pictures::colours::ClipPlanes;
 use crate::pictures::data::{Array, DataFormat};
@@ -107,7 +107,7 @@ pub fn captures(outputs: &[&str], saves: &[Save]) -> Vec<Capture> {
 ///
 /// # Errors
 /// A material that cannot be saved in this way; the message names the encodings that it can have.
-pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<(), CompareError> {
+pub fn check_encodings(plan: &Plan, saves: &[Save]) -> Result<()> {
     let outputs = plan.outputs();
     for save in saves {
         let name = save.capture.name();
@@ -201,7 +201,7 @@ pub fn write_all<'a>(
     saves: &'a [Save],
     decodings: &'a [Decoding],
     contents: &'a BTreeMap<String, Content>,
-) -> impl Iterator<Item = Result<String, CompareError>> + 'a {
+) -> impl Iterator<Item = Result<String>> + 'a {
     saves.iter().zip(decodings).map(move |(save, decoding)| {
         let name = save.capture.name();
         let missing = || CompareError::Input(format!("`{graph}` has no `{name}` to save"));
@@ -214,21 +214,17 @@ pub fn write_all<'a>(
 ///
 /// # Errors
 /// The content cannot be encoded in this way, or the file cannot be written.
-pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<String, CompareError> {
-    let part = reading.part_text(content);
+pub fn write(save: &Save, content: &Content, reading: &Decoding) -> Result<String> {
+    let (part, name) = (reading.part_text(content), &save.capture.material);
+    let refused = |why| CompareError::Input(format!("`{name}` {why}"));
     let summary = match save.encoding {
         Encoding::Png => {
-            let picture = Picture::new(&save.capture.material, content, reading.planes);
-            let Picture { image, legend } = picture.map_err(|reason| {
-                let name = &save.capture.material;
-                CompareError::Input(format!("`{name}` {reason}"))
-            })?;
+            let picture = Picture::new(name, content, reading.planes);
+            let Picture { image, legend } = picture.map_err(refused)?;
             write_whole(&save.file, &png::encode(&save.file, &image)?)?;
             format!("{}, {part}{legend}", size(image.size))
         }
         Encoding::Data(format) => {
-            let name = &save.capture.material;
-            let refused = |why| CompareError::Input(format!("`{name}` {why}"));
             let array = Array::from_content(content).map_err(refused)?;
             write_whole(&save.file, &array.encode(format).map_err(refused)?)?;
             format!("{part}{}", array.text())

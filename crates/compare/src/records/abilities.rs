@@ -132,10 +132,8 @@ impl fmt::Display for Abilities {
         let memory = memory.unwrap_or("what the driver gives (it does not say how much)".into());
         writeln!(f, "\nChosen: {}", line(&self.adapter))?;
         writeln!(f, "  textures: up to {edge}x{edge}")?;
-        writeln!(
-            f,
-            "  storage buffer binding: up to {storage} (indices of {triangles} million triangles)"
-        )?;
+        write!(f, "  storage buffer binding: up to {storage} ")?;
+        writeln!(f, "(indices of {triangles} million triangles)")?;
         writeln!(f, "  buffer: up to {}", bytes(limits.buffer))?;
         writeln!(f, "  memory for a graph: {memory}")?;
         let (threads, groups) = (limits.threads, limits.groups);
@@ -145,12 +143,9 @@ impl fmt::Display for Abilities {
             let has = if self.has(ability) { "yes" } else { "no" };
             writeln!(f, "  {has:<3} {}", ability.purpose())?;
         }
+        let are_true = "true (a long dispatch after a raster pass takes as long as the clock says)";
         match &self.adapter.gpu_unavailable {
-            None => writeln!(
-                f,
-                "  GPU times: true (a long dispatch after a raster pass takes as long as the clock \
-                 says)"
-            ),
+            None => writeln!(f, "  GPU times: {are_true}"),
             Some(reason) => writeln!(f, "  GPU times: none, {reason}"),
         }
     }

@@ -41,6 +41,11 @@ impl Budgets {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+
+    /// True if a frame's time or memory is limited.
+    pub fn limits_cost(&self) -> bool {
+        self.frame_ms.is_some() || self.memory_bytes.is_some()
+    }
 }
 
 impl fmt::Display for Budgets {

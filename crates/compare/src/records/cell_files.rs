@@ -11,7 +11,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::lists::entry;
 use crate::records::cell_plan::{self, CellPlan, PlannedCell, version};
 use crate::records::read_back;
@@ -60,7 +60,7 @@ pub(crate) fn path(folder: &Path, cell: &str) -> PathBuf {
 ///
 /// # Errors
 /// A file that cannot be read, or does not hold the run of this cell.
-pub(crate) fn read(path: &Path) -> Result<Option<Results>, CompareError> {
+pub(crate) fn read(path: &Path) -> Result<Option<Results>> {
     let Some(results) = read_back::cell(path)? else {
         return Ok(None);
     };
@@ -80,15 +80,11 @@ pub(crate) fn read(path: &Path) -> Result<Option<Results>, CompareError> {
 ///
 /// # Errors
 /// Another version or commit.
-pub(crate) fn check_version(
-    path: &Path,
-    cell: &Results,
-    commit: Option<&str>,
-) -> Result<(), CompareError> {
+pub(crate) fn check_version(path: &Path, cell: &Results, commit: Option<&str>) -> Result<()> {
     check_versions(path, cell, &version(PROGRAM, commit))
 }
 
-fn check_versions(path: &Path, cell: &Results, ours: &str) -> Result<(), CompareError> {
+fn check_versions(path: &Path, cell: &Results, ours: &str) -> Result<()> {
     let commit = cell.runs.first().and_then(|run| run.commit.as_deref());
     let theirs = version(&cell.program, commit);
     if theirs == ours {
@@ -170,7 +166,7 @@ pub fn is_folder(place: &Path) -> bool {
 /// # Errors
 /// A plan or cell that cannot be read; cells of several versions of the program, or other than
 /// planned; a cell or a truth that is in two folders and differs.
-pub fn join(places: &[PathBuf]) -> Result<Joined, CompareError> {
+pub fn join(places: &[PathBuf]) -> Result<Joined> {
     let mut plans: Vec<(CellPlan, Vec<&Path>)> = Vec::new();
     for place in places.iter().filter(|place| is_folder(place)) {
         let plan = CellPlan::read(&place.join(cell_plan::FILE))?;
@@ -190,7 +186,7 @@ pub fn join(places: &[PathBuf]) -> Result<Joined, CompareError> {
 }
 
 /// Refuses plans of two versions.
-fn check_plans(plans: [&CellPlan; 2], places: [&Path; 2]) -> Result<(), CompareError> {
+fn check_plans(plans: [&CellPlan; 2], places: [&Path; 2]) -> Result<()> {
     let [one, other] = plans.map(|plan| plan.head.version());
     if one == other {
         return Ok(());
@@ -208,7 +204,7 @@ fn scene_folder(folder: &Path, plan: &CellPlan, cell: &PlannedCell) -> PathBuf {
     name.map_or(folder.to_path_buf(), |name| folder.join(name))
 }
 
-fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<(), CompareError> {
+fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<()> {
     let ours = plan.head.version();
     let (id, mut missing, mut twice) = (plan.id(), Vec::new(), 0);
     for cell in &plan.cells {
@@ -269,7 +265,7 @@ fn join_plan(plan: &CellPlan, folders: &[&Path], joined: &mut Joined) -> Result<
 }
 
 /// Refuses truths that two folders hold and that differ.
-fn check_truths(plan: &CellPlan, folders: &[&Path]) -> Result<(), CompareError> {
+fn check_truths(plan: &CellPlan, folders: &[&Path]) -> Result<()> {
     let read = |file: &Path| {
         fs::read(file).map_err(|error| {
             let file = file.display();

@@ -15,7 +15,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::fingerprint::Fingerprint;
 use crate::files::json::{Mistake, check_schema};
 use crate::records::results::PROGRAM;
@@ -180,7 +180,7 @@ impl CellPlan {
     /// # Errors
     /// A file that cannot be read, that is not a plan, or that was cut off; a cell that is there
     /// twice, or waits for a truth that is not there. The message shows the place.
-    pub fn read(path: &Path) -> Result<Self, CompareError> {
+    pub fn read(path: &Path) -> Result<Self> {
         let name = path.display().to_string();
         let text = LIMIT.read_text(path);
         let text = text.map_err(|error| {
@@ -198,7 +198,7 @@ impl CellPlan {
     ///
     /// # Errors
     /// Another version or commit.
-    pub fn check_version(&self, commit: Option<&str>) -> Result<(), CompareError> {
+    pub fn check_version(&self, commit: Option<&str>) -> Result<()> {
         let (theirs, ours) = (self.head.version(), version(PROGRAM, commit));
         if theirs == ours {
             return Ok(());

@@ -17,7 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::json::to_text;
 use crate::files::write::{write_durable, write_new};
 use crate::records::cell_files::{FOLDER, read};
@@ -66,7 +66,7 @@ impl Cells {
         folder: &Path,
         only: Option<BTreeSet<String>>,
         earlier: Option<Results>,
-    ) -> Result<Self, CompareError> {
+    ) -> Result<Self> {
         let mut cells = Self {
             place: folder.join(FOLDER),
             only,
@@ -90,7 +90,7 @@ impl Cells {
     }
 
     /// Gives the runs of results their files, all at once.
-    fn split(&mut self, folder: &Path, results: Results) -> Result<(), CompareError> {
+    fn split(&mut self, folder: &Path, results: Results) -> Result<()> {
         let mut builder = tempfile::Builder::new();
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
@@ -169,7 +169,7 @@ impl Cells {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&mut self, name: &str, one: Results) -> Result<bool, CompareError> {
+    pub fn write(&mut self, name: &str, one: Results) -> Result<bool> {
         let (path, text) = (self.path(name), to_text(&one));
         if self.files.contains_key(name) {
             write_durable(&path, text.as_bytes())?;
@@ -189,7 +189,7 @@ impl Cells {
     ///
     /// # Errors
     /// The file cannot be removed.
-    pub fn remove(&mut self, name: &str) -> Result<(), CompareError> {
+    pub fn remove(&mut self, name: &str) -> Result<()> {
         let path = self.path(name);
         let last = self.files.remove(name).and_then(|cell| cell.stamp);
         if last.is_some()
@@ -206,7 +206,7 @@ impl Cells {
     ///
     /// # Errors
     /// A file that cannot be written or removed.
-    pub fn set(&mut self, joined: Results) -> Result<(), CompareError> {
+    pub fn set(&mut self, joined: Results) -> Result<()> {
         let mut wanted: BTreeMap<String, Results> = BTreeMap::new();
         for one in joined.each_run() {
             let name = name_that(&one.runs[0], |name| !wanted.contains_key(name));

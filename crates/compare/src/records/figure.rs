@@ -147,7 +147,7 @@ impl<T: Taken> Taken for Option<T> {
 }
 
 /// A run whose figures are asked for.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Case<'a> {
     /// Results that the run is of.
     pub results: &'a Results,

@@ -21,7 +21,6 @@
 //! ```
 
 pub mod abilities;
-mod assignments;
 pub mod baseline;
 pub mod budgets;
 pub mod cell_files;

@@ -228,9 +228,8 @@ impl Profile {
     pub fn against(&self, file: &Path, old: &Self) -> Comparison {
         let missing = |from: &Self, other: &Self| {
             let names = from.passes.iter().map(|pass| pass.name.clone());
-            names
-                .filter(|name| other.passes.iter().all(|pass| pass.name != *name))
-                .collect()
+            let is_missing = |name: &String| other.passes.iter().all(|pass| pass.name != *name);
+            names.filter(is_missing).collect()
         };
         let passes = self.passes.iter().filter_map(|pass| {
             let before = old.passes.iter().find(|old| old.name == pass.name)?;

@@ -17,7 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::records::published_row::{Columns, HEADER, Line, PublishedFile, Row};
 use crate::records::results::Run;
 use crate::wording::plural;
@@ -36,7 +36,7 @@ const CSV_FILE: Limit = Limit {
 ///
 /// # Errors
 /// A file that cannot be read; every mistake in the files, with its place.
-pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>, CompareError> {
+pub fn read(files: &[PublishedFile]) -> Result<Vec<Row>> {
     let (mut rows, mut faults) = (Vec::new(), Vec::new());
     for PublishedFile { label, file } in files {
         let name = file.display().to_string();
@@ -64,10 +64,9 @@ pub fn attach(rows: &[Row], scene: &str, run: &mut Run) {
 
 /// The rows of a file, and what is wrong with the others.
 fn parse(label: &str, file: &SourceFile) -> (Vec<Row>, Vec<Diagnostic>) {
-    let mut reader = ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .from_reader(file.text.as_bytes());
+    let mut builder = ReaderBuilder::new();
+    builder.has_headers(false).flexible(true);
+    let mut reader = builder.from_reader(file.text.as_bytes());
     let (mut rows, mut faults) = (Vec::<Row>::new(), Vec::new());
     let mut columns: Option<Columns> = None;
     for record in reader.records() {

@@ -14,7 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::json::{Mistake, check_schema};
 use crate::records::profile::{KIND, Line, PassProfile, Profile};
 use crate::records::results::{Results, Run, SCHEMA};
@@ -60,7 +60,7 @@ const PROFILE: Limit = Limit {
 ///
 /// # Errors
 /// A file that cannot be read, or is not a profile; the message shows the place.
-pub fn profile(path: &Path) -> Result<Profile, CompareError> {
+pub fn profile(path: &Path) -> Result<Profile> {
     let name = path.display().to_string();
     let text = PROFILE.read_text(path);
     let text = text.map_err(|error| CompareError::Input(format!("{name}: {error}")))?;
@@ -71,7 +71,7 @@ pub fn profile(path: &Path) -> Result<Profile, CompareError> {
 ///
 /// # Errors
 /// A file that cannot be read, or is not a results.json; the message shows the place.
-pub fn results(path: &Path) -> Result<Option<Results>, CompareError> {
+pub fn results(path: &Path) -> Result<Option<Results>> {
     let file = read(&RESULTS, path).map_err(CompareError::Input)?;
     file.map(|file| results_of(&file)).transpose()
 }
@@ -100,10 +100,9 @@ pub fn with_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
         scenes.retain(|scene| is_own(scene));
         scenes.sort();
         if is_own(folder) || scenes.is_empty() {
-            vec![folder.clone()]
-        } else {
-            scenes
+            scenes = vec![folder.clone()];
         }
+        scenes
     });
     each.collect()
 }
@@ -114,7 +113,7 @@ pub fn with_scenes(folders: &[PathBuf]) -> Vec<PathBuf> {
 /// # Errors
 /// A missing folder or file; a file that cannot be read, or is not a results.json. The message
 /// shows the place.
-pub fn kept(place: &Path) -> Result<Results, CompareError> {
+pub fn kept(place: &Path) -> Result<Results> {
     let refused = |why: String| CompareError::Input(format!("{why}; {COMPARE_FIRST}"));
     let shown = place.display();
     let (file, missing) = if place.is_dir() {
@@ -135,7 +134,7 @@ pub fn kept(place: &Path) -> Result<Results, CompareError> {
 ///
 /// # Errors
 /// A file that cannot be read, or is not a results.json; the message shows the place.
-pub(crate) fn cell(path: &Path) -> Result<Option<Results>, CompareError> {
+pub(crate) fn cell(path: &Path) -> Result<Option<Results>> {
     let file = read(&KEPT, path).map_err(CompareError::Input)?;
     let advice = [
         "delete it, and measure the cell again",
@@ -151,7 +150,7 @@ fn checked<T>(
     parse: fn(&str) -> Result<T, Mistake>,
     what_for: &str,
     [help, summary]: [&str; 2],
-) -> Result<T, CompareError> {
+) -> Result<T> {
     parse(&file.text).map_err(|mistake| mistake.in_file(file, what_for, help, summary))
 }
 
@@ -159,7 +158,7 @@ fn checked<T>(
 ///
 /// # Errors
 /// A file that cannot be read, or is not a stress.json; the message shows the place.
-pub fn stress(folder: &Path) -> Result<Option<Report>, CompareError> {
+pub fn stress(folder: &Path) -> Result<Option<Report>> {
     let file = read(&KEPT, &folder.join("stress.json")).map_err(CompareError::Input)?;
     let help = "`skiagraph stress --out DIR` writes it anew";
     let advice = [help, "the matrix cannot be used"];
@@ -177,14 +176,14 @@ fn parse_stress(text: &str) -> Result<Report, Mistake> {
     parse(text)
 }
 
-fn profile_of(file: &SourceFile) -> Result<Profile, CompareError> {
+fn profile_of(file: &SourceFile) -> Result<Profile> {
     let help = "a baseline is what `skiagraph profile --json FILE` writes";
     let advice = [help, "the baseline cannot be used"];
     checked(file, parse_profile, "profile to compare with", advice)
 }
 
 /// Parses the text of a results.json, to continue from its runs.
-fn results_of(file: &SourceFile) -> Result<Results, CompareError> {
+fn results_of(file: &SourceFile) -> Result<Results> {
     let advice = [WITHOUT_RESULTS, "nothing was measured"];
     checked(file, parse_results, "results.json to resume", advice)
 }

@@ -18,10 +18,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::records::assignments::assignments;
 use crate::records::budgets::Budgets;
 pub use crate::records::measured::{Answer, GBUFFER, Images, Measured, Part, Pass, step};
-use crate::records::tuned::Tuned;
+use crate::records::tuned::{Tuned, assignments};
 use crate::wording::{or_nothing, plural, size, thousands};
 use itertools::Itertools;
 use serde::{Deserialize, Serialize};

@@ -22,7 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::lists::unique;
 use crate::records::read_back;
 use crate::records::regimes::{AT_REST_MS, Regime};
@@ -110,13 +110,13 @@ pub struct Figures {
     pub rmse: f64,
 }
 
-/// Direction of a change since the baseline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Direction of a change since the baseline, the one that counts most last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Change {
-    /// Fewer errors or less time.
-    Better,
     /// A difference within the [`Tolerance`], or times that cannot be told apart.
     Same,
+    /// Fewer errors or less time.
+    Better,
     /// More errors or more time.
     Worse,
 }
@@ -156,7 +156,7 @@ impl Baseline {
     /// # Errors
     /// The errors of [`read_back::kept`]; results of an older version, whose runs have no ids of
     /// cells.
-    pub fn read(place: &Path) -> Result<Self, CompareError> {
+    pub fn read(place: &Path) -> Result<Self> {
         let mut parts = Vec::new();
         for place in read_back::with_scenes(&[place.to_path_buf()]) {
             parts.extend(read_back::kept(&place)?.each());
@@ -184,7 +184,7 @@ impl Baseline {
     ///
     /// # Errors
     /// No cell is in both; the message lists how scene, protocol, views and methods differ.
-    pub fn check(&self, now: &Results, planned: &[Run]) -> Result<(), CompareError> {
+    pub fn check(&self, now: &Results, planned: &[Run]) -> Result<()> {
         let is_known = |run: &Run| self.runs().any(|(_, then)| then.cell == run.cell);
         if planned.iter().any(is_known) {
             return Ok(());
@@ -207,7 +207,7 @@ impl Baseline {
     /// # Errors
     /// The scene has changed: the [reference](crate#terms) counts other numbers of lit and shadowed
     /// pixels, by more than the [`Tolerance`].
-    pub fn against(&self, now: &Results) -> Result<Changes, CompareError> {
+    pub fn against(&self, now: &Results) -> Result<Changes> {
         let (mut cells, mut only_now, mut notes) = (Vec::new(), Vec::new(), Vec::new());
         for run in &now.runs {
             match self.of(now, run) {
@@ -220,15 +220,14 @@ impl Baseline {
         let gone = same_scene.filter(|(_, then)| !then.cell.is_empty() && !is_now(then));
         let began = self.all.iter().map(|results| results.began.clone());
         let notes = notes.iter().counts().into_iter().sorted();
+        let notes = notes.map(|(note, count)| format!("{note} ({})", plural(count, "cell")));
         Ok(Changes {
             baseline: self.name.clone(),
             began: began.max().unwrap_or_default(),
             cells,
             only_then: gone.unique_by(|(_, then)| &then.cell).count(),
             only_now,
-            notes: notes
-                .map(|(note, count)| format!("{note} ({})", plural(count, "cell")))
-                .collect(),
+            notes: notes.collect(),
         })
     }
 
@@ -252,7 +251,7 @@ impl Baseline {
         now: &Results,
         run: &Run,
         notes: &mut Vec<String>,
-    ) -> Result<CellChange, CompareError> {
+    ) -> Result<CellChange> {
         let mut cell = CellChange {
             method: run.method_label(),
             view: run.view.clone(),
@@ -289,7 +288,7 @@ impl Baseline {
         then: Measurement,
         now: Measurement,
         tolerance: Tolerance,
-    ) -> Result<(), CompareError> {
+    ) -> Result<()> {
         let counts = |measurement: Measurement| {
             let pixels = &measurement.run.pixels;
             [pixels.facing_light, pixels.lit, pixels.shadow]
@@ -316,10 +315,7 @@ impl CellChange {
     /// are worse than in the baseline, otherwise better if any are better.
     pub fn verdict(&self) -> Change {
         let times = self.times.iter().map(TimeChange::change);
-        let changes: Vec<Change> = times.chain([self.errors]).collect();
-        let is = |change: &Change| changes.contains(change);
-        let order = [Change::Worse, Change::Better];
-        order.into_iter().find(is).unwrap_or(Change::Same)
+        times.fold(self.errors, Change::max)
     }
 }
 

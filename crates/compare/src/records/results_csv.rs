@@ -14,7 +14,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::{CompareError, Result};
 use crate::files::json;
 use crate::files::write::write_whole;
 use crate::records::figure::Clocks;
@@ -43,7 +43,7 @@ fn to_csv(results: &Results) -> Result<String, ::csv::Error> {
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn save(results: &Results, folder: &Path) -> Result<(), CompareError> {
+pub fn save(results: &Results, folder: &Path) -> Result<()> {
     let text = json::to_text(results);
     write_whole(&folder.join("results.json"), text.as_bytes())?;
     let path = folder.join("results.csv");

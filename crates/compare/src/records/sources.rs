@@ -20,7 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::error::CompareError;
+use crate::error::Result;
 use crate::lists::{find_or_push, place, unique};
 use crate::records::read_back;
 use crate::records::results::{Results, Run};
@@ -42,7 +42,7 @@ impl Kept {
     ///
     /// # Errors
     /// The errors of [`read_back::kept`].
-    pub fn read(place: &Path) -> Result<Vec<Self>, CompareError> {
+    pub fn read(place: &Path) -> Result<Vec<Self>> {
         let results = read_back::kept(place)?;
         let own = place.is_dir().then_some(place);
         let folder = own.or(place.parent()).unwrap_or(Path::new(""));

@@ -15,9 +15,9 @@
 //! assert_eq!(tuned.argument(), "nsm@cull=none,fit=camera,slope_bias=2");
 //! ```
 
-use crate::records::assignments::assignments;
 use itertools::Itertools;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Record of a search for good settings of one method: what was found, and on which views.
@@ -28,10 +28,10 @@ pub struct Tuned {
     pub of: String,
     /// Values of the params that were set for all methods of the comparison (`--set`), by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub given: BTreeMap<String, serde_json::Value>,
+    pub given: BTreeMap<String, Value>,
     /// Params that the search changed, with their values; empty if no setting was better than the
     /// defaults.
-    pub set: BTreeMap<String, serde_json::Value>,
+    pub set: BTreeMap<String, Value>,
     /// Names of the views on which the settings were chosen. The runs in the results are of other
     /// views.
     pub chosen_on: Vec<String>,
@@ -71,5 +71,21 @@ pub fn named(method: &str, assignments: &str) -> String {
     match assignments {
         "" => method.to_owned(),
         assignments => format!("{method}{sign}{assignments}"),
+    }
+}
+
+/// Returns each of `params` as an assignment: `cull=front`, `slope_bias=1.5`.
+pub(crate) fn assignments(params: &BTreeMap<String, Value>) -> impl Iterator<Item = String> {
+    let params = params.iter();
+    params.map(|(name, value)| format!("{name}={}", text(value)))
+}
+
+/// A value as the command line writes it: `none`, `2`, `0.5`, `1,0,0`.
+fn text(value: &Value) -> String {
+    match value {
+        Value::String(word) => word.clone(),
+        Value::Array(list) => list.iter().map(text).collect::<Vec<_>>().join(","),
+        Value::Number(number) => number.as_f64().map_or(String::new(), |n| n.to_string()),
+        other => other.to_string(),
     }
 }

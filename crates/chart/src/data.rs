@@ -42,7 +42,7 @@ pub struct Series {
 }
 
 /// A measurement, drawn as one mark.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mark {
     /// Horizontal value in the unit of [`Panel::x`]: finite and above 0. In [`Kind::Frames`] it is
     /// the index of the frame, from 0.
@@ -62,16 +62,34 @@ pub struct Mark {
     pub about: String,
 }
 
+impl Panel {
+    /// A panel of `series`, with the words at its two axes.
+    pub fn new(kind: Kind, title: &str, [x, y]: [&str; 2], series: Vec<Series>) -> Self {
+        Self {
+            title: title.to_owned(),
+            kind,
+            x: x.to_owned(),
+            y: y.to_owned(),
+            series,
+        }
+    }
+}
+
+impl Series {
+    /// The marks of the method `name`.
+    pub fn new(name: &str, marks: Vec<Mark>) -> Self {
+        let name = name.to_owned();
+        Self { name, marks }
+    }
+}
+
 impl Mark {
     /// Creates a mark of the smallest size, without an error bar or text.
     pub fn new(x: f64, y: f64) -> Self {
-        let about = String::new();
         Self {
             x,
             y,
-            spread: None,
-            size: 0,
-            about,
+            ..Self::default()
         }
     }
 

@@ -51,11 +51,8 @@ impl Figure {
     pub fn to_svg(&self) -> Result<String, Error> {
         self.check()?;
         let names = self.names();
-        let notes: Vec<String> = self
-            .notes
-            .iter()
-            .flat_map(|note| wrap(note, BODY, WIDTH - 2 * LEFT))
-            .collect();
+        let wrapped = |note: &String| wrap(note, BODY, WIDTH - 2 * LEFT);
+        let notes: Vec<String> = self.notes.iter().flat_map(wrapped).collect();
         let legend = Legend::new(self.entries(&names), LEFT);
         let head = LINES[0] + LINES[1] * notes.len() as i32 + legend.height + LINES[2];
         let mut canvas = Canvas::new((WIDTH, head + self.height()), false);
@@ -165,10 +162,8 @@ impl Figure {
             words: words.to_owned(),
             begins_row,
         };
-        let mut entries: Vec<Entry> = names
-            .iter()
-            .map(|name| entry(Sign::Series(self.look(names, name)), name, false))
-            .collect();
+        let of_series = |name: &&str| entry(Sign::Series(self.look(names, name)), name, false);
+        let mut entries: Vec<Entry> = names.iter().map(of_series).collect();
         for (size, name) in self.sizes.iter().enumerate() {
             entries.push(entry(Sign::Size(size), name, size == 0));
         }
@@ -214,10 +209,8 @@ fn fault(mark: &Mark, kind: Kind, sizes: usize) -> Option<String> {
     let &Mark { x, y, size, .. } = mark;
     let is_in = |value: f64| value.is_finite() && value > 0.0;
     let is_zero_or_in = y == 0.0 || is_in(y);
-    if let Some([low, high]) = mark
-        .spread
-        .filter(|[low, high]| !is_in(*low) || !is_in(*high) || low > high)
-    {
+    let is_bar = |[low, high]: &[f64; 2]| is_in(*low) && is_in(*high) && low <= high;
+    if let Some([low, high]) = mark.spread.filter(|ends| !is_bar(ends)) {
         return Some(format!(
             "an error bar from {low} to {high}; expected finite ends above 0, the smaller one first"
         ));

@@ -3,7 +3,7 @@
 
 use crate::{
     canvas::{Canvas, panel_title},
-    data::Panel,
+    data::{Mark, Panel, Series},
     error::Error,
     marker::Look,
     panel::{ABOVE, builder, draw_line, draw_mark, label},
@@ -36,19 +36,12 @@ pub(crate) fn draw(
         let title = (across.start, corner.1 + ABOVE / 2);
         panel_title(root, title, corner.0 + size.0, &panel.title)?;
         let mut mesh = axes.configure_mesh();
-        mesh.y_labels(7)
-            .max_light_lines(2)
-            .x_label_formatter(&tick)
-            .y_label_formatter(&tick);
+        mesh.y_labels(7).max_light_lines(2);
+        mesh.x_label_formatter(&tick).y_label_formatter(&tick);
         label(&mut mesh, panel).draw()?;
-        let series = panel.series.iter();
-        let places = series.map(|series| {
-            let marks = series.marks.iter();
-            marks
-                .map(|mark| axes.backend_coord(&(mark.x, mark.y)))
-                .collect()
-        });
-        Ok(places.collect())
+        let place = |mark: &Mark| axes.backend_coord(&(mark.x, mark.y));
+        let places = |series: &Series| series.marks.iter().map(place).collect();
+        Ok(panel.series.iter().map(places).collect())
     })?;
     for (series, places) in panel.series.iter().zip(&places) {
         let look = look(&series.name);

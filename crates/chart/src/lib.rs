@@ -56,4 +56,4 @@ pub use data::{Kind, Mark, Panel, Series};
 pub use error::Error;
 pub use figure::Figure;
 pub use front::front;
-pub use text::xml;
+pub use text::{superscript, xml};

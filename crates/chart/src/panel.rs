@@ -28,22 +28,14 @@ const BESIDE: i32 = 8;
 
 /// Series that have a lane in the strip for zero.
 fn lanes(panel: &Panel) -> Vec<usize> {
-    let has_zero = |series: &Series| series.marks.iter().any(|mark| mark.y == 0.0);
-    let series = panel.series.iter().enumerate();
-    series
-        .filter(|(_, series)| has_zero(series))
-        .map(|(index, _)| index)
-        .collect()
+    let has_zero = |index: &usize| panel.series[*index].marks.iter().any(|mark| mark.y == 0.0);
+    (0..panel.series.len()).filter(has_zero).collect()
 }
 
 /// Axes with room for all marks of the panel.
 fn scales(panel: &Panel) -> (Scale, Scale) {
     let marks = || panel.series.iter().flat_map(|series| &series.marks);
-    let across = |mark: &Mark| {
-        [mark.x]
-            .into_iter()
-            .chain(mark.spread.into_iter().flatten())
-    };
+    let across = |mark: &Mark| mark.spread.into_iter().flatten().chain([mark.x]);
     let x = Scale::around(marks().flat_map(across), 0);
     let y = Scale::around(marks().map(|mark| mark.y), lanes(panel).len());
     (x, y)
@@ -60,13 +52,9 @@ pub(crate) fn height(panel: &Panel) -> i32 {
 /// Returns a plotters chart builder with room for labels of axes.
 pub(crate) fn builder<'a, 'c>(area: &'a Root<'c>) -> ChartBuilder<'a, 'static, SVGBackend<'c>> {
     let mut chart = ChartBuilder::on(area);
-    chart
-        .margin_top(ABOVE)
-        .margin_right(RIGHT)
-        .margin_left(BESIDE);
-    chart
-        .x_label_area_size(LABELS.1)
-        .y_label_area_size(LABELS.0);
+    chart.margin_top(ABOVE).margin_right(RIGHT);
+    chart.margin_left(BESIDE).x_label_area_size(LABELS.1);
+    chart.y_label_area_size(LABELS.0);
     chart
 }
 
@@ -78,9 +66,8 @@ pub(crate) fn label<'m, 'a, 'b, X: Ranged, Y: Ranged, B: DrawingBackend>(
 ) -> &'m mut MeshStyle<'a, 'b, X, Y, B> {
     mesh.bold_line_style(GRID[0]).light_line_style(GRID[1]);
     mesh.label_style(style(BODY)).axis_desc_style(style(HEAD));
-    mesh.x_desc(clean(&panel.x))
-        .y_desc(clean(&panel.y))
-        .axis_style(AXIS)
+    mesh.x_desc(clean(&panel.x)).y_desc(clean(&panel.y));
+    mesh.axis_style(AXIS)
 }
 
 type Axes<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Scale, Scale>>;
@@ -116,11 +103,9 @@ pub(crate) fn draw(
         let opacity = if panel.kind == Kind::Growth { 1.0 } else { 0.4 };
         draw_line(canvas, series, places, look(&series.name), opacity)?;
     }
-    let marks: Vec<(&Series, &Mark)> = panel
-        .series
-        .iter()
-        .flat_map(|series| series.marks.iter().map(move |mark| (series, mark)))
-        .collect();
+    let marks = panel.series.iter();
+    let marks = marks.flat_map(|series| series.marks.iter().map(move |mark| (series, mark)));
+    let marks: Vec<(&Series, &Mark)> = marks.collect();
     let places = places.concat();
     let mut best = Vec::new();
     if panel.kind == Kind::Front {

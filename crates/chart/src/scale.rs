@@ -35,15 +35,10 @@ impl Scale {
     /// for zero.
     pub fn around(values: impl Iterator<Item = f64>, lanes: usize) -> Self {
         let logarithms = values.filter(|value| *value > 0.0).map(f64::log10);
-        let (low, high) = logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-            (low.min(v), high.max(v))
-        });
+        let ends = logarithms.map(|value| (value, value));
+        let ends = ends.reduce(|(low, high), (value, _)| (low.min(value), high.max(value)));
         // Nothing but zeros: a decade of nothing above them.
-        let (low, high) = if low <= high {
-            (low, high)
-        } else {
-            (-1.0, 0.0)
-        };
+        let (low, high) = ends.unwrap_or((-1.0, 0.0));
         let room = (high - low) * MARGIN;
         let more = (LEAST - (high - low + 2.0 * room)).max(0.0) / 2.0;
         Self {
@@ -70,10 +65,10 @@ impl Scale {
     /// Values m · 10ⁿ within the axis for each of some m, growing.
     fn ticks(&self, leads: &[f64]) -> Vec<f64> {
         let decades = self.low.floor() as i32..=self.high.ceil() as i32;
-        decades
-            .flat_map(|decade| leads.iter().map(move |lead| lead * 10f64.powi(decade)))
-            .filter(|value| (self.low..=self.high).contains(&value.log10()))
-            .collect()
+        let values =
+            decades.flat_map(|decade| leads.iter().map(move |lead| lead * 10f64.powi(decade)));
+        let is_shown = |value: &f64| (self.low..=self.high).contains(&value.log10());
+        values.filter(is_shown).collect()
     }
 
     /// Where labels stand: decades, or 1, 2, 5 where there are few of them, or 1 to 9.
@@ -81,18 +76,11 @@ impl Scale {
         let leads: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &LEADS];
         let candidates = leads.map(|leads| self.ticks(leads));
         let enough = candidates.iter().find(|ticks| ticks.len() >= 3);
-        let mut ticks = enough.unwrap_or(&candidates[2]).clone();
+        let ticks = enough.unwrap_or(&candidates[2]);
         // No more than ten of them.
         let step = ticks.len().div_ceil(10).max(1);
-        let mut index = 0;
-        ticks.retain(|_| {
-            index += 1;
-            (index - 1) % step == 0
-        });
-        if self.lanes > 0 {
-            ticks.insert(0, 0.0);
-        }
-        ticks
+        let zero = (self.lanes > 0).then_some(0.0).into_iter();
+        zero.chain(ticks.iter().copied().step_by(step)).collect()
     }
 }
 

@@ -31,9 +31,8 @@ pub(crate) fn wrap(text: &str, size: f64, room: i32) -> Vec<String> {
 /// Replaces control characters, and those that XML cannot hold, by U+FFFD.
 pub(crate) fn clean(text: &str) -> String {
     let fits = |c: char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
-    text.chars()
-        .map(|c| if fits(c) { c } else { '\u{fffd}' })
-        .collect()
+    let shown = |c: char| if fits(c) { c } else { '\u{fffd}' };
+    text.chars().map(shown).collect()
 }
 
 /// Escapes text for XML and HTML: for content, and for attributes in double quotes (single quotes
@@ -59,22 +58,18 @@ pub(crate) fn number(value: f64) -> String {
         return format!("{value:.digits$}");
     }
     let lead = (value / 10f64.powi(exponent)).round();
-    let power: String = exponent
-        .to_string()
-        .chars()
-        .map(|c| match c {
-            '-' => '⁻',
-            '1' => '¹',
-            '2' => '²',
-            '3' => '³',
-            '4'..='9' => char::from_u32('⁴' as u32 + c as u32 - '4' as u32).unwrap_or(c),
-            _ => '⁰',
-        })
-        .collect();
+    let power = superscript(exponent.into());
     match lead as i64 {
         1 => format!("10{power}"),
         lead => format!("{lead}·10{power}"),
     }
+}
+
+/// Returns a whole number in raised digits: `⁻¹²`.
+pub fn superscript(number: i64) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
+    number.to_string().chars().map(raised).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use skiagraph_compare::records::results_baseline::{
 };
 use skiagraph_compare::records::table::Table;
 use skiagraph_compare::records::turns::Ratio;
-use skiagraph_compare::wording::{ms, plural, size, thousands};
+use skiagraph_compare::wording::{ms, or_nothing, plural, size, thousands};
 
 /// The most cells of which the table also shows those that are the same.
 const FEW: usize = 16;
@@ -131,10 +131,8 @@ fn time_words(times: &TimeChange) -> Option<String> {
         Change::Better => "faster",
         Change::Same => return None,
     };
-    Some(match times.regime {
-        Some(regime) => format!("{word} ({})", regime.word()),
-        None => word.into(),
-    })
+    let regime = or_nothing(times.regime, |regime| format!(" ({})", regime.word()));
+    Some(format!("{word}{regime}"))
 }
 
 /// Wrong pixels and RMSE then and now.

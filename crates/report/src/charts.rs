@@ -5,13 +5,13 @@ use crate::looks::looks;
 use crate::summary::rows;
 use itertools::Itertools;
 use skiagraph_chart::{Figure, Kind, Mark, Panel, Series};
-use skiagraph_compare::error::CompareError;
+use skiagraph_compare::error::{CompareError, Result};
 use skiagraph_compare::lists::{entry, find_or_push, place};
 use skiagraph_compare::records::figure::{self, Case, Clocks};
 use skiagraph_compare::records::figures;
 use skiagraph_compare::records::results::Run;
 use skiagraph_compare::records::sources::Kept;
-use skiagraph_compare::wording::{frames, size};
+use skiagraph_compare::wording::{frames, or_nothing, size};
 use std::collections::BTreeSet;
 
 const TIME: &str = "GPU ms of a frame less its G-buffer";
@@ -30,7 +30,7 @@ pub fn front(
     kept: &[Kept],
     viewport: Option<[u32; 2]>,
     error: Option<&figure::Figure>,
-) -> Result<Figure, CompareError> {
+) -> Result<Figure> {
     let Some(error) = error.or_else(|| figures::named("wrong_of_all")) else {
         return Ok(Figure::default());
     };
@@ -47,7 +47,7 @@ pub fn front(
     }
     let scenes = kept.iter().map(|kept| kept.results.scene.to_string());
     let mut figure = figure("Time against error", kept, panels);
-    figure.sizes = named(&maps);
+    figure.sizes = named(&maps, 1);
     figure.notes.push(scenes.sorted().dedup().join("; "));
     figure.notes.push(
         "Left is faster, down is more right; where there are several views, the means of all."
@@ -86,18 +86,12 @@ fn maps(kept: &[Kept], viewport: Option<[u32; 2]>) -> Vec<u32> {
 }
 
 /// Names of the sizes of marks.
-fn named(maps: &[u32]) -> Vec<String> {
-    maps.iter().map(|map| format!("map {map}²")).collect()
+fn named(maps: &[u32], least: usize) -> Vec<String> {
+    let named = maps.iter().filter(|_| maps.len() >= least);
+    named.map(|map| format!("map {map}²")).collect()
 }
 
 /// Names of the sizes of marks, where there are several.
-fn several(maps: &[u32]) -> Vec<String> {
-    if maps.len() > 1 {
-        named(maps)
-    } else {
-        Vec::new()
-    }
-}
 
 /// Size of the marks of a run: the place of its map among these.
 fn mark_size(map: Option<u32>, maps: &[u32]) -> usize {
@@ -106,12 +100,7 @@ fn mark_size(map: Option<u32>, maps: &[u32]) -> usize {
 }
 
 /// The panel of the runs of one viewport and light.
-fn front_panel(
-    kept: &Kept,
-    cases: &[Case],
-    error: &figure::Figure,
-    maps: &[u32],
-) -> Result<Panel, CompareError> {
+fn front_panel(kept: &Kept, cases: &[Case], error: &figure::Figure, maps: &[u32]) -> Result<Panel> {
     let mut series: Vec<Series> = Vec::new();
     let viewport = cases.first().map_or([0; 2], |case| case.run.viewport);
     for row in rows(cases.iter().copied(), viewport) {
@@ -126,7 +115,7 @@ fn front_panel(
             ..Mark::new(ms, y)
         };
         let is_of = |series: &Series| series.name == row.method;
-        let line = find_or_push(&mut series, is_of, || without_marks(&row.method));
+        let line = find_or_push(&mut series, is_of, || Series::new(&row.method, Vec::new()));
         line.marks.push(mark);
     }
     let views: BTreeSet<&str> = cases.iter().map(|case| case.run.view.as_str()).collect();
@@ -134,21 +123,16 @@ fn front_panel(
         Some(view) if views.len() == 1 => format!("view {view}"),
         _ => format!("mean of {} views", views.len()),
     };
-    Ok(Panel {
-        title: cases.first().map_or(String::new(), |Case { run, .. }| {
-            let place = titled(&views, run.light.as_deref(), run.viewport);
-            format!("{}, {place}", kept.results.scene.name)
-        }),
-        kind: Kind::Front,
-        x: TIME.into(),
-        y: error.axis.into(),
-        series,
-    })
+    let title = or_nothing(cases.first(), |Case { run, .. }| {
+        let place = titled(&views, run.light.as_deref(), run.viewport);
+        format!("{}, {place}", kept.results.scene.name)
+    });
+    Ok(Panel::new(Kind::Front, &title, [TIME, error.axis], series))
 }
 
 /// Names views, light and viewport of a panel.
 fn titled(views: &str, light: Option<&str>, viewport: [u32; 2]) -> String {
-    let light = light.map_or_else(String::new, |light| format!(", light {light}"));
+    let light = or_nothing(light, |light| format!(", light {light}"));
     format!("{views}{light}, {}", size(viewport))
 }
 
@@ -161,7 +145,7 @@ fn titled(views: &str, light: Option<&str>, viewport: [u32; 2]) -> String {
 ///
 /// # Errors
 /// If a drawn run has no GPU times.
-pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, CompareError> {
+pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure> {
     let maps = maps(kept, viewport);
     let mut cells = Vec::new();
     let mut panels: Vec<[Panel; 2]> = Vec::new();
@@ -178,13 +162,7 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
         if index == panels.len() {
             let place = titled(&format!("view {}", run.view), light, run.viewport);
             let title = format!("{}, {place}", scene.name);
-            let panel = |y: &str| Panel {
-                title: title.clone(),
-                kind: Kind::Growth,
-                x: "triangles".into(),
-                y: y.into(),
-                series: Vec::new(),
-            };
+            let panel = |y| Panel::new(Kind::Growth, &title, ["triangles", y], Vec::new());
             panels.push([panel(TIME), panel("MB of buffers and textures")]);
         }
         let size = mark_size(run.map_size, &maps);
@@ -201,7 +179,8 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
             let is_of = |series: &Series| {
                 series.name == run.preset && series.marks.iter().all(|mark| mark.size == size)
             };
-            let series = find_or_push(&mut panel.series, is_of, || without_marks(&run.preset));
+            let new = || Series::new(&run.preset, Vec::new());
+            let series = find_or_push(&mut panel.series, is_of, new);
             series.marks.push(mark);
         }
     }
@@ -210,7 +189,7 @@ pub fn growth(kept: &[Kept], viewport: Option<[u32; 2]>) -> Result<Figure, Compa
         series.marks.sort_by(|a, b| a.x.total_cmp(&b.x));
     }
     let mut figure = figure("Growth with the number of triangles", kept, panels);
-    figure.sizes = several(&maps);
+    figure.sizes = named(&maps, 2);
     let note = "Memory is the graph's own and the scene's buffers that it reads.";
     figure.notes.push(note.into());
     Ok(figure)
@@ -226,7 +205,7 @@ pub fn frames_of_paths(
     kept: &[Kept],
     viewport: Option<[u32; 2]>,
     error: Option<&figure::Figure>,
-) -> Result<Figure, CompareError> {
+) -> Result<Figure> {
     let maps = maps(kept, viewport);
     let of_folder = |kept| path_panels(cases(kept, viewport), &maps, error);
     let panels: Vec<Panel> = kept.iter().flat_map(of_folder).collect();
@@ -239,7 +218,7 @@ pub fn frames_of_paths(
         }));
     }
     Ok(Figure {
-        sizes: several(&maps),
+        sizes: named(&maps, 2),
         ..figure("Errors along camera paths", kept, panels)
     })
 }
@@ -272,23 +251,16 @@ pub fn path_panels<'a>(
             continue;
         };
         let place = (&run.view, run.light.as_deref(), run.viewport);
-        let new = || Panel {
-            title: titled(&format!("path {}", run.view), place.1, run.viewport),
-            kind: Kind::Frames,
-            x: "frame".into(),
-            y: error.axis.into(),
-            series: Vec::new(),
-        };
+        let title = titled(&format!("path {}", run.view), place.1, run.viewport);
+        let new = || Panel::new(Kind::Frames, &title, ["frame", error.axis], Vec::new());
         let (_, panel) = find_or_push(&mut paths, |(key, _)| *key == place, || (place, new()));
         let mark = |(index, error): (usize, f64)| Mark {
             size: mark_size(run.map_size, maps),
             about: format!("{}\nframe {index}: {error:.4}", run.method_label()),
             ..Mark::new(index as f64, error)
         };
-        panel.series.push(Series {
-            name: run.preset.clone(),
-            marks: frames.into_iter().enumerate().map(mark).collect(),
-        });
+        let marks = frames.into_iter().enumerate().map(mark).collect();
+        panel.series.push(Series::new(&run.preset, marks));
     }
     paths.into_iter().map(|(_, panel)| panel).collect()
 }
@@ -297,7 +269,7 @@ pub fn path_panels<'a>(
 ///
 /// # Errors
 /// [`CompareError::Input`] with the message of an error of [`Figure::to_svg`].
-pub fn svg(figure: &Figure) -> Result<String, CompareError> {
+pub fn svg(figure: &Figure) -> Result<String> {
     let svg = figure.to_svg();
     svg.map_err(|error| CompareError::Input(error.to_string()))
 }
@@ -311,13 +283,6 @@ pub fn unavailable(kept: &[Kept]) -> BTreeSet<String> {
         Some(format!("not drawn: {}: {reason}", run.method_label()))
     });
     reasons.collect()
-}
-
-fn without_marks(name: &str) -> Series {
-    Series {
-        name: name.to_owned(),
-        marks: Vec::new(),
-    }
 }
 
 fn is_drawn(run: &Run, viewport: Option<[u32; 2]>) -> bool {

@@ -19,9 +19,6 @@ const LARGE: f64 = 0.25;
 
 /// True if rounding decides the right answer of more than 1 % of the pixels facing the light. A
 /// verdict then holds only for the rest of the pixels.
-pub fn is_conditioned(wrong: Wrong) -> bool {
-    Condition::new(wrong).is_some()
-}
 
 /// The pixels that a verdict is of, where it is not of nearly all that face the light.
 #[derive(Clone, Copy, Debug)]
@@ -163,12 +160,11 @@ impl<'a> Contender<'a> {
     }
 
     pub fn is_within(&self, budgets: &Budgets) -> bool {
-        let (slowest, most_wrong) = (self.slowest.value, self.most_wrong.value);
+        let (slowest, most_wrong, bytes) =
+            (self.slowest.value, self.most_wrong.value, self.row.bytes());
         budgets.frame_ms.is_none_or(|most| slowest <= most)
             && budgets.wrong_percent.is_none_or(|most| most_wrong < most)
-            && budgets
-                .memory_bytes
-                .is_none_or(|most| self.row.bytes() <= most)
+            && budgets.memory_bytes.is_none_or(|most| bytes <= most)
     }
 
     /// The view or frame that breaks a budget which the method keeps to over all views.
@@ -192,10 +188,8 @@ impl<'a> Contender<'a> {
 
     /// That no pixel is wrong, as far as that can be judged.
     pub fn right(&self) -> &'static str {
-        match self.condition {
-            Some(_) => "right on all of these",
-            None => "exact here",
-        }
+        self.condition
+            .map_or("exact here", |_| "right on all of these")
     }
 
     pub fn per_frame(&self) -> String {
@@ -237,9 +231,6 @@ impl<'a> Contender<'a> {
 
 /// A ratio of times as it is read: two digits that count.
 fn ratio(ratio: f64) -> String {
-    if ratio >= 9.95 {
-        format!("{ratio:.0}")
-    } else {
-        format!("{ratio:.1}")
-    }
+    let decimals = usize::from(ratio < 9.95);
+    format!("{ratio:.decimals$}")
 }

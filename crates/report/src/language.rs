@@ -239,9 +239,8 @@ fn variant(schema: &Value) -> Option<(&str, &Value)> {
 
 /// The alternatives that a value has.
 fn either(schema: &Value) -> Option<&Vec<Value>> {
-    ["anyOf", "oneOf"]
-        .iter()
-        .find_map(|key| schema[*key].as_array())
+    let mut keys = ["anyOf", "oneOf"].into_iter();
+    keys.find_map(|key| schema[key].as_array())
 }
 
 /// Text in lines of at most 100 columns, those after the first indented.
@@ -251,8 +250,8 @@ fn wrapped(text: &str, indent: &str) -> String {
 }
 
 fn quoted(word: &Value) -> String {
-    match word.as_str() {
-        Some(word) => format!("`{word}`"),
-        None => format!("`{word}`"),
-    }
+    let word = word
+        .as_str()
+        .map_or_else(|| word.to_string(), str::to_owned);
+    format!("`{word}`")
 }

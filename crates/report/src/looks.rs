@@ -9,11 +9,8 @@ use skiagraph_compare::lists::unique;
 /// then the other built-in ones. All other methods follow in the order of their names.
 pub fn looks(methods: impl IntoIterator<Item = String>) -> Vec<String> {
     let shipped = SHIPPED.map(str::to_owned).into_iter();
-    unique(
-        shipped
-            .chain(built_in())
-            .chain(methods.into_iter().sorted()),
-    )
+    let names = shipped.chain(built_in());
+    unique(names.chain(methods.into_iter().sorted()))
 }
 
 #[cfg(test)]

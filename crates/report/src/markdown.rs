@@ -3,6 +3,7 @@
 
 use crate::graded::area_reference;
 use crate::notes::{band_warning, of_runs, scene_notes, surface_warning};
+use skiagraph_chart::superscript;
 use skiagraph_compare::lists::{entry, place, unique};
 use skiagraph_compare::records::columns::{self, Column, STEPS};
 use skiagraph_compare::records::figure::Clocks;
@@ -178,7 +179,7 @@ impl<'a> Footnotes<'a> {
             let value = published(figure.value, quantity);
             let mark = or_nothing(figure.note.as_deref(), |note| {
                 let note = (figure.by.as_str(), figure.source.as_str(), note);
-                superscript(place(&mut self.0, note) + 1)
+                superscript(place(&mut self.0, note) as i64 + 1)
             });
             ours += &format!(" ({} {value}{mark})", figure.by);
         }
@@ -188,7 +189,7 @@ impl<'a> Footnotes<'a> {
     fn notes(self) -> impl Iterator<Item = String> {
         let notes = self.0.into_iter().enumerate();
         notes.map(|(index, (by, source, note))| {
-            format!("{} {by}, {source}: {note}", superscript(index + 1))
+            format!("{} {by}, {source}: {note}", superscript(index as i64 + 1))
         })
     }
 }
@@ -197,10 +198,7 @@ impl<'a> Footnotes<'a> {
 /// least.
 fn published(value: f64, quantity: &str) -> String {
     let text = value.to_string();
-    let decimals = text
-        .split_once('.')
-        .map_or("", |(_, decimals)| decimals)
-        .len();
+    let decimals = text.find('.').map_or(0, |point| text.len() - point - 1);
     match quantity {
         _ if quantity.starts_with("ms.") => text,
         _ if quantity.ends_with("_percent") || quantity == "fps" => {
@@ -211,12 +209,6 @@ fn published(value: f64, quantity: &str) -> String {
 }
 
 /// A number in small raised digits.
-fn superscript(number: usize) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let digits = number.to_string().into_bytes().into_iter();
-    let digits = digits.map(|digit| DIGITS[usize::from(digit - b'0')]);
-    digits.collect()
-}
 
 /// Which methods could not run, each reason once.
 fn unavailable(runs: &[Run]) -> Vec<String> {

@@ -86,17 +86,14 @@ fn text([wrong, facing]: [u64; 2], time: Option<f64>, memory: u64) -> String {
 
 /// The cell of all lights, from a method's rows under each.
 fn at_once(rows: &[(&Summary, &Row)]) -> Option<String> {
-    let (first, rest) = rows.split_first()?;
-    if rest.iter().any(|(_, row)| row.views() != first.1.views()) {
+    let ((summary, first), rest) = rows.split_first()?;
+    if rest.iter().any(|(_, row)| row.views() != first.views()) {
         return None;
     }
-    let has_all = first
-        .1
-        .runs()
-        .any(|(_, measured)| measured.lights.is_some());
+    let has_all = first.runs().any(|(_, measured)| measured.lights.is_some());
     let rest = rest.iter().filter(|_| !has_all);
     let rest = rest.map(|(_, row)| row.frame_ms(Some(Regime::Light)));
-    let first = first.1.frame_ms(main_choice(&first.0.rows));
+    let first = first.frame_ms(main_choice(&summary.rows));
     let time = [first].into_iter().chain(rest).sum();
     let rows = rows.iter().map(|(_, row)| row);
     let wrong = rows.clone().map(|row| row.wrong());

@@ -1,7 +1,7 @@
 //! The overview of several scenes: a table of methods and scenes, the verdict on each scene, and
 //! what holds of all of them. Nothing is averaged over scenes or lights.
 
-use crate::contender::is_conditioned;
+use crate::contender::Condition;
 use crate::matrices::by_summary;
 use crate::summary::Row;
 use crate::summary_table::{SOFTWARE, Summary};
@@ -177,7 +177,7 @@ impl<'a> Overview<'a> {
         let exact = labels.into_iter().filter(is_exact);
         let exact = exact.map(|label| format!("`{label}`")).join(", ");
         let mut rows = self.columns.iter().flat_map(|column| &column.summary.rows);
-        let is_part = rows.any(|row| is_conditioned(row.wrong()));
+        let is_part = rows.any(|row| Condition::new(row.wrong()).is_some());
         let right = is_part.then_some("right wherever that can be judged");
         let right = right.unwrap_or("exact");
         let scenes = match self.scenes {

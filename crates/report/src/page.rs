@@ -2,9 +2,9 @@
 
 use crate::html::page;
 use itertools::Itertools;
-use skiagraph_compare::error::CompareError;
+use skiagraph_compare::error::{CompareError, Result};
 use skiagraph_compare::files::write::{check_folder, write_whole};
-use skiagraph_compare::records::cell_files;
+use skiagraph_compare::records::cell_files::{self, Joined};
 use skiagraph_compare::records::cells::Cells;
 use skiagraph_compare::records::read_back;
 use skiagraph_compare::records::results_csv;
@@ -27,7 +27,7 @@ pub const FILE: &str = "report.html";
 ///
 /// # Errors
 /// The errors of [`write`](write()).
-pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
+pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<()> {
     write(&[folder.to_path_buf()], &folder.join(FILE), sink)
 }
 
@@ -39,11 +39,11 @@ pub fn write_beside(folder: &Path, sink: &dyn Sink) -> Result<(), CompareError> 
 ///
 /// # Errors
 /// If a folder has no results, results cannot be read, or the file cannot be written.
-pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
+pub fn write(places: &[PathBuf], file: &Path, sink: &dyn Sink) -> Result<()> {
     loop {
         let before = written(places);
-        let read = read(places, &[])?;
-        let page = page(&sources(read.kept), &read.matrices);
+        let (read, matrices) = read(places, &[])?;
+        let page = page(&sources(read.kept), &matrices);
         write_whole(file, page.html.as_bytes())?;
         if written(places) == before {
             let notes = read.notes.iter().chain(&read.missing).chain(&page.left_out);
@@ -75,7 +75,7 @@ fn written(places: &[PathBuf]) -> Vec<Option<SystemTime>> {
 /// versions of the program, or that two machines measured with different errors. If there is
 /// nothing to join, or planned cells are not measured yet, the error is [`CompareError::Input`]; in
 /// the second case the measured cells are written first.
-pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), CompareError> {
+pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<()> {
     // All is read before anything is written.
     read(places, &[])?;
     check_folder(out)?;
@@ -92,7 +92,7 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
     }
     places.retain(|place| place != out || cell_files::is_folder(out));
     let mut cells = Cells::open(out, None, earlier)?;
-    let (read, sources) = loop {
+    let (read, matrices, sources) = loop {
         if let Some(why) = cells.torn.pop() {
             return Err(why);
         }
@@ -100,7 +100,7 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
             folder: out.to_path_buf(),
             results: results.clone(),
         });
-        let mut read = read(&places, &own.collect_vec())?;
+        let (mut read, matrices) = read(&places, &own.collect_vec())?;
         let sources = sources(std::mem::take(&mut read.kept));
         let Some(results) = merged(&sources, out) else {
             let text = read.missing.unwrap_or_else(|| {
@@ -112,7 +112,7 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
         cells.set(results.clone())?;
         results_csv::save(&results, out)?;
         if cells.refresh().is_empty() {
-            break (read, sources);
+            break (read, matrices, sources);
         }
     };
     read.notes.iter().for_each(|text| sink.note(text));
@@ -126,7 +126,7 @@ pub fn merge(places: &[PathBuf], out: &Path, sink: &dyn Sink) -> Result<(), Comp
              give one label to several settings, are kept apart"
         ));
     }
-    let page = page(&sources, &read.matrices);
+    let page = page(&sources, &matrices);
     page.left_out.iter().for_each(|text| sink.note(text));
     write_whole(&out.join(FILE), page.html.as_bytes())?;
     read.missing
@@ -146,19 +146,9 @@ fn told(source: &Source) -> String {
     text
 }
 
-/// Contents of folders and files.
-struct Read {
-    kept: Vec<Kept>,
-    matrices: Vec<Report>,
-    /// Remarks for the user.
-    notes: Vec<String>,
-    /// Text on the planned cells that are not measured yet.
-    missing: Option<String>,
-}
-
 /// Reads the results and matrices of folders or files; one that is named twice is read once. The
 /// folder of `own` has been read.
-fn read(places: &[PathBuf], own: &[Kept]) -> Result<Read, CompareError> {
+fn read(places: &[PathBuf], own: &[Kept]) -> Result<(Joined, Vec<Report>)> {
     let places = places.iter().unique_by(|place| of_place(place));
     let places: Vec<PathBuf> = places.cloned().collect();
     let cells = cell_files::join(&places)?;
@@ -183,12 +173,7 @@ fn read(places: &[PathBuf], own: &[Kept]) -> Result<Read, CompareError> {
         }
         matrices.extend(matrix);
     }
-    Ok(Read {
-        kept,
-        matrices,
-        notes: cells.notes,
-        missing: cells.missing,
-    })
+    Ok((Joined { kept, ..cells }, matrices))
 }
 
 /// The file of the results of a folder, or the file itself, by the one name that all its names lead

@@ -111,25 +111,16 @@ fn notes(profile: &Profile) -> impl Iterator<Item = String> {
 }
 
 fn conditions(profile: &Profile) -> String {
-    let Conditions {
-        program,
-        build,
-        date,
-        adapter,
-        scene,
-        preset,
-        view,
-        viewport,
-        frames: asked,
-        warmup,
-        ..
-    } = &profile.conditions;
-    let params = profile.conditions.params();
+    let conditions = &profile.conditions;
+    let (program, build, date) = (&conditions.program, &conditions.build, &conditions.date);
+    let (adapter, scene, warmup) = (&conditions.adapter, &conditions.scene, conditions.warmup);
+    let (preset, view, asked) = (&conditions.preset, &conditions.view, conditions.frames);
+    let params = conditions.params();
     let params = params.map(|(name, value)| format!("{name} = {value}"));
     let params = params.reduce(|list, param| format!("{list}, {param}"));
     let params = params.unwrap_or("none".into());
     let timed = profile.timed() as u32;
-    let stopped = (timed < *asked).then(|| format!(", stopped before the {asked} asked for"));
+    let stopped = (timed < asked).then(|| format!(", stopped before the {asked} asked for"));
     let stopped = stopped.unwrap_or_default();
     let trust = match &adapter.gpu_unavailable {
         None => "trusted: they agree with wall time".to_owned(),
@@ -141,7 +132,7 @@ fn conditions(profile: &Profile) -> String {
          {adapter}\n\
          GPU timestamps {trust}\n\
          {} after {warmup} to warm up{stopped} · {date} · {program}, {build} build\n",
-        size(*viewport),
+        size(conditions.viewport),
         frames(timed)
     )
 }

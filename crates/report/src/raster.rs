@@ -1,14 +1,14 @@
 //! Renders charts as PNG pictures.
 
 use resvg::{tiny_skia, usvg};
-use skiagraph_compare::error::CompareError;
+use skiagraph_compare::error::{CompareError, Result};
 
 /// Renders an SVG chart as a PNG picture with two pixels per SVG unit, on white. The font comes
 /// with the program, so every machine renders the same picture.
 ///
 /// # Errors
 /// If the text is not valid SVG, or the picture has no size or is too large.
-pub fn png(svg: &str) -> Result<Vec<u8>, CompareError> {
+pub fn png(svg: &str) -> Result<Vec<u8>> {
     const SCALE: f32 = 2.0;
     let failed = |what: &dyn std::fmt::Display| {
         CompareError::Input(format!("the chart cannot become a picture: {what}"))

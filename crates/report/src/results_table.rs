@@ -87,10 +87,10 @@ fn comparison(results: &Results, runs: &[Run]) -> String {
 
 fn passes(runs: &[Run]) -> String {
     let mut rows = Vec::new();
-    for run in runs {
-        let Some(measured) = &run.measured else {
-            continue;
-        };
+    let runs = runs
+        .iter()
+        .filter_map(|run| Some((run, run.measured.as_ref()?)));
+    for (run, measured) in runs {
         let whole = ("whole frame", measured.frame.gpu_ms, measured.frame.cpu_ms);
         let regimes = measured.regimes.iter();
         let regimes = regimes.map(|times| {

@@ -245,10 +245,9 @@ fn sentence(
 }
 
 fn none_exact<'a>(methods: &[Contender]) -> Single<'a> {
-    let none = match methods.iter().find_map(|method| method.condition) {
-        Some(_) => "Each method is wrong on some",
-        None => "None is exact here",
-    };
+    let is_part = methods.iter().any(|method| method.condition.is_some());
+    let none = is_part.then_some("Each method is wrong on some");
+    let none = none.unwrap_or("None is exact here");
     let words = ["is the least wrong", "are the least wrong"];
     let mut verdict = by_error(methods, |method| method.wrong.share(), words);
     for sentence in &mut verdict.sentences {
@@ -310,13 +309,7 @@ fn without_times(methods: &[Contender], frames: usize) -> Vec<String> {
         are(frames)
     );
     let exact = methods.iter().find(|method| method.is_exact && !is_soft);
-    let error = |method: &Contender| {
-        if is_soft {
-            method.rmse
-        } else {
-            method.wrong.share()
-        }
-    };
+    let error = |method: &Contender| method.error_to_rank();
     let sentence = match (exact, least(methods, error)) {
         (Some(exact), _) => format!("{} {}.", by(&|method| method.is_exact), exact.right()),
         (None, Some(best)) => {
@@ -417,11 +410,8 @@ fn none_within<'a>(methods: &[Contender], budgets: &Budgets) -> Single<'a> {
         budgets.wrong_percent.and_then(|_| least_wrong()),
         budgets.memory_bytes.and_then(|_| smallest()),
     ];
-    let closest = closest
-        .into_iter()
-        .flatten()
-        .map(|text| format!("; {text}"));
-    let closest: String = closest.collect();
+    let closest = closest.into_iter().flatten();
+    let closest: String = closest.map(|text| format!("; {text}")).collect();
     Single {
         sentences: vec![format!("No method keeps to {budgets}{closest}.")],
         ..Single::default()

@@ -32,10 +32,8 @@ pub fn render(report: &Report, command_for: CommandFor) -> String {
 /// Returns the catalogue of hard cases as text for a terminal: names, casters, reasons.
 pub fn catalogue() -> String {
     let row = |case: HardCase| {
-        let casters = match case.casters {
-            Casters::Closed => "closed",
-            Casters::Open => "open",
-        };
+        let is_open = case.casters == Casters::Open;
+        let casters = if is_open { "open" } else { "closed" };
         vec![case.name.into(), casters.into(), case.reason.into()]
     };
     let heads = ["case", "casters", "what it provokes"];
@@ -129,10 +127,8 @@ fn heads_of(case: &Case, set: Option<&str>) -> [String; 3] {
     if let Some(set) = set {
         return [format!("  {set}"), String::new(), String::new()];
     }
-    let open = match case.casters {
-        Casters::Open => " (open)",
-        Casters::Closed => "",
-    };
+    let is_open = case.casters == Casters::Open;
+    let open = if is_open { " (open)" } else { "" };
     let facing = case.pixels.facing_light;
     let band = match case.band {
         0 => "0".into(),

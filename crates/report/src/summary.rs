@@ -5,7 +5,7 @@ use skiagraph_compare::lists::entry;
 use skiagraph_compare::records::figure::{Case, Figure, Value, Worst};
 use skiagraph_compare::records::figures;
 use skiagraph_compare::records::regimes::{Regime, When, quartiles_name, time_name};
-use skiagraph_compare::records::results::{Measured, Results, Run, step};
+use skiagraph_compare::records::results::{Measured, Run, step};
 use skiagraph_compare::records::statistics::FrameTimes;
 use skiagraph_compare::records::tuned::Tuned;
 use skiagraph_compare::records::turns::{Ratio, Turns};
@@ -23,7 +23,8 @@ pub struct Row<'a> {
     runs: Vec<Measurement<'a>>,
     /// Reason why the method ran on none of the views; `None` if it ran on any.
     pub unavailable: Option<&'a str>,
-    results: &'a Results,
+    /// The same runs with what they were measured with.
+    cases: Vec<Case<'a>>,
     /// True if its times are wall times, since not all rows have GPU times.
     pub by_wall: bool,
 }
@@ -59,36 +60,32 @@ impl<'a> Row<'a> {
         let first = attempts.first()?;
         let measured = |case: &Case<'a>| Some((case.run, case.run.measured.as_ref()?));
         let runs: Vec<_> = attempts.iter().filter_map(measured).collect();
+        let cases = attempts.iter().filter(|case| case.run.measured.is_some());
         let mut reasons = attempts.iter().map(|case| case.run.unavailable.as_deref());
         Some(Self {
             method: first.run.preset.clone(),
             label,
             unavailable: reasons.find_map(|why| why).filter(|_| runs.is_empty()),
             runs,
-            results: first.results,
+            cases: cases.copied().collect(),
             by_wall: first.by_wall,
         })
     }
 
     /// Returns the value of a figure over all views; `None` if a view has none.
     pub fn over(&self, figure: &Figure) -> Option<Value> {
-        figure.over(&self.cases())
+        figure.over(&self.cases)
     }
 
     /// Returns the greatest value of a figure over views and frames of paths; `None` if one has
     /// none, or without runs.
     pub fn worst(&self, figure: &Figure) -> Option<Worst> {
-        figure.worst(&self.cases())
+        figure.worst(&self.cases)
     }
 
     /// Returns the runs with measurements, with the clock of their times.
-    pub fn cases(&self) -> Vec<Case<'a>> {
-        let case = |(run, _): &Measurement<'a>| Case {
-            results: self.results,
-            run,
-            by_wall: self.by_wall,
-        };
-        self.runs.iter().map(case).collect()
+    pub fn cases(&self) -> impl Iterator<Item = Case<'a>> {
+        self.cases.iter().copied()
     }
 
     /// Returns the two numbers of the figure of this name over all views: a range, or a count and

@@ -64,10 +64,8 @@ impl<'a> Summary<'a> {
         let clocks = Clocks::new(results);
         let newest = runs.iter().map(|run| run.session.as_str()).max();
         let is_now = |run: &&&Run| Some(run.session.as_str()) == newest;
-        let tuned = runs
-            .iter()
-            .filter(is_now)
-            .filter_map(|run| run.tuned.as_ref());
+        let tuned = runs.iter().filter(is_now);
+        let tuned = tuned.filter_map(|run| run.tuned.as_ref());
         let chosen_on: BTreeSet<&String> = tuned.flat_map(|tuned| &tuned.chosen_on).collect();
         runs.retain(|run| !chosen_on.contains(&run.view));
         let viewport = runs.first().map_or([0; 2], |run| run.viewport);

@@ -100,20 +100,12 @@ pub fn begins(tables: &[Shown]) -> String {
                     }
                 };
                 let marks: Vec<Mark> = errors.into_iter().map(mark).collect();
-                (!marks.is_empty()).then(|| Series {
-                    name: row.method.clone(),
-                    marks,
-                })
+                (!marks.is_empty()).then(|| Series::new(&row.method, marks))
             };
             let series: Vec<Series> = table.summary.rows.iter().filter_map(line).collect();
             if !series.is_empty() {
-                let panel = Panel {
-                    title: table.title.clone(),
-                    kind: Kind::Frames,
-                    x: "frames since memory was empty".into(),
-                    y: name.into(),
-                    series,
-                };
+                let axes = ["frames since memory was empty", name];
+                let panel = Panel::new(Kind::Frames, &table.title, axes, series);
                 html += &halves(&figure(tables, vec![panel]), &[index], None);
             }
         }
@@ -126,14 +118,12 @@ pub fn begins(tables: &[Shown]) -> String {
 fn front(table: &Shown, when: When) -> Panel {
     let row = |(index, row): (usize, &Row)| {
         let (x, y) = (table.ms(row, when)?, table.error(row)?);
-        y.is_finite().then(|| Series {
-            name: row.method.clone(),
-            marks: vec![Mark {
-                spread: table.spread(row, when),
-                about: about(table, index),
-                ..Mark::new(x, y)
-            }],
-        })
+        let mark = Mark {
+            spread: table.spread(row, when),
+            about: about(table, index),
+            ..Mark::new(x, y)
+        };
+        y.is_finite().then(|| Series::new(&row.method, vec![mark]))
     };
     let rows = table.summary.rows.iter().enumerate();
     let rows = rows.sorted_by_key(|(_, row)| row.map_size());
@@ -151,13 +141,11 @@ fn front(table: &Shown, when: When) -> Panel {
     let clock = if by_wall { "wall clock" } else { "GPU and CPU" };
     let frame = when.map_or("frames as in the table", Regime::condition);
     let error = figures::named(if is_soft { "rmse" } else { "wrong" });
-    Panel {
-        title: table.title.clone(),
-        kind: Kind::Front,
-        x: format!("{clock} ms a frame, {frame}"),
-        y: error.map_or("", |figure| figure.axis).into(),
-        series,
-    }
+    let (x, y) = (
+        format!("{clock} ms a frame, {frame}"),
+        error.map_or("", |figure| figure.axis),
+    );
+    Panel::new(Kind::Front, &table.title, [&x, y], series)
 }
 
 /// The figures of a row, as the table has them.
@@ -256,11 +244,8 @@ fn growth<'a>(
         let (Some(y), Some((line, x, name))) = (table.ms(row, when), place(table, row)) else {
             continue;
         };
-        let line = lines.entry(line).or_insert_with(|| Series {
-            name: row.method.clone(),
-            marks: Vec::new(),
-        });
-        line.marks.push(Mark {
+        let new = || Series::new(&row.method, Vec::new());
+        lines.entry(line).or_insert_with(new).marks.push(Mark {
             about: format!("{}\n{name}: {} ms", row.label, ms(y)),
             ..Mark::new(x, y)
         });
@@ -273,12 +258,5 @@ fn growth<'a>(
     }
     ticks.sort_by(|one, other| one.0.total_cmp(&other.0));
     ticks.dedup();
-    let panel = Panel {
-        title: title.into(),
-        kind: Kind::Growth,
-        x: x.into(),
-        y: "ms".into(),
-        series,
-    };
-    (panel, ticks)
+    (Panel::new(Kind::Growth, title, [x, "ms"], series), ticks)
 }

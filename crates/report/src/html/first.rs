@@ -1,7 +1,7 @@
 //! Writes the first screen: pictures of the reference, of the method to take, and of the errors of
 //! the alternative, beside each other. The page's script inserts the picture files.
 
-use crate::contender::is_conditioned;
+use crate::contender::Condition;
 use crate::html::charts::sign;
 use crate::html::shown::{Shown, part};
 use crate::summary::Row;
@@ -20,19 +20,6 @@ pub fn pictures(tables: &[Shown]) -> String {
         Some(part("first", &[index], None, &figures))
     };
     tables.iter().enumerate().filter_map(of_table).collect()
-}
-
-/// A picture with its caption; `kind` is the key of the picture among those of the page's data.
-struct Figure<'a> {
-    run: &'a Run,
-    /// Frame of a camera path.
-    frame: Option<usize>,
-    /// True for the reference of the run's view, false for the method.
-    is_reference: bool,
-    kind: &'a str,
-    alt: String,
-    /// Caption as HTML.
-    caption: String,
 }
 
 fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
@@ -57,57 +44,43 @@ fn figures(tables: &[Shown], table: &Shown) -> Option<String> {
         Some(format!("<b>{sign}{label}</b>: {error}{suffix}, {time} ms"))
     };
     let (its_run, measured) = taken.runs().find(|(own, _)| own.view == run.view)?;
-    let mut shown = vec![
-        reference(run, frame(judged)?),
-        Figure {
-            run: its_run,
-            frame: frame(measured)?,
-            is_reference: false,
-            kind: "shaded",
-            alt: format!("{} on {}, shaded", taken.label, run.view),
-            caption: caption_of(taken, its_run, measured)?,
-        },
-    ];
+    let caption = caption_of(taken, its_run, measured)?;
+    let alt = format!("{} on {}, shaded", taken.label, run.view);
+    let label = Some(its_run.method_label());
+    let shaded = figure(its_run, frame(measured)?, label, ["shaded", &alt, &caption]);
+    let mut html = reference(run, frame(judged)?) + &shaded;
     let caption = runner_up.map(|row| Some((row, caption_of(row, run, judged)?)));
-    match caption.flatten() {
+    html += &match caption.flatten() {
         Some((row, caption)) if is_right(row) => {
-            let text = format!("<p>{caption}. It has no wrong pixel to show.</p>");
-            return Some(html(&shown) + &text);
+            format!("<p>{caption}. It has no wrong pixel to show.</p>")
         }
-        Some((row, caption)) => shown.push(wrong(row, (run, judged), &caption)?),
-        None => {}
-    }
-    Some(html(&shown))
+        Some((row, caption)) => wrong(row, (run, judged), &caption)?,
+        None => String::new(),
+    };
+    Some(html)
 }
 
-fn reference(run: &Run, frame: Option<usize>) -> Figure<'_> {
-    let view = xml(&run.view);
-    let number = frame_in_words(frame);
-    Figure {
-        run,
-        frame,
-        is_reference: true,
-        kind: "visibility",
-        alt: format!("the reference of {}: lit white, shadow black", run.view),
-        caption: format!(
-            "<b>reference</b>, {view}{number}: lit white, shadow black, green faces away"
-        ),
-    }
+fn reference(run: &Run, frame: Option<usize>) -> String {
+    let (view, number) = (xml(&run.view), frame_in_words(frame));
+    let alt = format!("the reference of {}: lit white, shadow black", run.view);
+    let name = format!("<b>reference</b>, {view}{number}");
+    let caption = format!("{name}: lit white, shadow black, green faces away");
+    figure(run, frame, None, ["visibility", &alt, &caption])
 }
 
 /// The wrong pixels of a row on one of its views.
-fn wrong<'a>(row: &Row, (run, judged): (&'a Run, &Measured), caption: &str) -> Option<Figure<'a>> {
+fn wrong(row: &Row, (run, judged): (&Run, &Measured), caption: &str) -> Option<String> {
     let hard = "blue lights a shadow, red shadows light";
     let hard = run.is_hard().then_some(hard);
     let colours = hard.unwrap_or("blue is too light, red too dark");
-    Some(Figure {
+    let alt = format!("wrong pixels of {} on {}: {colours}", row.label, run.view);
+    let (label, caption) = (run.method_label(), format!("{caption}; {colours}"));
+    Some(figure(
         run,
-        frame: frame(judged)?,
-        is_reference: false,
-        kind: "error",
-        alt: format!("wrong pixels of {} on {}: {colours}", row.label, run.view),
-        caption: format!("{caption}; {colours}"),
-    })
+        frame(judged)?,
+        Some(label),
+        ["error", &alt, &caption],
+    ))
 }
 
 /// The frame of a camera path that the pictures show; the outer `None` without pictures.
@@ -148,11 +121,8 @@ fn worst_view<'a>(row: &Row<'a>) -> Option<(&'a Run, &'a Measured)> {
         (wrong, measured.graded.rmse)
     };
     row.runs().reduce(|worst, next| {
-        if share(&next) > share(&worst) {
-            next
-        } else {
-            worst
-        }
+        let is_worse = share(&next) > share(&worst);
+        if is_worse { next } else { worst }
     })
 }
 
@@ -167,7 +137,9 @@ fn error(table: &Shown, row: &Row) -> String {
         return format!("RMSE {:.4}", row.rmse().unwrap_or(0.0));
     }
     let judged = wrong.facing_light.saturating_sub(wrong.band);
-    let part = is_conditioned(wrong).then_some((judged, " of what can be judged"));
+    let part = Condition::new(wrong)
+        .is_some()
+        .then_some((judged, " of what can be judged"));
     let (whole, which) = part.unwrap_or((wrong.facing_light, ""));
     match percent(wrong.outside_band, whole) {
         _ if is_right(row) => format!("no wrong pixel{which}"),
@@ -175,19 +147,21 @@ fn error(table: &Shown, row: &Row) -> String {
     }
 }
 
-fn html(figures: &[Figure]) -> String {
-    let figure = |picture: &Figure| {
-        let [wide, high] = picture.run.viewport;
-        let label = (!picture.is_reference).then(|| picture.run.method_label());
-        let label = or_nothing(label, |label| format!(" data-label=\"{}\"", xml(&label)));
-        let frame = or_nothing(picture.frame, |frame| format!(" data-frame=\"{frame}\""));
-        let (view, alt) = (xml(&picture.run.view), xml(&picture.alt));
-        let (kind, caption) = (picture.kind, &picture.caption);
-        format!(
-            "<figure><button type=\"button\" data-view=\"{view}\" data-kind=\"{kind}\"{label}\
-             {frame}><img width=\"{wide}\" height=\"{high}\" alt=\"{alt}\"></button>\
-             <figcaption>{caption}</figcaption></figure>\n"
-        )
-    };
-    figures.iter().map(figure).collect()
+/// A picture of a run's view in `frame` of a camera path, with its caption as HTML: of the method
+/// with the label, or of the reference. `kind` is the picture's key in the page's data.
+fn figure(
+    run: &Run,
+    frame: Option<usize>,
+    label: Option<String>,
+    [kind, alt, caption]: [&str; 3],
+) -> String {
+    let [wide, high] = run.viewport;
+    let label = or_nothing(label, |label| format!(" data-label=\"{}\"", xml(&label)));
+    let frame = or_nothing(frame, |frame| format!(" data-frame=\"{frame}\""));
+    let (view, alt) = (xml(&run.view), xml(alt));
+    format!(
+        "<figure><button type=\"button\" data-view=\"{view}\" data-kind=\"{kind}\"{label}{frame}>\
+         <img width=\"{wide}\" height=\"{high}\" alt=\"{alt}\"></button>\
+         <figcaption>{caption}</figcaption></figure>\n"
+    )
 }

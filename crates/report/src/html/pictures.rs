@@ -13,6 +13,13 @@ use skiagraph_compare::records::sources::Source;
 use skiagraph_compare::wording::plural;
 use std::{collections::BTreeMap, fs};
 
+// Kinds of pictures that are not like the others.
+const REFERENCE: &str = "reference";
+const GRAPH: &str = "graph";
+const VISIBILITY: &str = "visibility";
+const TEXELS: &str = "texels";
+const SECOND: &str = "worst second";
+
 /// Embedded files of a page. Other structs refer to a file by its index in `files`.
 #[derive(Debug, Default, Serialize)]
 pub struct Pictures {
@@ -39,15 +46,12 @@ pub struct Set {
     frame: Option<usize>,
     /// Error of the method in that frame, in words.
     frame_error: Option<String>,
-    shaded: Option<usize>,
-    visibility: Option<usize>,
-    error: Option<usize>,
-    uncertain: Option<usize>,
-    texels: Option<usize>,
-    perspective: Option<usize>,
-    projection: Option<usize>,
+    /// By kind.
+    #[serde(flatten)]
+    files: BTreeMap<&'static str, usize>,
     /// The frames of a path's worst second.
-    second: Option<Vec<usize>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    second: Vec<usize>,
     /// Figures of its map's texels, in words.
     figures: Option<String>,
     /// True if its answer is a share of light.
@@ -62,38 +66,6 @@ pub struct Graph {
     file: usize,
 }
 
-/// Kinds of pictures, the most telling first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
-    Reference,
-    Error,
-    Shaded,
-    Graph,
-    Visibility,
-    Uncertain,
-    Texels,
-    Perspective,
-    Projection,
-    Second,
-}
-
-impl Kind {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Reference => "reference",
-            Self::Error => "error",
-            Self::Shaded => "shaded",
-            Self::Graph => "graph",
-            Self::Visibility => "visibility",
-            Self::Uncertain => "uncertain",
-            Self::Texels => "texels",
-            Self::Perspective => "perspective",
-            Self::Projection => "projection",
-            Self::Second => "worst second",
-        }
-    }
-}
-
 /// The error of a run in the frame that its pictures show; `None` for a still view.
 fn frame_error(run: &Run) -> Option<String> {
     let measured = run.measured.as_ref()?;
@@ -106,7 +78,8 @@ fn frame_error(run: &Run) -> Option<String> {
 struct EmbedCandidate {
     source: usize,
     run: usize,
-    kind: Kind,
+    /// Its place among the kinds, and its kind in words.
+    kind: (usize, &'static str),
     name: String,
     /// Frame of a camera path that it shows.
     frame: Option<usize>,
@@ -130,7 +103,7 @@ impl Pictures {
             // Its letters, and what names it.
             let cost = length.div_ceil(3) * 4 + 400;
             if cost > room {
-                *left_out.entry(file.kind.word()).or_default() += 1;
+                *left_out.entry(file.kind.1).or_default() += 1;
                 continue;
             }
             let Ok(bytes) = fs::read(&path) else {
@@ -156,16 +129,17 @@ impl Pictures {
     fn place(&mut self, source: &Source, candidate: &EmbedCandidate) {
         let file = self.files.len() - 1;
         let run = &source.results.runs[candidate.run];
-        if candidate.kind == Kind::Graph {
+        let (source, frame, (_, kind)) = (candidate.source, candidate.frame, candidate.kind);
+        if kind == GRAPH {
+            let method = run.preset.clone();
             self.graphs.push(Graph {
-                source: candidate.source,
-                method: run.preset.clone(),
+                source,
+                method,
                 file,
             });
             return;
         }
-        let label = (candidate.kind != Kind::Reference).then(|| run.method_label());
-        let (source, frame) = (candidate.source, candidate.frame);
+        let label = (kind != REFERENCE).then(|| run.method_label());
         let key = (source, &run.view, run.viewport, &label, frame);
         let is_of = |set: &Set| (set.source, &set.view, set.viewport, &set.label, set.frame) == key;
         let set = find_or_push(&mut self.sets, is_of, || Set {
@@ -178,23 +152,15 @@ impl Pictures {
             graded: !run.is_hard(),
             ..Set::default()
         });
-        let place = match candidate.kind {
-            Kind::Error => &mut set.error,
-            Kind::Shaded => &mut set.shaded,
-            Kind::Uncertain => &mut set.uncertain,
-            Kind::Texels => {
-                set.figures = map_figures(run);
-                &mut set.texels
-            }
-            Kind::Perspective => &mut set.perspective,
-            Kind::Projection => &mut set.projection,
-            Kind::Second => {
-                set.second.get_or_insert_default().push(file);
-                return;
-            }
-            _ => &mut set.visibility,
-        };
-        *place = Some(file);
+        if kind == SECOND {
+            set.second.push(file);
+            return;
+        }
+        if kind == TEXELS {
+            set.figures = map_figures(run);
+        }
+        let kind = if kind == REFERENCE { VISIBILITY } else { kind };
+        set.files.insert(kind, file);
     }
 }
 
@@ -207,7 +173,7 @@ fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
                 continue;
             };
             for (kind, name) in names(run, images) {
-                let is_shared = matches!(kind, Kind::Reference | Kind::Graph);
+                let is_shared = [REFERENCE, GRAPH].contains(&kind.1);
                 let is_known =
                     |earlier: &EmbedCandidate| (earlier.source, &earlier.name) == (index, &name);
                 if !is_shared || !candidates.iter().any(is_known) {
@@ -225,23 +191,23 @@ fn candidates(sources: &[Source]) -> Vec<EmbedCandidate> {
     candidates
 }
 
-fn names(run: &Run, images: &Images) -> Vec<(Kind, String)> {
-    let optional = [
-        (Kind::Uncertain, &images.uncertain),
-        (Kind::Texels, &images.texels),
-        (Kind::Perspective, &images.perspective),
-        (Kind::Projection, &images.projection),
+/// The pictures of a run with their kinds, the most telling kind first.
+fn names(run: &Run, images: &Images) -> impl Iterator<Item = ((usize, &'static str), String)> {
+    let one = |name: &String| vec![name.clone()];
+    let optional = |name: &Option<String>| name.iter().cloned().collect();
+    let kinds = [
+        (REFERENCE, one(&images.reference)),
+        ("error", one(&images.error)),
+        ("shaded", one(&images.shaded)),
+        (GRAPH, vec![graph_name(&run.preset)]),
+        (VISIBILITY, one(&images.visibility)),
+        ("uncertain", optional(&images.uncertain)),
+        (TEXELS, optional(&images.texels)),
+        ("perspective", optional(&images.perspective)),
+        ("projection", optional(&images.projection)),
+        (SECOND, images.worst_second.clone()),
     ];
-    let mut names = vec![
-        (Kind::Reference, images.reference.clone()),
-        (Kind::Error, images.error.clone()),
-        (Kind::Shaded, images.shaded.clone()),
-        (Kind::Graph, graph_name(&run.preset)),
-        (Kind::Visibility, images.visibility.clone()),
-    ];
-    let optional = optional.into_iter();
-    names.extend(optional.filter_map(|(kind, name)| Some((kind, name.clone()?))));
-    let second = images.worst_second.iter();
-    names.extend(second.map(|name| (Kind::Second, name.clone())));
-    names
+    let kinds = kinds.into_iter().enumerate();
+    kinds
+        .flat_map(|(place, (kind, names))| names.into_iter().map(move |name| ((place, kind), name)))
 }

@@ -49,10 +49,8 @@ pub fn tables(tables: &[Shown]) -> String {
         _ => String::new(),
     };
     let table = Table::new(heads.clone(), 2, cells.clone());
-    let (attributes, sign) = (
-        |row: usize| rows[row].clone(),
-        |row: usize| signs[row].clone(),
-    );
+    let attributes = |row: usize| rows[row].clone();
+    let sign = |row: usize| signs[row].clone();
     let table = html(&table, attributes, sign, class, |_, text| text);
     let indices: Vec<usize> = (0..tables.len()).collect();
     part("rows", &indices, None, &table)
@@ -126,15 +124,16 @@ pub fn overview(sources: &[Source], tables: &[Shown]) -> String {
 
 /// A sentence as HTML; text between backquotes is a name.
 fn with_names(sentence: &str) -> String {
-    let parts = sentence.split('`').enumerate().map(|(index, part)| {
-        let part = xml(part);
-        if index % 2 == 1 {
-            format!("<code>{part}</code>")
-        } else {
-            part
-        }
-    });
-    parts.collect()
+    let named = |(index, part): (usize, String)| match index % 2 {
+        1 => format!("<code>{part}</code>"),
+        _ => part,
+    };
+    sentence
+        .split('`')
+        .map(xml)
+        .enumerate()
+        .map(named)
+        .collect()
 }
 
 /// Attributes of each row.

@@ -58,11 +58,10 @@ pub fn shown<'a>(sources: &[Source], summaries: &'a [(usize, Summary<'a>)]) -> V
     let alike = tables.iter().map(|table| table.title.clone()).duplicates();
     for title in alike.collect::<Vec<_>>() {
         let folder = |table: &Shown| sources[table.source].folders.first().cloned();
-        let alike = || tables.iter().filter(|table| table.title == title);
-        let by_folder = alike().map(folder).all_unique();
-        let mut number = 0;
-        for table in tables.iter_mut().filter(|table| table.title == title) {
-            number += 1;
+        let alike = tables.iter().filter(|table| table.title == title);
+        let by_folder = alike.map(folder).all_unique();
+        let alike = tables.iter_mut().filter(|table| table.title == title);
+        for (number, table) in (1..).zip(alike) {
             table.title += &match folder(table) {
                 Some(folder) if by_folder => format!(" · {}", folder.display()),
                 _ => format!(" · group {number}"),

@@ -66,8 +66,8 @@ function settleViewer() {
   }
   viewer.panes.forEach((pane) => {
     const set = setOf(pane);
-    if (set && set[pane.kind] === null) {
-      pane.kind = ['error', 'visibility', 'shaded', 'uncertain'].find((kind) => set[kind] !== null) ?? pane.kind;
+    if (set && set[pane.kind] === undefined) {
+      pane.kind = ['error', 'visibility', 'shaded', 'uncertain'].find((kind) => set[kind] !== undefined) ?? pane.kind;
     }
   });
   return names;
@@ -80,7 +80,7 @@ function drawViewer() {
   const controls = byId('picture-controls');
   const pick = (pane, index) => {
     const set = setOf(pane);
-    const has = Object.keys(kinds).filter((kind) => set && set[kind] !== null);
+    const has = Object.keys(kinds).filter((kind) => set && set[kind] !== undefined);
     const side = index === 0 ? 'left' : 'right';
     return [
       choice(`method-${side}`, side, names, names.indexOf(pane.label), (chosen) => {
@@ -322,7 +322,7 @@ async function readAt([x, y]) {
   for (const set of setsHere()) {
     const cells = [];
     for (const kind of Object.keys(kinds)) {
-      if (set[kind] === null) {
+      if (set[kind] === undefined) {
         cells.push(null);
         continue;
       }

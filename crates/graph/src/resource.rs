@@ -1,11 +1,11 @@
 //! Textures, buffers and samplers of a plan, and parts of them.
 
 use crate::{
-    document::materials::{Address, Filter},
+    document::{Address, Filter},
     picture::Picture,
     provided_kind::ProvidedKind,
     provider::Provided,
-    source::span::Span,
+    source::Span,
 };
 use std::{ops::Range, sync::Arc};
 
@@ -156,6 +156,22 @@ impl ResourceKind {
             Self::AccelerationStructure => "an acceleration structure",
             Self::CpuWork => "work for the CPU",
             Self::Frame => "the frame's uniform",
+        }
+    }
+
+    /// Returns the kind of a buffer of `count` items.
+    pub(crate) fn buffer_of(count: u64) -> Self {
+        Self::Buffer(Buffer {
+            count: Some(count),
+            ..Buffer::default()
+        })
+    }
+
+    /// Describes the kind, a texture with its format.
+    pub(crate) fn describe_with_format(&self) -> String {
+        match self {
+            Self::Texture(texture) => format!("a texture {:?}", texture.format),
+            other => other.describe().to_owned(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Types of numbers in shaders.
 
-use crate::language::value::Scalar;
+use crate::language::Scalar;
 use std::fmt;
 
 /// Scalar type of the channels of a texture, as a shader sees it.

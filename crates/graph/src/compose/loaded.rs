@@ -5,28 +5,18 @@ use super::{
     used::{Used, drop_unused},
 };
 use crate::{
-    diagnostics::{
-        diagnostic::{Diagnostic, Severity},
-        list::Diagnostics,
-        reports::{Reported, Reports},
-    },
-    document::typed::{Document, ImportEntry},
+    diagnostics::{Diagnostic, Diagnostics, Reported, Reports, Severity},
+    document::{Document, ImportEntry},
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     expressions::parser,
-    kinds::registry::{Registry, StandIn},
-    language::{name::Name, syntax::Leaf},
+    kinds::{Registry, StandIn},
+    language::{Leaf, Name},
     param::{Param, ParamError, find},
     picture::Picture,
-    shader::{
-        expand::ShaderFiles,
-        mixed,
-        store::{self, Shaders},
-        unused,
-    },
+    shader::{ShaderFiles, Shaders, mixed, store, unused},
     source::{
+        Located, SourceFile, Sources, Span,
         paths::{escapes, include_candidates, module_candidates},
-        sources::Sources,
-        span::{Located, SourceFile, Span},
     },
 };
 use std::{

@@ -1,12 +1,12 @@
 //! Finds the names that a document uses, and drops what it inherits by `extends` without using it.
 
 use crate::{
-    diagnostics::reports::Reports,
-    document::typed::{Document, each_include},
+    diagnostics::Reports,
+    document::{Document, typed::each_include},
     errors::compose::ComposeError,
-    language::{name::Name, syntax::Leaf},
-    shader::{reflect::Shader, store::Shaders},
-    source::span::{Located, Span},
+    language::{Leaf, Name},
+    shader::{Shader, Shaders},
+    source::{Located, Span},
 };
 use std::{
     collections::{BTreeSet, HashMap},

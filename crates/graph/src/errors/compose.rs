@@ -1,8 +1,8 @@
 //! Documents that cannot be found, or do not go together.
 
 use crate::{
-    language::name::Name,
-    source::span::{Located, Span},
+    language::Name,
+    source::{Located, Span},
 };
 
 mistakes! {

@@ -1,10 +1,10 @@
 //! Passes whose shaders, attachments, copies or dispatches do not fit.
 
 use crate::{
-    language::value::Value,
+    language::Value,
     param::Param,
     scalar_class::{ScalarClass, ShaderType},
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use wgt::TextureFormat;
 

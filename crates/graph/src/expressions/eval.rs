@@ -1,17 +1,14 @@
 //! Evaluates expressions.
 
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::{ErrorGuaranteed, Reports},
     errors::evaluation::EvaluationError,
     language::{
-        name::Name,
-        syntax::{
-            Attribute, Binary, Component, Expr, ExprKind, Function, Reference, Subject, Unary,
-        },
-        value::{Scalar, Value, Word},
+        Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference, Scalar, Subject,
+        Unary, Value, Word,
     },
     provided_kind::ProvidedKind,
-    source::span::Span,
+    source::Span,
 };
 use std::{cmp::Ordering, mem::discriminant};
 

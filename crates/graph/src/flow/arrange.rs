@@ -2,9 +2,9 @@
 
 use super::view::{GraphView, Subresources};
 use crate::{
-    diagnostics::reports::Reports,
+    diagnostics::Reports,
     errors::flow::OrderError,
-    link::pass::PassId,
+    link::PassId,
     resource::{ResourceId, name_within},
 };
 use petgraph::{

@@ -7,12 +7,12 @@ use super::{
     view::{GraphView, Subresources},
 };
 use crate::{
-    diagnostics::reports::Reports,
+    diagnostics::Reports,
     errors::flow::OrderError,
-    kinds::step::Step,
-    link::pass::{Access, LinkedPass, PassId},
+    kinds::Step,
+    link::{Access, LinkedPass, PassId},
     resource::{ResourceId, ResourceKind, Target, name_within},
-    source::span::Located,
+    source::Located,
 };
 use petgraph::graph::{DiGraph, NodeIndex};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,7 +1,7 @@
 //! Input of the steps of this phase: linked passes, and the resources that they use.
 
 use crate::{
-    link::pass::{LinkedPass, PassId},
+    link::{LinkedPass, PassId},
     resource::{Resource, ResourceId, ResourceKind, SubresourceRange},
 };
 use std::collections::BTreeMap;

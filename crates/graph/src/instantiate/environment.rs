@@ -2,17 +2,13 @@
 
 use super::{parts, scopes::Symbol, symbols::At};
 use crate::{
-    diagnostics::reports::{Reported, Reports},
+    diagnostics::{Reported, Reports},
     errors::evaluation::EvaluationError,
-    expressions::eval::Environment,
-    language::{
-        name::Name,
-        syntax::{Attribute, Reference},
-        value::{Value, least_common_multiple},
-    },
+    expressions::Environment,
+    language::{Attribute, Name, Reference, Value, least_common_multiple},
     provided_kind::ProvidedKind,
     resource::ResourceKind,
-    source::span::Span,
+    source::Span,
 };
 
 impl Environment for At<'_, '_> {

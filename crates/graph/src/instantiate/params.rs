@@ -2,17 +2,13 @@
 //! document from the document that includes it.
 
 use crate::{
-    diagnostics::reports::{Reported, Reports},
-    document::typed::Document,
+    diagnostics::{Reported, Reports},
+    document::{ClaimEntry, Document},
     errors::{evaluation::EvaluationError, instantiate::ParamError},
-    expressions::eval::{self, Environment},
-    language::{
-        name::{Name, wgsl_identifier},
-        syntax::{Attribute, Expr, Reference},
-        value::Value,
-    },
+    expressions::{Environment, eval},
+    language::{Attribute, Expr, Name, Reference, Value, wgsl_identifier},
     param::{Param, ParamValue, find},
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -386,7 +382,7 @@ pub(crate) fn claims(
 ) -> Vec<Claim> {
     let mut claims = Vec::new();
     if let Ok(params) = checked(document, asked, context, reports) {
-        for (name, claim) in &document.claims {
+        for (name, ClaimEntry(claim)) in &document.claims {
             let mut environment = ParamsAlone {
                 params: &params,
                 context,

@@ -4,12 +4,12 @@
 
 use super::params::Params;
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reported},
-    document::typed::{Document, Output},
-    language::name::{Name, wgsl_identifier},
+    diagnostics::{ErrorGuaranteed, Reported},
+    document::{Document, Output},
+    language::{Name, wgsl_identifier},
     resource::Target,
-    shader::expand::Replaced,
-    source::span::Located,
+    shader::Replaced,
+    source::Located,
 };
 use std::{
     collections::{BTreeMap, HashMap},

@@ -9,14 +9,14 @@ use super::{
     textures::scalar_of,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
-    language::syntax::Reference,
+    kinds::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
+    language::Reference,
     resource::{ResourceKind, Target, Texture},
     scalar_class::ScalarClass,
-    shader::varyings::{Varying, Varyings},
-    source::span::{Located, Span},
+    shader::{Varying, Varyings},
+    source::{Located, Span},
 };
 use wgt::{
     Features, TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages,
@@ -147,8 +147,8 @@ fn colors(
         let mut locations = outputs.iter().map(|output| output.location);
         if let Some(location) = locations.find(|location| *location >= targets) {
             let (pass, entry) = (scope.pass.clone(), span.clone());
-            let reports = scope.reports();
-            reports.warn(LinkError::NoTarget(pass, location, entry));
+            let error = LinkError::NoTarget(pass, location, entry);
+            scope.symbols.reports.warn(error);
         }
     }
     let most = limits.max_color_attachment_bytes_per_sample;

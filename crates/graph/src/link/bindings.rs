@@ -7,13 +7,13 @@ use super::{
     textures,
 };
 use crate::{
-    diagnostics::reports::Reported,
-    document::materials::Filter,
+    diagnostics::Reported,
+    document::Filter,
     errors::link::LinkError,
-    kinds::step::Program,
+    kinds::Program,
     provider::ProvidedBinding,
     resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
-    shader::{class::Class, members::reads_below, reflect::Global},
+    shader::{Class, Global, members::reads_below},
 };
 use std::num::NonZeroU64;
 
@@ -88,7 +88,7 @@ fn binding(
             return uniform_buffer(global, target, *size, provided.stride, scope);
         }
         (Class::Uniform { size, .. }, ResourceKind::Buffer(_)) => {
-            let id = scope.symbols().base(target.id);
+            let id = scope.symbols.base(target.id);
             scope.layouts.see(id, &target.part, global);
             return uniform_buffer(global, target, *size, u64::MAX, scope);
         }
@@ -219,7 +219,7 @@ fn storage_buffer(
     }
     let alignment = scope.request().limits.min_storage_buffer_offset_alignment;
     aligned(global, target, alignment, scope)?;
-    let id = scope.symbols().base(target.id);
+    let id = scope.symbols.base(target.id);
     scope.layouts.see(id, &target.part, global);
     Ok((
         BindTarget::Buffer(target.clone()),

@@ -2,14 +2,10 @@
 
 use crate::{
     errors::layout::LayoutError,
-    instantiate::symbols::SymbolTable,
+    instantiate::SymbolTable,
     resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange},
-    shader::{
-        class::Class,
-        items::{Field, Item},
-        reflect::Global,
-    },
-    source::span::{Located, Span},
+    shader::{Class, Field, Global, Item},
+    source::{Located, Span},
 };
 use std::{collections::BTreeMap, sync::Arc};
 

@@ -3,17 +3,13 @@
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::{
         limits::{Entry, Excess, LimitError},
         link::LinkError,
     },
-    kinds::step::{Draw, Names},
-    shader::{
-        footprint::{Footprint, Memory},
-        reflect::{Global, Shader},
-        varyings::{Varying, Varyings},
-    },
+    kinds::{Draw, Names},
+    shader::{Footprint, Global, Memory, Shader, Varying, Varyings},
 };
 use naga::ShaderStage;
 

@@ -5,17 +5,14 @@ use super::{
     scope::{Asked, PassScope},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::Program,
-    language::value::{Scalar, Value, Word},
+    kinds::Program,
+    language::{Scalar, Value, Word},
     param::{Param, ParamValue},
     scalar_class::{ScalarClass, ShaderType},
-    shader::{
-        class::Member,
-        reflect::{Global, Shader},
-    },
-    source::span::{Located, Span},
+    shader::{Global, Member, Shader},
+    source::{Located, Span},
 };
 
 /// Returns the bits of a number in a shader's scalar type; `None` if the type cannot hold the
@@ -67,7 +64,7 @@ pub(super) fn constants(
                 // The plan depends on a param that a constant asks for.
                 if let Some(bound) = scope.param(name) {
                     let roots = bound.roots.clone();
-                    scope.reports().depend_on(roots.iter());
+                    scope.symbols.reports.depend_on(roots.iter());
                 }
                 scope.check(number(name, &asked, shader, &span, scope))?
             }
@@ -206,7 +203,7 @@ fn member_words(
     scope: &mut PassScope<'_>,
 ) -> Reported<(Vec<u32>, Option<String>)> {
     let Some(asked) = scope.asked(&member.name).transpose()? else {
-        let params = scope.symbols().reports.known(scope.params());
+        let params = scope.symbols.reports.known(scope.params());
         return Err(scope.report(LinkError::UnknownMember {
             member: member.name.clone(),
             span: global.span.clone(),

@@ -1,11 +1,11 @@
 //! Linked passes: their steps refer to resources by id, and list their reads and writes.
 
 use crate::{
-    instantiate::flat::Run,
-    kinds::step::{Stage, Step},
+    instantiate::Run,
+    kinds::{Stage, Step},
     resource::{ResourceId, SubresourceRange, Target},
-    shader::reflect::Shader,
-    source::span::{Located, Span},
+    shader::Shader,
+    source::{Located, Span},
 };
 use naga::ShaderStage;
 use std::sync::Arc;

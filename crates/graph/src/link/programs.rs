@@ -6,10 +6,10 @@ use super::{
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::Program,
-    shader::reflect::{Global, Shader},
+    kinds::Program,
+    shader::{Global, Shader},
 };
 use naga::ShaderStage;
 
@@ -106,7 +106,7 @@ fn bound_globals(
             wrong = Some(scope.report(LinkError::UnusedBind {
                 shader: shader.source.file.name.to_string(),
                 name: bound.clone(),
-                globals: scope.symbols().reports.known(names),
+                globals: scope.symbols.reports.known(names),
             }));
         }
     }

@@ -6,13 +6,13 @@ use super::{
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reported},
+    diagnostics::{ErrorGuaranteed, Reported},
     errors::link::LinkError,
-    instantiate::flat::Round,
-    kinds::step::{Dispatch, DrawCall, Groups, Step},
+    instantiate::Round,
+    kinds::{Dispatch, DrawCall, Groups, Step},
     resource::{Buffer, ResourceKind, SubresourceRange, Target},
-    shader::{expand::Expanded, reflect::Shader},
-    source::span::SourceFile,
+    shader::{Expanded, Shader},
+    source::SourceFile,
 };
 use std::{
     num::NonZeroU64,
@@ -38,7 +38,7 @@ pub(super) struct Guarded {
 /// Returns the first step of a round: it reads the counter.
 pub(super) fn begin(round: &Round<'_>, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {
     let counter = counter(round, scope)?;
-    let goes = scope.symbols().whole(round.goes);
+    let goes = scope.symbols.whole(round.goes);
     dispatch(
         "begin",
         &[("counter", &counter), ("goes", &goes)],
@@ -119,7 +119,7 @@ pub(super) fn guarded(
         }
         _ => return Ok(Err(step)),
     };
-    let goes = scope.symbols().whole(round.goes);
+    let goes = scope.symbols.whole(round.goes);
     let bound = [("goes", &goes), ("arguments", &arguments)];
     let guard = match &call {
         Ok(numbers) => dispatch("direct", &bound, numbers, round, scope)?,
@@ -148,7 +148,7 @@ pub(super) fn refused(
 
 /// Resolves the counter, which must be a buffer, all of it: an item may begin where none is bound.
 fn counter(round: &Round<'_>, scope: &mut PassScope<'_>) -> Reported<Target> {
-    let target = scope.resolve_at(round.counter, round.position)?;
+    let target = scope.symbols.resolve(round.counter, round.position)?;
     let wrong = match &scope.get(target.id).kind {
         ResourceKind::Buffer(_) if target.part == SubresourceRange::WHOLE => None,
         ResourceKind::Buffer(_) => Some("a part of a buffer"),
@@ -157,7 +157,7 @@ fn counter(round: &Round<'_>, scope: &mut PassScope<'_>) -> Reported<Target> {
     if let Some(kind) = wrong {
         return Err(scope.report(LinkError::Counter(round.counter.located(), kind)));
     }
-    let (base, span) = (scope.symbols().base(target.id), &round.counter.span);
+    let (base, span) = (scope.symbols.base(target.id), &round.counter.span);
     scope.layouts.at_least(base, &target.part, 4, span);
     Ok(target)
 }

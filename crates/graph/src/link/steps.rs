@@ -8,12 +8,12 @@ use super::{
     transfers,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    instantiate::flat::Run,
-    kinds::step::{Names, Step},
+    instantiate::Run,
+    kinds::{Names, Step},
     resource::{Origin, name_within},
-    source::span::Located,
+    source::Located,
 };
 
 /// Links the steps of a pass.

@@ -2,13 +2,13 @@
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::Reported,
-    document::materials::Filter,
+    diagnostics::Reported,
+    document::Filter,
     errors::link::{LinkError, TextureMisfit},
-    kinds::step::Program,
+    kinds::Program,
     resource::{Target, Texture},
     scalar_class::ScalarClass,
-    shader::{class::TextureClass, reflect::Global},
+    shader::{Global, TextureClass},
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
@@ -97,8 +97,8 @@ fn sampled(
     let able = wgt::Features::FLOAT32_FILTERABLE;
     let with_feature = format.guaranteed_format_features(able).flags;
     let by_feature = with_feature.contains(Flags::FILTERABLE);
-    let asks = by_feature && scope.symbols().graph.features().contains(able);
-    let suits = filterable || asks && scope.symbols().reports.any_adapter;
+    let asks = by_feature && scope.symbols.graph.features().contains(able);
+    let suits = filterable || asks && scope.symbols.reports.any_adapter;
     let is_linear = |name: &String| {
         let sampler = scope.sampler(program, name);
         sampler.is_some_and(|it| it.filter == Filter::Linear && it.compare.is_none())
@@ -130,7 +130,7 @@ fn storage(
     scope: &PassScope<'_>,
 ) -> Result<Bound, TextureMisfit> {
     let format = texture.format;
-    let features = if scope.symbols().reports.any_adapter {
+    let features = if scope.symbols.reports.any_adapter {
         // A device may have any.
         wgt::Features::all()
     } else {

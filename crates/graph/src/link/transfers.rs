@@ -6,9 +6,9 @@ use super::{
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::{Operand, Step},
+    kinds::{Operand, Step},
     resource::{ResourceKind, Target, Texture},
 };
 
@@ -43,7 +43,7 @@ pub(super) fn copy(from: &Operand, to: &Operand, scope: &mut PassScope<'_>) -> R
             ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame,
             ResourceKind::Buffer(_),
         ] => {
-            let sized = scope.symbols().base(source.id);
+            let sized = scope.symbols.base(source.id);
             let source = (sized, &source.part, &from);
             scope.layouts.same(source, (target.id, &target.part, &to));
             [wgt::BufferUsages::COPY_SRC, wgt::BufferUsages::COPY_DST].map(Usage::Buffer)

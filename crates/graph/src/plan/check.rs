@@ -5,24 +5,15 @@ use super::{
     plan::Plan,
 };
 use crate::{
-    compose::{loaded::Loaded, used::Used},
-    diagnostics::{
-        code::Code,
-        diagnostic::{Diagnostic, Severity},
-        list::Diagnostics,
-        reports::Reports,
-    },
-    document::{
-        materials::InputKind,
-        raw::Invalid,
-        typed::{Document, Entry, What},
-    },
+    compose::{Loaded, Used},
+    diagnostics::{Code, Diagnostic, Diagnostics, Reports, Severity},
+    document::{Document, Entry, InputKind, Invalid, What},
     errors::flow::OrderError,
-    instantiate::{flat::PlanInputs, params::claims},
+    instantiate::{PlanInputs, params::claims},
     param::{Param, ParamType, ParamValue},
     provider::Import,
     request::PlanRequest,
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -2,10 +2,10 @@
 //! needs.
 
 use crate::{
-    kinds::step::Step,
-    link::pass::{Access, BindTarget, Ids, LinkedPass},
+    kinds::Step,
+    link::{Access, BindTarget, Ids, LinkedPass},
     resource::{Resource, ResourceId, ResourceKind, Target},
-    shader::items::{Item, item},
+    shader::{Item, items::item},
 };
 use std::{collections::BTreeSet, ops::Range};
 

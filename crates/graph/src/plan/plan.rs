@@ -10,24 +10,16 @@ use super::{
     uniforms,
 };
 use crate::{
-    compose::loaded::Loaded,
-    diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
-    flow::{
-        discard::discarded,
-        order::{Dependences, dependences},
-        schedule::Schedule,
-        view::GraphView,
-    },
-    language::value::least_common_multiple,
-    link::{
-        params::words,
-        pass::{LinkedPass, PassId},
-    },
+    compose::Loaded,
+    diagnostics::{Diagnostic, Diagnostics, Reports},
+    flow::{Dependences, GraphView, Schedule, discard::discarded, order::dependences},
+    language::least_common_multiple,
+    link::{LinkedPass, PassId, params::words},
     param::{ParamType, ParamValue},
     provider::{Describe, Import, Provided},
     request::{PartialBackend, PlanRequest},
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind, Target},
-    shader::items::Item,
+    shader::Item,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},

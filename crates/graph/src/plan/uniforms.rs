@@ -1,6 +1,6 @@
 //! Changes of params that affect only uniforms: another value needs other bytes, but no other plan.
 
-use crate::link::pass::{Block, LinkedPass, block_mut};
+use crate::link::{Block, LinkedPass, pass::block_mut};
 
 /// Writes the value of a param, as words, into the `params` uniforms of all passes. Returns an
 /// entry for each pass: true if its bytes changed.

@@ -20,3 +20,10 @@ mod wgsl_errors;
 
 pub use items::{Field, Item, ItemScalar};
 pub use reflect::Shader;
+
+pub(crate) use class::{Class, Member, TextureClass};
+pub(crate) use expand::{Expanded, Replaced, ShaderFiles};
+pub(crate) use footprint::{Footprint, Memory};
+pub(crate) use reflect::Global;
+pub(crate) use store::Shaders;
+pub(crate) use varyings::{Varying, Varyings};

@@ -14,9 +14,9 @@ use super::{
 };
 use crate::{
     errors::shader::ShaderError,
-    language::value::Scalar,
+    language::Scalar,
     scalar_class::ScalarClass,
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use naga::{
     Handle, ShaderStage, TypeInner,

@@ -108,7 +108,7 @@ pub(crate) fn drop_unused(
             let default = default.filter(|it| !is_kept && is_own(&it.span));
             if let Some(default) = default {
                 let name = Located::new(param.name.value.clone(), default.span.clone());
-                reports.warn(ComposeError::UnusedParam(name));
+                reports.warn(ComposeError::Unused("param", name));
             }
             is_kept
         });

@@ -169,11 +169,7 @@ fn explain(
 ) -> Option<OrderError> {
     let name = view.resource(access.resource).name.clone();
     let pass = view.pass(reader);
-    let writes = |pass: &LinkedPass| {
-        pass.accesses.iter().any(|other| {
-            other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
-        })
-    };
+    let writes = |pass: &LinkedPass| pass.writes_to(access.resource, &access.part);
     // A pass that changes its own input depends on no pass below, even if one changes it there: it
     // lacks a beginning.
     let mut accesses = pass.accesses.iter();

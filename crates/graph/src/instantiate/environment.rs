@@ -60,15 +60,6 @@ impl Environment for At<'_, '_> {
             || scopes.find_value(scope, name).is_some()
     }
 
-    fn word_or_param(&mut self, name: &Name) -> Option<Value> {
-        let instance = self.symbols.scopes.document(self.position.scope);
-        if let Some(value) = instance.params.value(name, &mut self.symbols.reports) {
-            return value.ok();
-        }
-        let id = self.symbols.scopes.find_value(self.position.scope, name)?;
-        self.symbols.value(id).ok()
-    }
-
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
         let index = self.symbols.scopes.index(self.position, entry);
         index.ok_or_else(|| self.report(EvaluationError::no_index(span, entry)))

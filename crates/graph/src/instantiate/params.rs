@@ -146,10 +146,6 @@ impl Environment for ParamsAlone<'_> {
         self.params.bound(name).is_some()
     }
 
-    fn word_or_param(&mut self, name: &Name) -> Option<Value> {
-        self.params.value(name, self.reports)?.ok()
-    }
-
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
         Err(self.report(EvaluationError::no_index(span, entry)))
     }

@@ -281,15 +281,13 @@ impl<'a> SymbolTable<'a> {
             Some(id) => *id,
             None => {
                 let kind = match self.request.provider.describe(name) {
-                    Some(Provided {
-                        binding: ProvidedBinding::AccelerationStructure,
-                        ..
-                    }) => ResourceKind::AccelerationStructure,
-                    Some(Provided {
-                        binding: ProvidedBinding::CpuWork,
-                        ..
-                    }) => ResourceKind::CpuWork,
-                    Some(provided) => ResourceKind::Provided(provided),
+                    Some(provided) => match provided.binding {
+                        ProvidedBinding::AccelerationStructure => {
+                            ResourceKind::AccelerationStructure
+                        }
+                        ProvidedBinding::CpuWork => ResourceKind::CpuWork,
+                        _ => ResourceKind::Provided(provided),
+                    },
                     None if name == FRAME => ResourceKind::Frame,
                     None => return None,
                 };

@@ -312,33 +312,28 @@ pub(super) fn clear_value(
     value: [f64; 4],
 ) -> Result<(), LinkError> {
     let mut channels = &value[..usize::from(format.components()).min(4)];
-    let is_stencil = |v: &f64| v.fract() == 0.0 && (0.0..=255.0).contains(v);
-    if format.is_combined_depth_stencil_format() && is_stencil(&value[1]) {
+    let is_stencil = |value: f64| value.fract() == 0.0 && (0.0..=255.0).contains(&value);
+    if format.is_combined_depth_stencil_format() && is_stencil(value[1]) {
         channels = &value[..1];
     } else if format.has_stencil_aspect() && !format.has_depth_aspect() {
         // A single number stands in all four; of two the second is the stencil.
         channels = &value[1..2];
     }
-    let (fits, expected): (fn(&f64) -> bool, _) = match scalar_of(format, TextureAspect::All) {
-        _ if format.is_combined_depth_stencil_format() => (
-            |v| (0.0..=1.0).contains(v),
-            "a depth from 0 to 1, and a stencil from 0 to 255",
-        ),
-        _ if format.has_depth_aspect() => (|v| (0.0..=1.0).contains(v), "a depth from 0 to 1"),
-        _ if format.has_stencil_aspect() => (
-            |v| v.fract() == 0.0 && (0.0..=255.0).contains(v),
-            "a whole number from 0 to 255",
-        ),
-        Some(ScalarClass::Uint) => (
-            |v| v.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(v),
-            "whole numbers from 0",
-        ),
-        Some(ScalarClass::Sint) => (
-            |v| v.fract() == 0.0 && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(v),
-            "whole numbers of 32 bits",
-        ),
-        _ => (|v| v.is_finite(), "finite numbers"),
+    let (is_whole, range, expected) = match scalar_of(format, TextureAspect::All) {
+        _ if format.is_combined_depth_stencil_format() => {
+            let expected = "a depth from 0 to 1, and a stencil from 0 to 255";
+            (false, 0.0..=1.0, expected)
+        }
+        _ if format.has_depth_aspect() => (false, 0.0..=1.0, "a depth from 0 to 1"),
+        _ if format.has_stencil_aspect() => (true, 0.0..=255.0, "a whole number from 0 to 255"),
+        Some(ScalarClass::Uint) => (true, 0.0..=u32::MAX.into(), "whole numbers from 0"),
+        Some(ScalarClass::Sint) => {
+            let range = i32::MIN.into()..=i32::MAX.into();
+            (true, range, "whole numbers of 32 bits")
+        }
+        _ => (false, f64::MIN..=f64::MAX, "finite numbers"),
     };
+    let fits = |value: &f64| range.contains(value) && !(is_whole && value.fract() != 0.0);
     match channels.iter().find(|value| !fits(value)) {
         None => Ok(()),
         Some(&wrong) => Err(LinkError::ClearValue {

@@ -1,19 +1,13 @@
 //! Linking of all passes, one after the other.
 
-use super::{
-    capture,
-    pass::{Access, LinkedPass},
-    rounds,
-    scope::PassScope,
-    steps,
-};
+use super::{capture, pass::LinkedPass, rounds, scope::PassScope, steps};
 use crate::{
     diagnostics::{Reported, Reports},
     errors::{instantiate::InterfaceError, layout::LayoutError, link::LinkError},
     instantiate::{Flat, InstanceId, LoweredPass},
     language::Reference,
     request::Capture,
-    resource::{Origin, Resource, ResourceId, ResourceKind, SubresourceRange},
+    resource::{Origin, Resource, ResourceKind},
 };
 use std::collections::BTreeSet;
 
@@ -165,12 +159,7 @@ fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>)
         }
     }
     let unstated = pass.accesses.iter().find(|access| {
-        let kind = &scope.get(access.resource).kind;
-        let is_given = matches!(kind, ResourceKind::Provided(_) | ResourceKind::Frame)
-            || matches!(
-                kind,
-                ResourceKind::AccelerationStructure | ResourceKind::CpuWork
-            );
+        let is_given = scope.get(access.resource).kind.is_given();
         access.reads && !is_given && !stated.contains(&access.resource)
     });
     match unstated {
@@ -235,13 +224,5 @@ impl Linked<'_> {
                 })
             })
         })
-    }
-
-    /// True if the pass at the index `pass` in `passes` writes to a part of the resource `id` that
-    /// overlaps `part`.
-    pub fn writes(&self, pass: usize, id: ResourceId, part: &SubresourceRange) -> bool {
-        let writes =
-            |access: &Access| access.writes && access.resource == id && access.part.overlaps(part);
-        self.passes[pass].accesses.iter().any(writes)
     }
 }

@@ -110,24 +110,8 @@ impl<'a> PassScope<'a> {
     /// Adds a use of `target` by the current step to the pass's accesses: true in the triple if the
     /// step reads the part, writes it, and overwrites all of it. `span` is the place that causes
     /// the use.
-    pub fn access(
-        &mut self,
-        target: &Target,
-        (reads, writes, fully_overwrites): (bool, bool, bool),
-        usage: Usage,
-        span: &Span,
-    ) {
-        self.accesses.push(Access {
-            resource: target.id,
-            part: target.part.clone(),
-            reads,
-            writes,
-            fully_overwrites,
-            triggers: true,
-            usage,
-            span: span.clone(),
-            step: 0,
-        });
+    pub fn access(&mut self, target: &Target, used: (bool, bool, bool), usage: Usage, span: &Span) {
+        self.accesses.push(Access::new(target, used, usage, span));
     }
 
     /// Adds a resource of the graph that no document names, such as the copy for a capture. Returns

@@ -8,7 +8,7 @@ use crate::{
     kinds::Program,
     resource::{Target, Texture},
     scalar_class::ScalarClass,
-    shader::{Global, TextureClass},
+    shader::{Global, SampledClass, TextureClass},
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
@@ -27,26 +27,25 @@ type Bound = (wgt::BindingType, TextureUsages, TextureAspect);
 
 pub(super) fn texture(
     global: &Global,
-    class: &TextureClass,
+    (dimension, class): (wgt::TextureViewDimension, &TextureClass),
     (texture, target): (&Texture, &Target),
     (linked, program): (&LinkedProgram, &Program),
     scope: &mut PassScope<'_>,
 ) -> Reported<Bound> {
     let grows = scope.get(target.id).growth.is_some();
-    let misfit = wrong_shape(class.dimension(), texture, target, grows);
+    let misfit = wrong_shape(dimension, texture, target, grows);
     let bound = match (misfit, class) {
         (Some(misfit), _) => Err(misfit),
-        (None, TextureClass::Sampled { .. }) => {
-            sampled(global, class, texture, (linked, program), scope)
+        (None, TextureClass::Sampled(class)) => sampled(
+            global,
+            (dimension, *class),
+            texture,
+            (linked, program),
+            scope,
+        ),
+        (None, TextureClass::Storage(format, access)) => {
+            storage((format, *access, dimension), texture, target, scope)
         }
-        (
-            None,
-            TextureClass::Storage {
-                format,
-                access,
-                dimension,
-            },
-        ) => storage((format, *access, *dimension), texture, target, scope),
     };
     bound.map_err(|misfit| {
         let resource = scope.get(target.id);
@@ -63,20 +62,16 @@ pub(super) fn texture(
 
 fn sampled(
     global: &Global,
-    class: &TextureClass,
+    (dimension, class): (wgt::TextureViewDimension, SampledClass),
     texture: &Texture,
     (linked, program): (&LinkedProgram, &Program),
     scope: &mut PassScope<'_>,
 ) -> Result<Bound, TextureMisfit> {
-    let TextureClass::Sampled {
+    let SampledClass {
         scalar,
-        dimension,
         depth,
         multisampled,
-    } = *class
-    else {
-        return Err(TextureMisfit::Samples(texture.samples));
-    };
+    } = class;
     let format = texture.format;
     let features = format.guaranteed_format_features(scope.request().features);
     // For a texture with both, the shader's type says which is meant.

@@ -346,11 +346,8 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
 
 /// Returns the passes that write a part of a resource, in whichever frame.
 fn writers(view: GraphView<'_>, target: &Target) -> BTreeSet<PassId> {
-    let writes = |access: &Access| {
-        access.writes && access.resource == target.id && access.part.overlaps(&target.part)
-    };
     let passes = view.ids();
-    let writers = passes.filter(|(_, pass)| pass.accesses.iter().any(writes));
+    let writers = passes.filter(|(_, pass)| pass.writes_to(target.id, &target.part));
     writers.map(|(id, _)| id).collect()
 }
 
@@ -523,13 +520,16 @@ fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
             let has_content = linked.flat.symbols.get(target.id).origin != Origin::Own
                 || linked.flat.merged.iter().any(is_merged);
             let mut passes = passes.iter();
-            if !has_content && !passes.any(|pass| linked.writes(*pass, target.id, &target.part)) {
+            if !has_content
+                && !passes.any(|pass| linked.passes[*pass].writes_to(target.id, &target.part))
+            {
                 reports.report(InterfaceError::UnwrittenOutput(name.text()));
             }
         }
         for (name, target) in &border.read_only {
             let mut passes = passes.iter();
-            let writer = passes.find(|pass| linked.writes(**pass, target.id, &target.part));
+            let writer =
+                passes.find(|pass| linked.passes[**pass].writes_to(target.id, &target.part));
             if let Some(writer) = writer {
                 let by = linked.passes[*writer].name.span.clone();
                 reports.report(InterfaceError::WrittenInput(name.text(), by));

@@ -72,13 +72,7 @@ pub(super) fn readable(
         let Some(target) = captured(graph, capture, &declared, at) else {
             continue;
         };
-        if matches!(
-            at.symbols.get(target.id).kind,
-            ResourceKind::Provided(_)
-                | ResourceKind::AccelerationStructure
-                | ResourceKind::CpuWork
-                | ResourceKind::Frame
-        ) {
+        if at.symbols.get(target.id).kind.is_given() {
             at.report(OutputError::Provided(name));
         } else if !written(&target) {
             at.report(OutputError::Unwritten(name));

@@ -21,7 +21,7 @@ mod wgsl_errors;
 pub use items::{Field, Item, ItemScalar};
 pub use reflect::Shader;
 
-pub(crate) use class::{Class, Member, TextureClass};
+pub(crate) use class::{Class, Member, SampledClass, TextureClass};
 pub(crate) use expand::{Expanded, Replaced, ShaderFiles};
 pub(crate) use footprint::{Footprint, Memory};
 pub(crate) use reflect::Global;

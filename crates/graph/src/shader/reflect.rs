@@ -276,7 +276,7 @@ impl Shader {
             }
             let class = class_of(&self.module, &self.layouter, variable);
             let storage_texture = match &class {
-                Class::Texture(TextureClass::Storage { access, .. }) => Some(*access),
+                Class::Texture(_, TextureClass::Storage(_, access)) => Some(*access),
                 _ => None,
             };
             // Atomics read what they add to; a storage texture's declared access is what the device

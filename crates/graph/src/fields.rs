@@ -39,15 +39,18 @@ fn parse<T, E: serde::de::Error>(
     parse(&span.file, start..start + inner.len()).map_err(refuse)
 }
 
-by_text!(Name, |text, span| {
-    // The words of a `Choice` have no quotes.
-    let name = if text.starts_with('"') {
-        read::<String, D::Error>(text)?
-    } else {
-        text.to_owned()
-    };
-    Name::new(&name).map_err(|fault| refuse(DocumentError::Name(span, name, fault)))
-});
+impl<'de> Deserialize<'de> for Name {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let (text, span) = raw(deserializer)?;
+        // The words of a `Choice` have no quotes.
+        let name = if text.starts_with('"') {
+            read::<String, D::Error>(text)?
+        } else {
+            text.to_owned()
+        };
+        Name::new(&name).map_err(|fault| refuse(DocumentError::Name(span, name, fault)))
+    }
+}
 
 /// Expressions and references in the fields of a pass kind, whose meaning only the kind knows.
 #[derive(Clone, Debug, Default)]

@@ -115,7 +115,9 @@ mistakes! {
             "material" => {
                 "remove it, or check the names of the shader globals that should be it"
             }
-            "param" => "remove it, or check the names in `params` of the shaders and in expressions",
+            "param" => {
+                "remove it, or check the names in `params` of the shaders and in expressions"
+            }
             _ => "remove the entry, or name the module as the shaders import it",
         });
 }

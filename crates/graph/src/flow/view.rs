@@ -4,6 +4,7 @@ use crate::{
     link::{LinkedPass, PassId},
     resource::{Resource, ResourceId, ResourceKind, SubresourceRange},
 };
+use petgraph::graph::{DiGraph, NodeIndex};
 use std::collections::BTreeMap;
 
 /// Linked passes and the resources of a plan.
@@ -18,6 +19,18 @@ impl<'p> GraphView<'p> {
     pub fn ids(self) -> impl Iterator<Item = (PassId, &'p LinkedPass)> {
         let passes = self.passes.iter().enumerate();
         passes.map(|(index, pass)| (PassId(index), pass))
+    }
+
+    /// Returns a graph of the passes with these edges.
+    pub fn graph<E>(self, edges: impl Iterator<Item = (PassId, PassId, E)>) -> DiGraph<(), E> {
+        let mut graph = DiGraph::with_capacity(self.passes.len(), edges.size_hint().0);
+        for _ in self.passes {
+            graph.add_node(());
+        }
+        for (from, to, edge) in edges {
+            graph.add_edge(NodeIndex::new(from.0), NodeIndex::new(to.0), edge);
+        }
+        graph
     }
 
     pub fn pass(self, id: PassId) -> &'p LinkedPass {

@@ -182,12 +182,8 @@ impl<'e> Call<'e> {
     /// to `at`, the place of the include.
     pub fn params(&self, at: &mut At<'_, '_>) -> Params {
         let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
-        for Inherited {
-            name,
-            value: expr,
-            position: place,
-        } in &self.settings.set
-        {
+        for setting in &self.settings.set {
+            let (name, expr, place) = (setting.name, setting.value, setting.position);
             let mut params = self.document.params.iter();
             if !params.any(|param| param.name.value == name.value) {
                 let params = self.document.params.iter();
@@ -197,11 +193,11 @@ impl<'e> Call<'e> {
             let params = &at.symbols.scopes.document(place.scope).params;
             let value = match params.forwarded(expr) {
                 Some(value) => value,
-                None => eval::value(expr, &mut at.elsewhere(*place)),
+                None => eval::value(expr, &mut at.elsewhere(place)),
             };
             let given = SetParam {
                 roots: at.symbols.roots(place.scope, expr),
-                expr: Located::new((*expr).clone(), expr.span.clone()),
+                expr: Located::new(expr.clone(), expr.span.clone()),
                 value,
             };
             set.insert(name.value.clone(), given);
@@ -268,12 +264,8 @@ impl<'e> Call<'e> {
         at: &mut At<'_, '_>,
     ) -> (BTreeMap<String, Reported<Target>>, BTreeMap<String, Bound>) {
         let (mut scene, mut overrides) = (BTreeMap::new(), BTreeMap::new());
-        for Inherited {
-            name,
-            value: reference,
-            position: place,
-        } in &self.settings.bind
-        {
+        for setting in &self.settings.bind {
+            let (name, reference, place) = (setting.name, setting.value, setting.position);
             if has_input(self.document, name.as_str()) {
                 continue;
             }
@@ -286,12 +278,12 @@ impl<'e> Call<'e> {
                 self.unused(name, inputs.chain(outputs).map(ToString::to_string), at);
                 continue;
             }
-            let target = at.elsewhere(*place).resolve(reference);
+            let target = at.elsewhere(place).resolve(reference);
             match output {
                 None => drop(scene.insert(name.value.clone(), target)),
                 Some(output) => {
                     let key = output.material.path();
-                    overrides.insert(key, ((*name).clone(), target));
+                    overrides.insert(key, (name.clone(), target));
                 }
             }
         }

@@ -2,7 +2,7 @@
 //! document from the document that includes it.
 
 use crate::{
-    diagnostics::{Reported, Reports},
+    diagnostics::{ErrorGuaranteed, Reported, Reports},
     document::{ClaimEntry, Document},
     errors::{evaluation::EvaluationError, instantiate::ParamError},
     expressions::{Environment, eval},
@@ -223,6 +223,15 @@ pub(crate) struct Given<'a> {
     pub context: Surroundings,
 }
 
+/// Reports that a param is handed, at a place, to one that does not hold all of its values.
+fn misfit(param: &Param, outer: &BoundParam, at: &Span, reports: &mut Reports) -> ErrorGuaranteed {
+    reports.report(ParamError::Misfit {
+        name: Located::new(param.name.value.clone(), at.clone()),
+        outer: Box::new(outer.param.clone()),
+        param: Box::new(param.clone()),
+    })
+}
+
 impl Given<'_> {
     /// Returns the params of an included document with their values: exposed ones first, then those
     /// that the document declares. `set` holds the values that the include sets, by name of the
@@ -252,14 +261,10 @@ impl Given<'_> {
     ) -> BoundParam {
         let source = expr.value.as_param();
         let source = source.and_then(|name| self.outer.bound(name));
-        let misfit = source.filter(|source| !param.holds_all_of(&source.param));
-        let value = match (value, misfit) {
+        let narrow = source.filter(|source| !param.holds_all_of(&source.param));
+        let value = match (value, narrow) {
             (Err(reported), _) => Err(*reported),
-            (Ok(_), Some(source)) => Err(reports.report(ParamError::Misfit {
-                name: Located::new(param.name.value.clone(), expr.span.clone()),
-                outer: Box::new(source.param.clone()),
-                param: Box::new(param.clone()),
-            })),
+            (Ok(_), Some(source)) => Err(misfit(param, source, &expr.span, reports)),
             (Ok(value), None) => param.convert(value).map_err(|why| {
                 reports.report(ParamError::Set {
                     name: Located::new(param.name.value.clone(), expr.span.clone()),
@@ -303,11 +308,7 @@ impl Given<'_> {
         };
         match outer {
             Some(outer) if !param.holds_all_of(&outer.param) => {
-                bound.value = Err(reports.report(ParamError::Misfit {
-                    name: Located::new(name.to_owned(), self.span.clone()),
-                    outer: Box::new(outer.param.clone()),
-                    param: Box::new(param.clone()),
-                }));
+                bound.value = Err(misfit(param, outer, self.span, reports));
             }
             Some(outer) => {
                 bound.value = outer.value.clone();

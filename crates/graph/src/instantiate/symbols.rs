@@ -146,13 +146,13 @@ impl<'a> SymbolTable<'a> {
     /// Adds a material whose size is found when it is first asked for.
     pub(super) fn declare(&mut self, name: String, declared: Declared) -> ResourceId {
         let kind = ResourceKind::Buffer(crate::resource::Buffer::default());
-        self.resources.push(Resource {
+        let id = self.add(Resource {
             declared: Some(declared.material().name().span.clone()),
             keep: declared.material().keeps(),
             ..Resource::new(name, kind, Origin::Own)
         });
-        self.states.push(State::Declared(declared));
-        ResourceId(self.resources.len() - 1)
+        self.states[id.0] = State::Declared(declared);
+        id
     }
 
     /// Adds a value, which is evaluated when an expression or a shader first asks for it.

@@ -14,7 +14,7 @@ use crate::{
     kinds::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
     language::Reference,
     resource::{ResourceKind, Target, Texture},
-    scalar_class::ScalarClass,
+    scalar_class::ItemScalar,
     shader::{Varying, Varyings},
     source::{Located, Span},
 };
@@ -243,9 +243,9 @@ fn check_output(
     Err(LinkError::FragmentOutput {
         name,
         format,
-        expected: expected.map_or("…".to_owned(), |scalar| scalar.to_string()),
+        expected: expected.map_or("…", ItemScalar::as_str).to_owned(),
         needed,
-        written: format!("{width} × {scalar}"),
+        written: format!("{width} × {}", scalar.as_str()),
         location,
         entry: entry.clone(),
     })
@@ -326,8 +326,8 @@ pub(super) fn clear_value(
         }
         _ if format.has_depth_aspect() => (false, 0.0..=1.0, "a depth from 0 to 1"),
         _ if format.has_stencil_aspect() => (true, 0.0..=255.0, "a whole number from 0 to 255"),
-        Some(ScalarClass::Uint) => (true, 0.0..=u32::MAX.into(), "whole numbers from 0"),
-        Some(ScalarClass::Sint) => {
+        Some(ItemScalar::U32) => (true, 0.0..=u32::MAX.into(), "whole numbers from 0"),
+        Some(ItemScalar::I32) => {
             let range = i32::MIN.into()..=i32::MAX.into();
             (true, range, "whole numbers of 32 bits")
         }

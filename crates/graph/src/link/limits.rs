@@ -241,7 +241,10 @@ fn misfit(taken: &Varying, given: &[Varying]) -> Option<String> {
     if given.scalar != taken.scalar || given.width < taken.width {
         return Some(format!(
             "holds {} × {}, not {} × {}",
-            given.width, given.scalar, taken.width, taken.scalar
+            given.width,
+            given.scalar.as_str(),
+            taken.width,
+            taken.scalar.as_str()
         ));
     }
     let same = given.interpolation == taken.interpolation && given.sampling == taken.sampling;

@@ -7,18 +7,18 @@ use crate::{
     errors::link::{LinkError, TextureMisfit},
     kinds::Program,
     resource::{Target, Texture},
-    scalar_class::ScalarClass,
+    scalar_class::ItemScalar,
     shader::{Global, SampledClass, TextureClass},
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
 /// Returns the scalar type that a shader reads from a format, or from one aspect of a format with
 /// two; `None` if it cannot be read.
-pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ScalarClass> {
+pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ItemScalar> {
     Some(match format.sample_type(Some(aspect), None)? {
-        wgt::TextureSampleType::Float { .. } | wgt::TextureSampleType::Depth => ScalarClass::Float,
-        wgt::TextureSampleType::Uint => ScalarClass::Uint,
-        wgt::TextureSampleType::Sint => ScalarClass::Sint,
+        wgt::TextureSampleType::Float { .. } | wgt::TextureSampleType::Depth => ItemScalar::F32,
+        wgt::TextureSampleType::Uint => ItemScalar::U32,
+        wgt::TextureSampleType::Sint => ItemScalar::I32,
     })
 }
 
@@ -77,7 +77,7 @@ fn sampled(
     // For a texture with both, the shader's type says which is meant.
     let aspect = match (format.is_combined_depth_stencil_format(), scalar) {
         (false, _) => TextureAspect::All,
-        (true, ScalarClass::Uint) => TextureAspect::StencilOnly,
+        (true, ItemScalar::U32) => TextureAspect::StencilOnly,
         (true, _) => TextureAspect::DepthOnly,
     };
     let declared = scalar_of(format, aspect);
@@ -104,11 +104,11 @@ fn sampled(
     }
     let sample_type = match (scalar, depth) {
         (_, true) => wgt::TextureSampleType::Depth,
-        (ScalarClass::Float, _) => wgt::TextureSampleType::Float {
+        (ItemScalar::F32, _) => wgt::TextureSampleType::Float {
             filterable: filterable && !multisampled,
         },
-        (ScalarClass::Uint, _) => wgt::TextureSampleType::Uint,
-        (ScalarClass::Sint, _) => wgt::TextureSampleType::Sint,
+        (ItemScalar::U32, _) => wgt::TextureSampleType::Uint,
+        (ItemScalar::I32, _) => wgt::TextureSampleType::Sint,
     };
     let ty = wgt::BindingType::Texture {
         sample_type,

@@ -162,7 +162,7 @@ fn schedule(
         return None;
     }
     let named_values = linked.flat.symbols.found_values();
-    let asked = linked.flat.symbols.take_asked();
+    let mut asked = linked.flat.symbols.take_asked();
     let (passes, resources) = (linked.passes, linked.flat.symbols.resources);
     let view = GraphView {
         passes: &passes,
@@ -201,7 +201,11 @@ fn schedule(
     let largest = request.limits.max_buffer_size;
     let aliases = aliases(view, &sequence, &lifetimes, &kept, largest);
     let culled = culled(view, &live);
-    let relies_on = unbound(asked, &lifetimes, view);
+    // Not those that live passes bind.
+    let used = lifetimes.keys().map(|id| view.resource(*id));
+    for resource in used.filter(|resource| resource.is_provided()) {
+        asked.remove(&resource.name);
+    }
     let is_own = |base: &&ResourceId| view.resource(**base).origin == Origin::Own;
     let own = previous.values().filter(is_own);
     let schedule = Schedule {
@@ -223,22 +227,8 @@ fn schedule(
         culled,
         warnings: Vec::new(),
         depends_on: BTreeSet::new(),
-        relies_on,
+        relies_on: asked,
     })
-}
-
-/// Leaves out the provided resources that live passes bind.
-fn unbound<T>(
-    mut asked: BTreeMap<String, T>,
-    lifetimes: &Lifetimes,
-    view: GraphView<'_>,
-) -> BTreeMap<String, T> {
-    for resource in lifetimes.keys().map(|id| view.resource(*id)) {
-        if resource.is_provided() {
-            asked.remove(&resource.name);
-        }
-    }
-    asked
 }
 
 fn finish(

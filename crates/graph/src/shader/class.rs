@@ -1,7 +1,7 @@
 //! Class of a resource global: a uniform, a storage buffer, a texture, a sampler, each with its
 //! layout.
 
-use crate::scalar_class::{ScalarClass, ShaderType};
+use crate::scalar_class::{ItemScalar, ShaderType};
 use naga::{AddressSpace, Handle, ImageClass, TypeInner, proc::Layouter};
 
 /// Type of a resource global of a shader, with the layout that a resource must have to be bound to
@@ -40,7 +40,7 @@ pub(crate) enum TextureClass {
 /// Type of a sampled texture global.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SampledClass {
-    pub scalar: ScalarClass,
+    pub scalar: ItemScalar,
     pub depth: bool,
     pub multisampled: bool,
 }
@@ -62,7 +62,7 @@ pub(super) fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<Sh
         TypeInner::Vector { size, scalar } => (scalar, size as u32),
         _ => return None,
     };
-    let class = ScalarClass::from_kind(scalar.kind)?;
+    let class = ItemScalar::from_kind(scalar.kind)?;
     Some(ShaderType { class, width })
 }
 
@@ -134,11 +134,11 @@ fn image(dim: naga::ImageDimension, arrayed: bool, class: ImageClass) -> Class {
         })
     };
     let class = match class {
-        ImageClass::Sampled { kind, multi } => match ScalarClass::from_kind(kind) {
+        ImageClass::Sampled { kind, multi } => match ItemScalar::from_kind(kind) {
             Some(scalar) => sampled(scalar, false, multi),
             None => return Class::Unsupported("a texture of this scalar type"),
         },
-        ImageClass::Depth { multi } => sampled(ScalarClass::Float, true, multi),
+        ImageClass::Depth { multi } => sampled(ItemScalar::F32, true, multi),
         ImageClass::Storage { format, access } => {
             let load = access.contains(naga::StorageAccess::LOAD);
             let store = access.contains(naga::StorageAccess::STORE);

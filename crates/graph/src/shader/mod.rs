@@ -18,7 +18,7 @@ pub(crate) mod unused;
 pub(crate) mod varyings;
 mod wgsl_errors;
 
-pub use items::{Field, Item, ItemScalar};
+pub use items::{Field, Item};
 pub use reflect::Shader;
 
 pub(crate) use class::{Class, Member, SampledClass, TextureClass};

@@ -15,7 +15,7 @@ use super::{
 use crate::{
     errors::shader::ShaderError,
     language::Scalar,
-    scalar_class::ScalarClass,
+    scalar_class::ItemScalar,
     source::{Located, Span},
 };
 use naga::{
@@ -366,12 +366,12 @@ impl Shader {
 
     /// Returns the scalar class of an override; `None` for a `bool`, and if there is no such
     /// override.
-    pub(crate) fn override_class(&self, name: &str) -> Option<ScalarClass> {
+    pub(crate) fn override_class(&self, name: &str) -> Option<ItemScalar> {
         let mut overrides = self.module.overrides.iter();
         let (_, declared) =
             overrides.find(|(_, declared)| declared.name.as_deref() == Some(name))?;
         let scalar = self.module.types[declared.ty].inner.scalar()?;
-        ScalarClass::from_kind(scalar.kind)
+        ItemScalar::from_kind(scalar.kind)
     }
 
     /// Returns the value of a scalar constant at module scope; `None` if there is no such constant,

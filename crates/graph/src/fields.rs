@@ -2,16 +2,26 @@
 use crate::{
     errors::{document::DocumentError, language::SyntaxFault},
     expressions::parser,
-    language::{
-        name::Name,
-        syntax::{Expr, ExprKind, Reference},
-        value::{Scalar, Value},
-    },
-    source::span::{SourceFile, Span},
+    language::{Expr, ExprKind, Name, Reference, Scalar, Value},
+    source::{SourceFile, Span},
 };
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 use skiagraph_located_ron::reader::{raw, read, refuse};
 use std::{cell::RefCell, ops::Range};
+
+/// Implements `Deserialize` for a type by a function of a value's text and place.
+macro_rules! by_text {
+    ($type:ty, $read:expr) => {
+        impl<'de> serde::Deserialize<'de> for $type {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let (text, span) = skiagraph_located_ron::reader::raw(deserializer)?;
+                let read: fn(&'de str, $crate::source::Span) -> Result<Self, D::Error> = $read;
+                read(text, span)
+            }
+        }
+    };
+}
+pub(crate) use by_text;
 
 /// Reads a string of the language by its grammar; it must have no escapes.
 fn parse<T, E: serde::de::Error>(
@@ -61,50 +71,44 @@ impl Mentions {
     }
 }
 
-impl<'de> Deserialize<'de> for Reference {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, span) = raw(deserializer)?;
-        let reference: Self = parse((text, &span), parser::reference)?;
-        MENTIONS.with_borrow_mut(|mentions| mentions.references.push(reference.clone()));
-        Ok(reference)
-    }
-}
+by_text!(Reference, |text, span| {
+    let reference: Self = parse((text, &span), parser::reference)?;
+    MENTIONS.with_borrow_mut(|mentions| mentions.references.push(reference.clone()));
+    Ok(reference)
+});
 
-impl<'de> Deserialize<'de> for Expr {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, span) = raw(deserializer)?;
-        let literal = |value, span| Ok(Expr::new(ExprKind::Literal(value), span));
-        match text.chars().next() {
-            Some('"') => {
-                let expr: Self = parse((text, &span), parser::expression)?;
-                MENTIONS.with_borrow_mut(|mentions| mentions.exprs.push(expr.clone()));
-                Ok(expr)
-            }
-            Some('(') => {
-                let parts = span.list();
-                let parts = parts.map_err(|_| refuse(DocumentError::NoTuple(span.clone())))?;
-                let parts = parts.iter().map(|part| read(part.text()));
-                Ok(Expr::new(
-                    ExprKind::Tuple(parts.collect::<Result<_, _>>()?),
-                    span,
-                ))
-            }
-            _ if matches!(text, "true" | "false") => literal(Value::Bool(text == "true"), span),
-            Some(first) if first.is_alphabetic() => match Name::new(text) {
-                Ok(word) => Ok(Expr::new(ExprKind::Word(word), span)),
-                Err(_) => Err(refuse(DocumentError::BareWord(span, text.to_owned()))),
-            },
-            _ => {
-                let whole = text.replace('_', "").parse();
-                let scalar = match whole {
-                    Ok(whole) => Scalar::Whole(whole),
-                    Err(_) => Scalar::Number(read(text)?),
-                };
-                literal(Value::Scalar(scalar), span)
-            }
+by_text!(Expr, |text, span| {
+    let literal = |value, span| Ok(Expr::new(ExprKind::Literal(value), span));
+    match text.chars().next() {
+        Some('"') => {
+            let expr: Self = parse((text, &span), parser::expression)?;
+            MENTIONS.with_borrow_mut(|mentions| mentions.exprs.push(expr.clone()));
+            Ok(expr)
+        }
+        Some('(') => {
+            let parts = span.list();
+            let parts = parts.map_err(|_| refuse(DocumentError::NoTuple(span.clone())))?;
+            let parts = parts.iter().map(|part| read(part.text()));
+            Ok(Expr::new(
+                ExprKind::Tuple(parts.collect::<Result<_, _>>()?),
+                span,
+            ))
+        }
+        _ if matches!(text, "true" | "false") => literal(Value::Bool(text == "true"), span),
+        Some(first) if first.is_alphabetic() => match Name::new(text) {
+            Ok(word) => Ok(Expr::new(ExprKind::Word(word), span)),
+            Err(_) => Err(refuse(DocumentError::BareWord(span, text.to_owned()))),
+        },
+        _ => {
+            let whole = text.replace('_', "").parse();
+            let scalar = match whole {
+                Ok(whole) => Scalar::Whole(whole),
+                Err(_) => Scalar::Number(read(text)?),
+            };
+            literal(Value::Scalar(scalar), span)
         }
     }
-}
+});
 
 /// Value of a field of a [`PassKind`](crate::PassKind) that takes one word of a fixed set, the enum
 /// `T`: the word itself, or an expression that yields the word.
@@ -141,16 +145,11 @@ pub(crate) fn one_line(text: &str) -> String {
 }
 
 /// An entry of which a string alone is the most important field: `color: ["image"]`.
-pub(crate) fn short_or_long<'de, D, T, L>(
-    deserializer: D,
+pub(crate) fn short_or_long<T, L: DeserializeOwned, E: serde::de::Error>(
+    (text, span): (&str, Span),
     long: impl FnOnce(L) -> T,
     short: impl FnOnce(Reference) -> T,
-) -> Result<T, D::Error>
-where
-    D: Deserializer<'de>,
-    L: DeserializeOwned,
-{
-    let (text, span) = raw(deserializer)?;
+) -> Result<T, E> {
     match text.chars().next() {
         Some('"') => read(text).map(short),
         Some(first) if first.is_alphanumeric() => Err(refuse(DocumentError::NoString(span))),
@@ -170,24 +169,21 @@ pub(crate) enum Load {
     KeepIf(Expr),
 }
 
-impl<'de> Deserialize<'de> for Load {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, span) = raw(deserializer)?;
-        let unknown = || refuse(DocumentError::Load(span.clone()));
-        let (tag, body) = span.variant().ok_or_else(unknown)?;
-        let is_bare = text.len() == tag.len();
-        let values = (!is_bare).then(|| body.list()).transpose();
-        match (tag.as_str(), values.map_err(|_| unknown())?.as_deref()) {
-            ("Load", None) => Ok(Self::Keep),
-            ("LoadIf", Some([condition])) => read(condition.text()).map(Self::KeepIf),
-            ("Clear", Some(values @ ([_] | [_, _, _, _]))) => {
-                let values = values.iter().map(|value| read(value.text()));
-                Ok(Self::Clear(values.collect::<Result<_, _>>()?))
-            }
-            _ => Err(unknown()),
+by_text!(Load, |text, span| {
+    let unknown = || refuse(DocumentError::Load(span.clone()));
+    let (tag, body) = span.variant().ok_or_else(unknown)?;
+    let is_bare = text.len() == tag.len();
+    let values = (!is_bare).then(|| body.list()).transpose();
+    match (tag.as_str(), values.map_err(|_| unknown())?.as_deref()) {
+        ("Load", None) => Ok(Self::Keep),
+        ("LoadIf", Some([condition])) => read(condition.text()).map(Self::KeepIf),
+        ("Clear", Some(values @ ([_] | [_, _, _, _]))) => {
+            let values = values.iter().map(|value| read(value.text()));
+            Ok(Self::Clear(values.collect::<Result<_, _>>()?))
         }
+        _ => Err(unknown()),
     }
-}
+});
 
 /// A comparison, true where the new value stands in this relation to the stored one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]

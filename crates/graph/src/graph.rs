@@ -1,19 +1,19 @@
 //! [`Graph`]: a document with its shaders, ready to be planned.
 
 use crate::{
-    compose::{
-        loaded::Loaded,
-        reader::{Reader, label},
-    },
-    diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
+    compose::{Loaded, Reader, reader::label},
+    diagnostics::{Diagnostic, Diagnostics, Reports},
     document::flat::{flat, keep},
-    instantiate::params::{Claim, Surroundings, checked, claims},
-    kinds::registry::Registry,
-    language::name::Name,
+    instantiate::{
+        Claim, Surroundings,
+        params::{checked, claims},
+    },
+    kinds::Registry,
+    language::Name,
     param::{Param, ParamError, ParamValue},
-    plan::{check::check, plan::Plan},
+    plan::{Plan, check::check},
     request::PlanRequest,
-    source::{sources::Sources, span::Located},
+    source::{Located, Sources},
 };
 use std::{collections::BTreeMap, sync::Arc};
 

@@ -111,9 +111,10 @@ pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,
     SubresourceRange, Target, Texture,
 };
+pub use scalar_class::ItemScalar;
 #[cfg(feature = "schema")]
 pub use schema::schema;
-pub use shader::{Field, Item, ItemScalar, Shader};
+pub use shader::{Field, Item, Shader};
 pub use skiagraph_located_ron::panics::{Panicked, caught};
 pub use source::{
     FolderSources, LayeredSources, Located, MemorySources, SourceFile, SourceText, Sources, Span,

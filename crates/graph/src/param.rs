@@ -3,12 +3,8 @@
 
 use crate::{
     diagnostics::suggest::{likeness, suggestion},
-    language::{
-        name::Name,
-        syntax::Expr,
-        value::{Scalar, Value, Word},
-    },
-    source::span::Located,
+    language::{Expr, Name, Scalar, Value, Word},
+    source::Located,
 };
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, sync::Arc};

@@ -1,7 +1,7 @@
 //! Descriptions, for planning, of the resources that a graph does not make itself. (The GPU crate
 //! builds these resources.)
 
-use crate::{document::materials::Filter, provided_kind::ProvidedKind};
+use crate::{document::Filter, provided_kind::ProvidedKind};
 use std::collections::BTreeMap;
 
 /// Source of descriptions of the resources that the host's renderer makes and a graph only reads:

@@ -1,11 +1,11 @@
 //! Textures, buffers and samplers of a plan, and parts of them.
 
 use crate::{
-    document::materials::{Address, Filter},
+    document::{Address, Filter},
     picture::Picture,
     provided_kind::ProvidedKind,
     provider::Provided,
-    source::span::Span,
+    source::Span,
 };
 use std::{ops::Range, sync::Arc};
 
@@ -76,13 +76,7 @@ impl Resource {
 
     /// True if the host's provider describes the resource, and makes it.
     pub(crate) fn is_provided(&self) -> bool {
-        self.origin == Origin::Host
-            && matches!(
-                self.kind,
-                ResourceKind::Provided(_)
-                    | ResourceKind::AccelerationStructure
-                    | ResourceKind::CpuWork
-            )
+        self.origin == Origin::Host && self.kind.is_given() && self.kind != ResourceKind::Frame
     }
 }
 
@@ -156,6 +150,42 @@ impl ResourceKind {
             Self::AccelerationStructure => "an acceleration structure",
             Self::CpuWork => "work for the CPU",
             Self::Frame => "the frame's uniform",
+        }
+    }
+
+    /// True if the kind is always the host's.
+    pub(crate) fn is_given(&self) -> bool {
+        match self {
+            Self::Texture(_) | Self::Buffer(_) | Self::Sampler(_) => false,
+            Self::Provided(_) | Self::AccelerationStructure | Self::CpuWork | Self::Frame => true,
+        }
+    }
+
+    /// Returns the number of layers of a mip of a texture, slices of a 3D texture, or of items of a
+    /// buffer; of one whose end is not known, the greatest number.
+    pub(crate) fn layers(&self, mip: u32) -> u32 {
+        let items = match self {
+            Self::Texture(texture) => return texture.mip_layers(mip),
+            Self::Buffer(buffer) => buffer.count,
+            _ => None,
+        };
+        let items = items.and_then(|items| u32::try_from(items).ok());
+        items.unwrap_or(u32::MAX)
+    }
+
+    /// Returns the kind of a buffer of `count` items.
+    pub(crate) fn buffer_of(count: u64) -> Self {
+        Self::Buffer(Buffer {
+            count: Some(count),
+            ..Buffer::default()
+        })
+    }
+
+    /// Describes the kind, a texture with its format.
+    pub(crate) fn describe_with_format(&self) -> String {
+        match self {
+            Self::Texture(texture) => format!("a texture {:?}", texture.format),
+            other => other.describe().to_owned(),
         }
     }
 

@@ -5,28 +5,18 @@ use super::{
     used::{Used, drop_unused},
 };
 use crate::{
-    diagnostics::{
-        diagnostic::{Diagnostic, Severity},
-        list::Diagnostics,
-        reports::{Reported, Reports},
-    },
-    document::typed::{Document, ImportEntry},
+    diagnostics::{Diagnostic, Diagnostics, Reported, Reports, Severity},
+    document::{Document, ImportEntry},
     errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
     expressions::parser,
-    kinds::registry::{Registry, StandIn},
-    language::{name::Name, syntax::Leaf},
+    kinds::{Registry, StandIn},
+    language::{Leaf, Name},
     param::{Param, ParamError, find},
     picture::Picture,
-    shader::{
-        expand::ShaderFiles,
-        mixed,
-        store::{self, Shaders},
-        unused,
-    },
+    shader::{ShaderFiles, Shaders, mixed, store, unused},
     source::{
+        Located, SourceFile, Sources, Span,
         paths::{escapes, include_candidates, module_candidates},
-        sources::Sources,
-        span::{Located, SourceFile, Span},
     },
 };
 use std::{
@@ -163,19 +153,19 @@ impl Loaded {
         for material in &document.materials {
             let name = material.name();
             if document.is_own(&name.span) && !used.materials.contains(name.as_str()) {
-                reports.warn(ComposeError::UnusedMaterial(name.text()));
+                reports.warn(ComposeError::Unused("material", name.text()));
             }
         }
         for (name, _) in &document.values {
             let is_used =
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
             if document.is_own(&name.span) && !is_used {
-                reports.warn(ComposeError::UnusedValue(name.text()));
+                reports.warn(ComposeError::Unused("value", name.text()));
             }
         }
         for param in &document.params[..document.declared] {
             if document.is_own(&param.name.span) && !used.params.contains(&param.name.value) {
-                reports.warn(ComposeError::UnusedParam(param.name.clone()));
+                reports.warn(ComposeError::Unused("param", param.name.clone()));
             }
         }
         let imported = self.shaders.imported();
@@ -184,7 +174,7 @@ impl Loaded {
             if document.is_own(&entry.of.span)
                 && path.is_some_and(|path| !imported.contains(&**path))
             {
-                reports.warn(ComposeError::UnusedImport(entry.of.clone()));
+                reports.warn(ComposeError::Unused("import", entry.of.clone()));
             }
         }
         for (unused, shader) in self.unused_in_shaders() {

@@ -4,3 +4,7 @@ pub(crate) mod loaded;
 pub(crate) mod reader;
 pub(crate) mod unique;
 pub(crate) mod used;
+
+pub(crate) use loaded::Loaded;
+pub(crate) use reader::Reader;
+pub(crate) use used::Used;

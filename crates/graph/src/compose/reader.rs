@@ -2,28 +2,19 @@
 
 use super::unique;
 use crate::{
-    diagnostics::{
-        diagnostic::{Diagnostic, Label},
-        reports::{ErrorGuaranteed, Reports},
-        suggest::likeness,
-    },
+    diagnostics::{Diagnostic, ErrorGuaranteed, Label, Reports, suggest::likeness},
     document::{
-        extend::extend,
-        raw::{self, Invalid, RawDocument},
-        read,
-        typed::{Document, Entry, Include, What, each_include},
+        Document, Entry, Include, Invalid, RawDocument, What, extend::extend, raw, read,
+        typed::each_include,
     },
     errors::compose::ComposeError,
-    kinds::registry::Registry,
-    language::{
-        name::Name,
-        syntax::{Expr, Leaf},
-    },
+    kinds::Registry,
+    language::{Expr, Leaf, Name},
     param::Param,
     source::{
+        Located, SourceFile, Sources, Span,
         paths::{escapes, folder_of, include_candidates},
-        sources::{self, Sources},
-        span::{Located, SourceFile, Span},
+        sources,
     },
 };
 use std::{

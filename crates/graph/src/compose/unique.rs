@@ -2,14 +2,11 @@
 //! and of a document's outputs.
 
 use crate::{
-    diagnostics::reports::Reports,
-    document::{
-        raw::Invalid,
-        typed::{Document, Entry, What},
-    },
+    diagnostics::Reports,
+    document::{Document, Entry, Invalid, What},
     errors::compose::ComposeError,
-    language::name::{Name, wgsl_identifier},
-    source::span::Located,
+    language::{Name, wgsl_identifier},
+    source::Located,
 };
 use std::collections::HashMap;
 

@@ -1,12 +1,12 @@
 //! Finds the names that a document uses, and drops what it inherits by `extends` without using it.
 
 use crate::{
-    diagnostics::reports::Reports,
-    document::typed::{Document, each_include},
+    diagnostics::Reports,
+    document::{Document, typed::each_include},
     errors::compose::ComposeError,
-    language::{name::Name, syntax::Leaf},
-    shader::{reflect::Shader, store::Shaders},
-    source::span::{Located, Span},
+    language::{Leaf, Name},
+    shader::{Shader, Shaders},
+    source::{Located, Span},
 };
 use std::{
     collections::{BTreeSet, HashMap},
@@ -108,7 +108,7 @@ pub(crate) fn drop_unused(
             let default = default.filter(|it| !is_kept && is_own(&it.span));
             if let Some(default) = default {
                 let name = Located::new(param.name.value.clone(), default.span.clone());
-                reports.warn(ComposeError::UnusedParam(name));
+                reports.warn(ComposeError::Unused("param", name));
             }
             is_kept
         });

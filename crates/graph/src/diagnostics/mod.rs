@@ -18,3 +18,5 @@
 pub(crate) mod reports;
 
 pub use skiagraph_located_ron::diagnostics::*;
+
+pub(crate) use reports::{ErrorGuaranteed, Reported, Reports};

@@ -1,6 +1,6 @@
 //! Collects the mistakes that the phases report.
 
-use super::diagnostic::{Diagnostic, Severity};
+use skiagraph_located_ron::diagnostics::{Diagnostic, Severity};
 use std::collections::BTreeSet;
 
 /// Number of mistakes at which the search for more ends.

@@ -5,19 +5,12 @@ use super::{
     typed::{Entry, Expose, Include, Pass, Run, What},
 };
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, reports::Reports},
+    diagnostics::{Diagnostic, Reports},
     errors::document::DocumentError,
     fields::Mentions,
-    kinds::{
-        kind::{Lowering, OF_PASS},
-        registry::Registry,
-        step::{Program, Step},
-    },
-    language::{
-        name::{Name, RESERVED},
-        syntax::{Expr, Reference},
-    },
-    source::span::Located,
+    kinds::{Lowering, OF_PASS, Program, Registry, Step},
+    language::{Expr, Name, RESERVED, Reference},
+    source::Located,
 };
 use serde::Deserialize;
 use skiagraph_located_ron::{

@@ -4,7 +4,7 @@ use super::{
     raw::{Invalid, REMOVE, RawDocument, RawEntry, RawItem, RawMap},
     typed::{Narrow, Output},
 };
-use crate::{diagnostics::reports::Reports, errors::edit::EditError, source::span::Located};
+use crate::{diagnostics::Reports, errors::edit::EditError, source::Located};
 use skiagraph_located_ron::reader::{Field, Node};
 use std::collections::HashMap;
 

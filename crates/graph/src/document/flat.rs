@@ -4,7 +4,7 @@ use super::{
     raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
     typed::Document,
 };
-use crate::source::span::Span;
+use crate::source::Span;
 use skiagraph_located_ron::reader::{Field, Node};
 
 /// Returns a document as text in format 3, with the documents that it extends merged in. Reading

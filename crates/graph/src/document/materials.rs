@@ -1,20 +1,16 @@
 //! Materials: the textures, buffers and samplers of a document ("material" is Nau3D's word for what
 //! passes share), and the inputs that an includer or the host gives.
 
-use crate::fields::Compare;
 use crate::{
     errors::document::DocumentError,
-    language::{
-        formats::{FORMATS, format_named},
-        name::Name,
-        syntax::{Expr, Leaf, Reference},
-    },
-    source::span::Located,
+    fields::{Compare, by_text},
+    language::{Expr, FORMATS, Leaf, Name, Reference, format_named},
+    source::Located,
 };
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use skiagraph_located_ron::{
     mistakes::unknown_word,
-    reader::{raw, read, refuse},
+    reader::{read, refuse},
 };
 
 /// A declared material.
@@ -116,14 +112,10 @@ pub(crate) enum Mips {
     Number(Expr),
 }
 
-impl<'de> Deserialize<'de> for Mips {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        match raw(deserializer)? {
-            ("All", _) => Ok(Self::All),
-            (text, _) => read(text).map(Self::Number),
-        }
-    }
-}
+by_text!(Mips, |text, _| match text {
+    "All" => Ok(Self::All),
+    _ => read(text).map(Self::Number),
+});
 
 /// A format by wgpu's name, or `"other.format"`.
 #[derive(Clone, Debug)]
@@ -132,17 +124,14 @@ pub(crate) enum FormatEntry {
     Expr(Expr),
 }
 
-impl<'de> Deserialize<'de> for FormatEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, span) = raw(deserializer)?;
-        if text.starts_with('"') {
-            return read(text).map(Self::Expr);
-        }
-        let named = format_named(text).map(Self::Named);
-        let unknown = || unknown_word(&Located::new(text.to_owned(), span), FORMATS);
-        named.ok_or_else(|| refuse(unknown()))
+by_text!(FormatEntry, |text, span| {
+    if text.starts_with('"') {
+        return read(text).map(Self::Expr);
     }
-}
+    let named = format_named(text).map(Self::Named);
+    let unknown = || unknown_word(&Located::new(text.to_owned(), span), FORMATS);
+    named.ok_or_else(|| refuse(unknown()))
+});
 
 /// A buffer; the layout of an item comes from the shaders that bind it.
 #[derive(Clone, Debug, Deserialize)]
@@ -181,15 +170,12 @@ pub(crate) struct GrowEntry {
 #[derive(Clone, Debug)]
 pub(crate) struct Data(pub Vec<Expr>);
 
-impl<'de> Deserialize<'de> for Data {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (_, span) = raw(deserializer)?;
-        let wrong = || refuse(DocumentError::Data(span.clone()));
-        let items = span.list().map_err(|_| wrong())?;
-        let items = items.iter().map(|item| read(item.text()));
-        items.collect::<Result<_, _>>().map(Self)
-    }
-}
+by_text!(Data, |_, span| {
+    let wrong = || refuse(DocumentError::Data(span.clone()));
+    let items = span.list().map_err(|_| wrong())?;
+    let items = items.iter().map(|item| read(item.text()));
+    items.collect::<Result<_, _>>().map(Self)
+});
 
 /// A sampler: how shaders read a texture between its texels.
 #[derive(Clone, Debug, Deserialize)]

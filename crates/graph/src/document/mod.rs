@@ -10,3 +10,12 @@ pub(crate) mod read;
 pub(crate) mod typed;
 
 pub use materials::{Address, Filter};
+
+pub(crate) use materials::{
+    BufferEntry, FormatEntry, GrowEntry, Input, InputKind, Material, Mips, SamplerEntry,
+    TextureEntry,
+};
+pub(crate) use raw::{Invalid, RawDocument};
+pub(crate) use typed::{
+    ClaimEntry, Document, Entry, ImportEntry, Include, Output, Pass, Run, What,
+};

@@ -2,15 +2,11 @@
 
 use crate::fields::prose;
 use crate::{
-    diagnostics::diagnostic::Diagnostic,
+    diagnostics::Diagnostic,
     errors::document::DocumentError,
-    language::{
-        name::Name,
-        syntax::{Expr, ExprKind},
-        value::{Value, Word},
-    },
+    language::{Expr, ExprKind, Name, Value, Word},
     param::{Param, ParamType, ParamValue},
-    source::span::Located,
+    source::Located,
 };
 use serde::Deserialize;
 use skiagraph_located_ron::{fields::from_fields, reader::Field};

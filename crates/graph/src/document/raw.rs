@@ -1,9 +1,9 @@
 //! A document as sections of raw RON. [`extend`](super::extend) edits the sections, and
 //! [`typed`](super::typed) reads them.
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::{ErrorGuaranteed, Reports},
     errors::{document::DocumentError, edit::EditError},
-    source::span::{Located, SourceFile, Span},
+    source::{Located, SourceFile, Span},
 };
 use skiagraph_located_ron::{
     mistakes::{field_twice, unknown_field},

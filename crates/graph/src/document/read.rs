@@ -9,18 +9,12 @@ use super::{
     typed::Document,
 };
 use crate::{
-    diagnostics::{
-        diagnostic::Diagnostic,
-        reports::{ErrorGuaranteed, Reports},
-    },
+    diagnostics::{Diagnostic, ErrorGuaranteed, Reports},
     errors::{document::DocumentError, language::SyntaxFault},
     fields::one_line,
-    kinds::registry::Registry,
-    language::{
-        name::{Name, RESERVED},
-        syntax::Expr,
-    },
-    source::span::Located,
+    kinds::Registry,
+    language::{Expr, Name, RESERVED},
+    source::Located,
 };
 use serde::de::DeserializeOwned;
 use skiagraph_located_ron::{fields::from_fields, reader::Node};

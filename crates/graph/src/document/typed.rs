@@ -5,19 +5,16 @@ use super::{
     raw::Invalid,
 };
 use crate::{
-    diagnostics::reports::ErrorGuaranteed,
+    diagnostics::ErrorGuaranteed,
     errors::document::DocumentError,
-    fields::{Mentions, prose, short_or_long},
-    kinds::{kind::PassKind, step::ShaderUse},
-    language::{
-        name::Name,
-        syntax::{Expr, Leaf, Reference},
-    },
+    fields::{Mentions, by_text, prose, short_or_long},
+    kinds::{PassKind, ShaderUse},
+    language::{Expr, Leaf, Name, Reference},
     param::Param,
-    source::span::{Located, SourceFile, Span},
+    source::{Located, SourceFile, Span},
 };
-use serde::{Deserialize, Deserializer};
-use skiagraph_located_ron::reader::{raw, read, refuse};
+use serde::Deserialize;
+use skiagraph_located_ron::reader::{read, refuse};
 use std::{collections::BTreeSet, sync::Arc};
 
 /// A document as its author wrote it, with the documents that it extends merged in.
@@ -108,38 +105,30 @@ pub(crate) struct ImportEntry {
 
 /// A promise of a method: `(if: "n >= 0.5", because: "…")`, or its condition alone.
 #[derive(Clone, Debug)]
-pub(crate) struct ClaimEntry {
-    /// Condition, an expression over params, under which the promise holds; `None` for always.
-    pub condition: Option<Expr>,
-    pub because: String,
-}
+pub(crate) struct ClaimEntry(pub ClaimFields);
 
 /// Promise of a method, with the reason.
-#[derive(Deserialize)]
+#[derive(Clone, Debug, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename = "claim", deny_unknown_fields)]
 pub(crate) struct ClaimFields {
     /// Under which params; always without it.
     #[serde(default, rename = "if")]
-    condition: Option<Expr>,
+    pub condition: Option<Expr>,
     /// Why it holds, or ends.
     #[serde(default, deserialize_with = "prose")]
-    because: String,
+    pub because: String,
 }
 
-impl<'de> Deserialize<'de> for ClaimEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, _) = raw(deserializer)?;
-        if !text.starts_with('(') {
-            return Ok(Self {
-                condition: Some(read(text)?),
-                because: String::new(),
-            });
-        }
-        let ClaimFields { condition, because } = read(text)?;
-        Ok(Self { condition, because })
+by_text!(ClaimEntry, |text, _| {
+    if text.starts_with('(') {
+        return read(text).map(Self);
     }
-}
+    Ok(Self(ClaimFields {
+        condition: Some(read(text)?),
+        because: String::new(),
+    }))
+});
 
 /// An output that a document gives its includer and the host.
 #[derive(Clone, Debug)]
@@ -169,22 +158,20 @@ pub(crate) struct OutputFields {
     on_request: bool,
 }
 
-impl<'de> Deserialize<'de> for Output {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let long = |long: OutputFields| Self {
-            material: (long.material).unwrap_or_else(|| Reference::new(long.name.clone())),
-            name: long.name,
-            condition: long.condition,
-            on_request: long.on_request,
-        };
-        short_or_long(deserializer, long, |short: Reference| Self {
-            name: short.segments[0].name.clone(),
-            material: short,
-            condition: None,
-            on_request: false,
-        })
-    }
-}
+by_text!(Output, |text, span| {
+    let long = |long: OutputFields| Self {
+        material: (long.material).unwrap_or_else(|| Reference::new(long.name.clone())),
+        name: long.name,
+        condition: long.condition,
+        on_request: long.on_request,
+    };
+    short_or_long((text, span), long, |short: Reference| Self {
+        name: short.segments[0].name.clone(),
+        material: short,
+        condition: None,
+        on_request: false,
+    })
+});
 
 /// An entry of `passes` (a pass, an include or a group), at its place in the document's order.
 #[derive(Clone, Debug)]
@@ -266,19 +253,14 @@ pub(crate) struct Expose {
     pub names: Vec<Located<String>>,
 }
 
-impl<'de> Deserialize<'de> for Expose {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, span) = raw(deserializer)?;
-        match text.chars().next() {
-            Some('[') => read(text).map(|names| Self { all: false, names }),
-            _ if text == "All" => Ok(Self {
-                all: true,
-                ..Self::default()
-            }),
-            _ => Err(refuse(DocumentError::Expose(span))),
-        }
-    }
-}
+by_text!(Expose, |text, span| match text {
+    "All" => Ok(Self {
+        all: true,
+        names: Vec::new(),
+    }),
+    _ if text.starts_with('[') => read(text).map(|names| Self { all: false, names }),
+    _ => Err(refuse(DocumentError::Expose(span))),
+});
 
 /// In which frames a pass runs.
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -379,7 +361,7 @@ impl Document {
         let (imports, outputs) = (self.imports.iter(), self.outputs.iter());
         let exprs = params
             .filter_map(|param| param.default.as_ref())
-            .chain(claims.filter_map(|(_, claim)| claim.condition.as_ref()))
+            .chain(claims.filter_map(|(_, claim)| claim.0.condition.as_ref()))
             .chain(self.defaults.iter().map(|(_, value)| value))
             .chain(self.values.iter().map(|(_, value)| value))
             .chain(&self.needs)

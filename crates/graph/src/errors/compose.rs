@@ -1,8 +1,8 @@
 //! Documents that cannot be found, or do not go together.
 
 use crate::{
-    language::name::Name,
-    source::span::{Located, Span},
+    language::Name,
+    source::{Located, Span},
 };
 
 mistakes! {
@@ -105,24 +105,21 @@ mistakes! {
         Output("the document has no outputs, so none of its passes is needed")
         .at(place, "").help("add `outputs: [\"…\"]`");
 
-    UnusedValue(name: Located<String>) =>
-        Unused("nothing uses the value `{name}`")
+    Unused(what: &'static str, name: Located<String>) =>
+        Unused("nothing uses the {what} `{name}`")
         .at(name, "")
-        .help("remove it, or check the names in expressions, outputs, params and overrides");
-
-    UnusedMaterial(name: Located<String>) =>
-        Unused("nothing uses the material `{name}`")
-        .at(name, "")
-        .help("remove it, or check the names of the shader globals that should be it");
-
-    UnusedParam(name: Located<String>) =>
-        Unused("nothing uses the param `{name}`")
-        .at(name, "")
-        .help("remove it, or check the names in `params` of the shaders and in expressions");
-
-    UnusedImport(name: Located<String>) =>
-        Unused("nothing uses the import `{name}`")
-        .at(name, "").help("remove the entry, or name the module as the shaders import it");
+        .help(match what {
+            "value" => {
+                "remove it, or check the names in expressions, outputs, params and overrides"
+            }
+            "material" => {
+                "remove it, or check the names of the shader globals that should be it"
+            }
+            "param" => {
+                "remove it, or check the names in `params` of the shaders and in expressions"
+            }
+            _ => "remove the entry, or name the module as the shaders import it",
+        });
 }
 
 /// Says where a file was looked for, and which one may have been meant.

@@ -1,8 +1,8 @@
 //! Documents that cannot be read.
 
 use crate::{
-    language::name::{Name, NameFault, RESERVED},
-    source::span::{Located, SourceFile, Span},
+    language::{Name, NameFault, RESERVED},
+    source::{Located, SourceFile, Span},
 };
 
 mistakes! {

@@ -1,8 +1,8 @@
 //! Edits of an extended document that cannot be made.
 
 use crate::{
-    language::name::Name,
-    source::span::{Located, Span},
+    language::Name,
+    source::{Located, Span},
 };
 
 const PLACES: &str = "say `before`, `after` or `instead: \"entry\"`; without one, an entry stands \

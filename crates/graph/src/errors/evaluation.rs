@@ -2,12 +2,8 @@
 
 use super::language::attributes;
 use crate::{
-    language::{
-        name::Name,
-        syntax::Attribute,
-        value::{Scalar, Value},
-    },
-    source::span::{Located, Span},
+    language::{Attribute, Name, Scalar, Value},
+    source::{Located, Span},
 };
 
 mistakes! {

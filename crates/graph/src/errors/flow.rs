@@ -3,7 +3,7 @@
 use super::link::read_previous;
 use crate::{
     resource::name_within,
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 
 mistakes! {

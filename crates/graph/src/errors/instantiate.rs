@@ -2,7 +2,7 @@
 
 use crate::{
     param::{Param, ParamFault, ParamValue},
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 
 mistakes! {

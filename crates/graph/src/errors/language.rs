@@ -1,11 +1,8 @@
 //! Mistakes in expressions and references.
 
 use crate::{
-    language::{
-        name::NameFault,
-        syntax::{Attribute, Function},
-    },
-    source::span::{Located, Span},
+    language::{Attribute, Function, NameFault},
+    source::{Located, Span},
 };
 
 mistakes! {

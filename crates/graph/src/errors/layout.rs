@@ -1,6 +1,6 @@
 //! Buffers whose size or layout does not fit.
 
-use crate::source::span::{Located, Span};
+use crate::source::{Located, Span};
 
 mistakes! {
     /// A buffer whose size or layout does not fit.

@@ -1,6 +1,6 @@
 //! Shaders that ask more of a device than it has, or than WGSL promises of any.
 
-use crate::source::span::{Located, Span};
+use crate::source::{Located, Span};
 
 /// An entry point of a shader, for messages.
 #[derive(Clone, Debug)]

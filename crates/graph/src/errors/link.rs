@@ -1,10 +1,10 @@
 //! Passes whose shaders, attachments, copies or dispatches do not fit.
 
 use crate::{
-    language::value::Value,
+    language::Value,
     param::Param,
-    scalar_class::{ScalarClass, ShaderType},
-    source::span::{Located, Span},
+    scalar_class::{ItemScalar, ShaderType},
+    source::{Located, Span},
 };
 use wgt::TextureFormat;
 
@@ -419,11 +419,13 @@ mistakes! {
     /// Reason why a texture cannot be bound as a shader declares it; part of another diagnostic.
     TextureMisfit:
 
-    Scalar(reads: ScalarClass, holds: Option<ScalarClass>, depth: bool) =>
+    Scalar(reads: ItemScalar, holds: Option<ItemScalar>, depth: bool) =>
         FormatMismatch("{}", match holds {
             _ if depth => "the shader declares a depth texture".to_owned(),
-            Some(holds) => format!("the shader reads {reads}, the texture holds {holds}"),
-            None => format!("the shader reads {reads}"),
+            Some(holds) => format!(
+                "the shader reads {}, the texture holds {}", reads.as_str(), holds.as_str()
+            ),
+            None => format!("the shader reads {}", reads.as_str()),
         });
 
     Filtered(sampler: String, by_feature: bool) =>

@@ -1,6 +1,6 @@
 //! Requests that a plan cannot meet.
 
-use crate::source::span::{Located, Span};
+use crate::source::{Located, Span};
 
 mistakes! {
     /// A request that a plan cannot meet.

@@ -1,6 +1,6 @@
 //! Sizes and contents that a material cannot have.
 
-use crate::source::span::Located;
+use crate::source::Located;
 
 mistakes! {
     /// A size or content that a material cannot have.

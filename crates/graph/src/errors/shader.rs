@@ -1,7 +1,7 @@
 //! Shaders that cannot be read, or are not valid.
 
 use super::compose::looked_for;
-use crate::source::span::{Located, Span};
+use crate::source::{Located, Span};
 use skiagraph_located_ron::panics::Panicked;
 
 mistakes! {

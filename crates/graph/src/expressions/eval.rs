@@ -1,17 +1,14 @@
 //! Evaluates expressions.
 
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
+    diagnostics::{ErrorGuaranteed, Reports},
     errors::evaluation::EvaluationError,
     language::{
-        name::Name,
-        syntax::{
-            Attribute, Binary, Component, Expr, ExprKind, Function, Reference, Subject, Unary,
-        },
-        value::{Scalar, Value, Word},
+        Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference, Scalar, Subject,
+        Unary, Value, Word,
     },
     provided_kind::ProvidedKind,
-    source::span::Span,
+    source::Span,
 };
 use std::{cmp::Ordering, mem::discriminant};
 
@@ -37,10 +34,6 @@ pub(crate) trait Environment {
 
     /// True if a param or a named value has this name.
     fn is_param(&self, name: &str) -> bool;
-
-    /// Returns the value of the param called `name`; `None` if there is none, so that the name is a
-    /// word.
-    fn word_or_param(&mut self, name: &Name) -> Option<Value>;
 
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
 
@@ -293,10 +286,11 @@ fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool
         ) => match words.iter().find(|word| ***word == *name) {
             Some(word) => word_alone(word),
             None => {
-                let word_name = Name::new(name).ok();
-                let resolved = word_name.and_then(|name| env.word_or_param(&name));
+                let is_param = Name::new(name).is_ok() && env.is_param(name);
+                let resolved = is_param.then(|| env.param(name, &right.span).ok());
                 let (span, word) = (right.span.clone(), name.to_owned());
                 let unknown = || EvaluationError::NoSuchWord(span, word, words.to_vec());
+                let resolved = resolved.flatten();
                 resolved.ok_or_else(|| env.report(unknown()))?
             }
         },

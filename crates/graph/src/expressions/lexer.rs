@@ -1,6 +1,6 @@
 //! Splits expressions and references into tokens.
 
-use crate::{errors::language::SyntaxFault, source::span::SourceFile};
+use crate::{errors::language::SyntaxFault, source::SourceFile};
 use std::ops::Range;
 
 /// Most tokens of one expression: parser and evaluation call themselves for each of them.

@@ -3,3 +3,5 @@
 pub(crate) mod eval;
 mod lexer;
 pub(crate) mod parser;
+
+pub(crate) use eval::Environment;

@@ -5,15 +5,10 @@ use super::lexer::{Token, tokens};
 use crate::{
     errors::language::SyntaxFault,
     language::{
-        formats::format_named,
-        name::Name,
-        syntax::{
-            Attribute, Binary, Component, Expr, ExprKind, Function, Reference, Segment, Selection,
-            Subject, Unary,
-        },
-        value::{Scalar, Value},
+        Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference, Scalar, Segment,
+        Selection, Subject, Unary, Value, format_named,
     },
-    source::span::{Located, SourceFile, Span},
+    source::{Located, SourceFile, Span},
 };
 use std::ops::Range;
 

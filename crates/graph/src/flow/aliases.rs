@@ -8,7 +8,7 @@ use super::{
     view::GraphView,
 };
 use crate::{
-    link::pass::{Access, LinkedPass, PassId},
+    link::{Access, LinkedPass, PassId},
     resource::{Resource, ResourceId, ResourceKind, SubresourceRange},
 };
 use std::{

@@ -2,9 +2,9 @@
 
 use super::view::{GraphView, Subresources};
 use crate::{
-    diagnostics::reports::Reports,
+    diagnostics::Reports,
     errors::flow::OrderError,
-    link::pass::PassId,
+    link::PassId,
     resource::{ResourceId, name_within},
 };
 use petgraph::{
@@ -114,12 +114,8 @@ fn needs(view: GraphView<'_>) -> Needs {
             }
         }
     }
-    let mut needs = Needs::with_capacity(view.passes.len(), reasons.len());
-    let nodes: Vec<NodeIndex> = view.passes.iter().map(|_| needs.add_node(())).collect();
-    for ((from, to), reason) in reasons.into_iter().filter(|((from, to), _)| from != to) {
-        needs.add_edge(nodes[from.0], nodes[to.0], reason);
-    }
-    needs
+    let between = reasons.into_iter().filter(|((from, to), _)| from != to);
+    view.graph(between.map(|((from, to), reason)| (from, to, reason)))
 }
 
 /// Sorts nodes so that every edge runs forward: of those that may come next, the first in the file.

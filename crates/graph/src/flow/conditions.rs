@@ -2,10 +2,10 @@
 
 use super::view::GraphView;
 use crate::{
-    diagnostics::reports::Reports,
+    diagnostics::Reports,
     errors::flow::OrderError,
-    instantiate::flat::Run,
-    link::pass::{Access, LinkedPass, PassId},
+    instantiate::Run,
+    link::{Access, LinkedPass, PassId},
     resource::{Origin, ResourceId},
 };
 use petgraph::unionfind::UnionFind;

@@ -1,7 +1,7 @@
 //! Culling: finds the passes that an output needs. All others do not run.
 
 use super::order::{Hazard, Order};
-use crate::link::pass::PassId;
+use crate::link::PassId;
 use petgraph::{Direction, graph::NodeIndex, visit::EdgeRef};
 
 /// Finds the live passes; the result has an entry for each pass. A pass is live if it is in

@@ -2,7 +2,7 @@
 
 use super::{aliases::Alone, schedule::Schedule, view::GraphView};
 use crate::{
-    link::pass::{Access, Usage},
+    link::{Access, Usage},
     resource::{Origin, ResourceId, SubresourceRange, Target},
 };
 

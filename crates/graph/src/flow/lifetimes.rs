@@ -3,7 +3,7 @@
 
 use super::view::GraphView;
 use crate::{
-    link::pass::{PassId, Usage},
+    link::{PassId, Usage},
     resource::ResourceId,
 };
 use std::collections::BTreeMap;

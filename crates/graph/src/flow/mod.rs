@@ -29,3 +29,6 @@ pub use conditions::{Conditions, When};
 pub use lifetimes::{Lifetime, Lifetimes};
 pub use order::{Dependences, Hazard};
 pub use schedule::Schedule;
+
+pub(crate) use order::Order;
+pub(crate) use view::GraphView;

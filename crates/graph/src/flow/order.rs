@@ -7,14 +7,14 @@ use super::{
     view::{GraphView, Subresources},
 };
 use crate::{
-    diagnostics::reports::Reports,
+    diagnostics::Reports,
     errors::flow::OrderError,
-    kinds::step::Step,
-    link::pass::{Access, LinkedPass, PassId},
+    kinds::Step,
+    link::{Access, LinkedPass, PassId},
     resource::{ResourceId, ResourceKind, Target, name_within},
-    source::span::Located,
+    source::Located,
 };
-use petgraph::graph::{DiGraph, NodeIndex};
+use petgraph::graph::DiGraph;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Reason for which one pass of a plan must run before another one that uses the same part of a
@@ -141,15 +141,11 @@ pub(super) fn walk<'p>(
             }
         }
     }
-    let mut graph = DiGraph::with_capacity(view.passes.len(), dependences.len());
-    let nodes: Vec<NodeIndex> = view.passes.iter().map(|_| graph.add_node(())).collect();
-    for &(from, to, hazard) in dependences.keys() {
-        graph.add_edge(nodes[from.0], nodes[to.0], hazard);
-    }
+    let edges = view.graph(dependences.keys().copied());
     let states = states.into_iter();
     let last = states.filter_map(|(part, state)| Some((part, state.writer?)));
     let order = Order {
-        edges: graph,
+        edges,
         dependences,
         last: last.collect(),
         subresources,
@@ -169,11 +165,7 @@ fn explain(
 ) -> Option<OrderError> {
     let name = view.resource(access.resource).name.clone();
     let pass = view.pass(reader);
-    let writes = |pass: &LinkedPass| {
-        pass.accesses.iter().any(|other| {
-            other.writes && other.resource == access.resource && other.part.overlaps(&access.part)
-        })
-    };
+    let writes = |pass: &LinkedPass| pass.writes_to(access.resource, &access.part);
     // A pass that changes its own input depends on no pass below, even if one changes it there: it
     // lacks a beginning.
     let mut accesses = pass.accesses.iter();

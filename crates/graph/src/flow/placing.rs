@@ -5,9 +5,9 @@ use super::{
     view::GraphView,
 };
 use crate::{
-    instantiate::flat::Run,
-    kinds::step::Step,
-    link::pass::PassId,
+    instantiate::Run,
+    kinds::Step,
+    link::PassId,
     resource::{Origin, Resource, ResourceId, ResourceKind},
 };
 use std::collections::BTreeMap;

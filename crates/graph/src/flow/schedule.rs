@@ -2,7 +2,7 @@
 //! behind it in the order that was [derived](super::arrange), so this is that order.
 
 use super::{aliases::Aliases, conditions::Conditions, lifetimes::Lifetimes};
-use crate::{link::pass::PassId, resource::ResourceId};
+use crate::{link::PassId, resource::ResourceId};
 use std::collections::BTreeSet;
 
 /// The [live](crate#terms) passes of a plan in the order in which they run, with the lifetimes, run

@@ -8,11 +8,11 @@ use super::{
     view::GraphView,
 };
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::Reports},
-    instantiate::flat::Run,
-    link::pass::{Access, LinkedPass, PassId, Usage},
+    diagnostics::{Code, Diagnostic, Reports},
+    instantiate::Run,
+    link::{Access, LinkedPass, PassId, Usage},
     resource::{Buffer, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
-    source::span::{Located, SourceFile},
+    source::{Located, SourceFile},
 };
 use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};

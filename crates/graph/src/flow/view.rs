@@ -1,9 +1,10 @@
 //! Input of the steps of this phase: linked passes, and the resources that they use.
 
 use crate::{
-    link::pass::{LinkedPass, PassId},
+    link::{LinkedPass, PassId},
     resource::{Resource, ResourceId, ResourceKind, SubresourceRange},
 };
+use petgraph::graph::{DiGraph, NodeIndex};
 use std::collections::BTreeMap;
 
 /// Linked passes and the resources of a plan.
@@ -18,6 +19,18 @@ impl<'p> GraphView<'p> {
     pub fn ids(self) -> impl Iterator<Item = (PassId, &'p LinkedPass)> {
         let passes = self.passes.iter().enumerate();
         passes.map(|(index, pass)| (PassId(index), pass))
+    }
+
+    /// Returns a graph of the passes with these edges.
+    pub fn graph<E>(self, edges: impl Iterator<Item = (PassId, PassId, E)>) -> DiGraph<(), E> {
+        let mut graph = DiGraph::with_capacity(self.passes.len(), edges.size_hint().0);
+        for _ in self.passes {
+            graph.add_node(());
+        }
+        for (from, to, edge) in edges {
+            graph.add_edge(NodeIndex::new(from.0), NodeIndex::new(to.0), edge);
+        }
+        graph
     }
 
     pub fn pass(self, id: PassId) -> &'p LinkedPass {
@@ -36,50 +49,8 @@ pub(crate) struct Subresources {
     /// Bounds between the ranges of layers or items of each resource, sorted; every access begins
     /// and ends at one.
     cuts: BTreeMap<ResourceId, Vec<u32>>,
-    /// Extent of each resource in layers or items, by index of the resource.
-    reach: Vec<Reach>,
-}
-
-/// Extent of a texture in layers or of a buffer in items, and the aspects that have versions of
-/// their own.
-#[derive(Clone, Copy, Debug)]
-struct Reach {
-    /// Number of layers of a texture, of slices of mip 0 of a 3D texture, or of items of a buffer.
-    layers: u32,
-    is_3d: bool,
-    /// True if depth and stencil have versions of their own.
-    is_combined: bool,
-}
-
-impl Reach {
-    fn new(resource: &Resource) -> Self {
-        let (layers, is_3d, is_combined) = match &resource.kind {
-            ResourceKind::Texture(texture) => {
-                let is_combined = texture.format.is_combined_depth_stencil_format();
-                (texture.layers, texture.is_3d, is_combined)
-            }
-            // Without a count the end of a buffer's items is not known.
-            ResourceKind::Buffer(buffer) => {
-                let items = buffer.count.and_then(|items| u32::try_from(items).ok());
-                (items.unwrap_or(u32::MAX), false, false)
-            }
-            _ => (u32::MAX, false, false),
-        };
-        Self {
-            layers,
-            is_3d,
-            is_combined,
-        }
-    }
-
-    /// Returns the number of layers of a mip; the slices of a 3D texture are halved with each mip.
-    fn layers(self, mip: u32) -> u32 {
-        if self.is_3d {
-            (self.layers >> mip).max(1)
-        } else {
-            self.layers
-        }
-    }
+    /// By index of the resource.
+    kinds: Vec<ResourceKind>,
 }
 
 impl Subresources {
@@ -96,7 +67,7 @@ impl Subresources {
         }
         Self {
             cuts,
-            reach: view.resources.iter().map(Reach::new).collect(),
+            kinds: view.resources.iter().map(|it| it.kind.clone()).collect(),
         }
     }
 
@@ -110,8 +81,11 @@ impl Subresources {
     ) -> impl Iterator<Item = [u32; 3]> + use<'_> {
         let cuts = self.cuts.get(&id).map_or(&[][..], Vec::as_slice);
         let part = part.clone();
-        let reach = self.reach[id.index()];
-        let aspects = match (part.aspect, reach.is_combined) {
+        let kind = &self.kinds[id.index()];
+        // Depth and stencil have versions of their own.
+        let is_combined = matches!(kind, ResourceKind::Texture(texture)
+            if texture.format.is_combined_depth_stencil_format());
+        let aspects = match (part.aspect, is_combined) {
             (wgt::TextureAspect::StencilOnly, true) => 1..2,
             (wgt::TextureAspect::All, true) => 0..2,
             _ => 0..1,
@@ -124,7 +98,7 @@ impl Subresources {
         stretches.flat_map(move |(begin, _)| {
             let (begin, aspects) = (*begin, aspects.clone());
             let mips = part.mips.clone();
-            let mips = mips.filter(move |mip| begin < reach.layers(*mip));
+            let mips = mips.filter(move |mip| begin < kind.layers(*mip));
             mips.flat_map(move |mip| aspects.clone().map(move |aspect| [mip, begin, aspect]))
         })
     }

@@ -2,36 +2,30 @@
 //! includes.
 
 use super::{
-    flat::{EntryContext, Flat, FlatPass, Inherited, Interface, Merge, PlanInputs, Round, Run},
+    flat::{EntryContext, Flat, FlatPass, Interface, Merge, PlanInputs, Round, Run},
+    imports,
     include::{self, Call},
     merge::{Asks, Content, Site},
     modules::WaitingModules,
     params::Params,
+    runs::runs,
     scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
+    settings::Settings,
     state::{Declared, DeclaredValue, ValueState},
     symbols::SymbolTable,
 };
 use crate::{
-    compose::loaded::Loaded,
-    diagnostics::reports::{ErrorGuaranteed, Reported, Reports},
-    document::{
-        materials::{FormatEntry, Input, InputKind, Material},
-        raw::Invalid,
-        typed::{Document, Entry, Include, Pass, Run as RunEntry, What},
-    },
-    errors::{evaluation::EvaluationError, instantiate::InterfaceError},
+    compose::Loaded,
+    diagnostics::{ErrorGuaranteed, Reported, Reports},
+    document::{Document, Entry, Include, Invalid, Pass, What},
+    errors::instantiate::InterfaceError,
     expressions::eval,
-    language::{
-        name::Name,
-        syntax::{Expr, Reference},
-        value::least_common_multiple,
-    },
+    language::{Name, Reference},
     param::ParamType,
-    provider::Import,
     request::PlanRequest,
-    resource::{Buffer, Origin, Resource, ResourceId, ResourceKind, Sampler, Texture},
-    shader::expand::Replaced,
-    source::span::{Located, Span},
+    resource::{Origin, Resource, ResourceId, ResourceKind},
+    shader::{Replaced, Shader},
+    source::{Located, Span},
 };
 use std::{
     collections::{BTreeMap, BTreeSet, HashMap},
@@ -41,10 +35,6 @@ use std::{
 /// Greatest number of passes (groups and includes among them), and of materials, of a graph. It
 /// guards against documents that double with each include, which would take absurd time and memory.
 const MOST: usize = 16_384;
-
-/// Greatest number of frames after which the run conditions of a graph repeat: a method is
-/// judged over all of them.
-const LONGEST_PERIOD: u64 = 64;
 
 pub(super) struct Builder<'a> {
     pub symbols: SymbolTable<'a>,
@@ -59,9 +49,9 @@ pub(super) struct Builder<'a> {
     asks: HashMap<*const Document, Asks>,
     pub(super) merged: Vec<Merge>,
     waiting: WaitingModules<'a>,
-    /// Settings of groups: name of the group, name of the setting, and true if an entry in the
-    /// group uses it.
-    said: Vec<(&'a Located<Name>, &'a Located<String>, bool)>,
+    /// Settings of groups by address of their names: name of the group, name of the setting, and
+    /// true if an entry in the group uses it.
+    said: BTreeMap<*const Located<String>, (&'a Located<Name>, &'a Located<String>, bool)>,
     spent: usize,
     full: Option<ErrorGuaranteed>,
     /// Number of frames after which all run conditions so far repeat.
@@ -76,7 +66,7 @@ pub(crate) fn flatten<'a>(
     params: Params,
     merges: bool,
     reports: Reports,
-) -> Flat<'a> {
+) -> (Flat<'a>, Vec<FlatPass<'a>>) {
     let mut builder = Builder {
         symbols: SymbolTable::new(graph, request, reports),
         passes: Vec::new(),
@@ -88,7 +78,7 @@ pub(crate) fn flatten<'a>(
         asks: HashMap::new(),
         merged: Vec::new(),
         waiting: WaitingModules::default(),
-        said: Vec::new(),
+        said: BTreeMap::new(),
         spent: 0,
         full: None,
         period: 1,
@@ -128,64 +118,11 @@ impl<'a> Builder<'a> {
     /// Declares the inputs of the root document as the host's imports.
     fn imports(&mut self, document: &Document, scope: ScopeId) {
         for input in &document.inputs {
-            let symbol = self.imported(input);
-            let scopes = &mut self.symbols.scopes;
-            scopes.declare(scope, &input.name.value, symbol);
+            let symbol = imports::imported(input, &mut self.symbols.at(scope.begin(), None));
+            self.symbols
+                .scopes
+                .declare(scope, &input.name.value, symbol);
         }
-    }
-
-    fn imported(&mut self, input: &Input) -> Symbol {
-        let name = &input.name;
-        match self.import(input) {
-            Ok(kind) => {
-                let id = self.symbols.add(Resource {
-                    declared: Some(name.span.clone()),
-                    ..Resource::new(name.value.to_string(), kind, Origin::Host)
-                });
-                Symbol::Target(self.symbols.whole(id))
-            }
-            Err(error) => Symbol::Invalid(self.symbols.reports.report(error)),
-        }
-    }
-
-    /// Returns the input in the place of a texture whose picture the host replaces.
-    fn replaced_picture(&self, material: &Material, instance: InstanceId) -> Option<Input> {
-        let Material::Texture(texture) = material else {
-            return None;
-        };
-        let is_root = self.symbols.scopes.instance(instance).outer.is_none();
-        let name = &texture.name;
-        let is_replaced = self.symbols.request.imports.contains_key(name.as_str());
-        (is_root && is_replaced && texture.file.is_some()).then(|| Input {
-            name: name.clone(),
-            kind: InputKind::Texture(match texture.format {
-                FormatEntry::Named(format) => Some(format),
-                FormatEntry::Expr(_) => None,
-            }),
-        })
-    }
-
-    fn import(&self, input: &Input) -> Result<ResourceKind, InterfaceError> {
-        let name = input.name.text();
-        let Some(import) = self.symbols.request.imports.get(&name.value) else {
-            return Err(InterfaceError::NoImport(name));
-        };
-        let kind = imported(*import);
-        if include::takes(&input.kind, &kind) {
-            return Ok(kind);
-        }
-        let (expected, imported) = match (&input.kind, &kind) {
-            (InputKind::Texture(Some(asked)), ResourceKind::Texture(texture)) => (
-                format!("a texture {asked:?}"),
-                format!("a texture {:?}", texture.format),
-            ),
-            (asked, given) => (asked.describe().to_owned(), given.describe().to_owned()),
-        };
-        Err(InterfaceError::WrongImport {
-            name,
-            expected,
-            imported,
-        })
     }
 
     /// Declares the values and materials of a document, then walks its entries.
@@ -219,17 +156,13 @@ impl<'a> Builder<'a> {
                 return self.is_full(&material.name().span, "materials");
             }
             let name = material.name();
-            let instance = self.symbols.scopes.instance_of(scope);
-            if let Some(input) = self.replaced_picture(material, instance) {
-                let symbol = self.imported(&input);
-                self.symbols.scopes.declare(scope, &name.value, symbol);
-                continue;
-            }
             let mut at = self.symbols.at(scope.begin(), None);
-            let symbol = match include::overridden(material, &mut at) {
-                Some(Ok(target)) => Symbol::Target(target),
-                Some(Err(reported)) => Symbol::Invalid(reported),
+            let picture = imports::replaced_picture(material, &at);
+            let picture = picture.map(|input| imports::imported(&input, &mut at));
+            let symbol = match picture.or_else(|| include::overridden(material, &mut at)) {
+                Some(symbol) => symbol,
                 None => {
+                    let instance = self.symbols.scopes.instance_of(scope);
                     let full = self.symbols.scopes.full_name(instance, &name.value);
                     let declared = Declared {
                         scope,
@@ -377,7 +310,8 @@ impl<'a> Builder<'a> {
             scope: context.scope,
             index,
         };
-        let run = self.run(entry, position, context)?;
+        let mut at = self.symbols.at(position, None);
+        let run = runs(entry, context.run.as_ref(), &mut self.period, &mut at)?;
         match &entry.what {
             What::Pass(pass) => {
                 self.note_choices(pass, context.scope);
@@ -390,14 +324,9 @@ impl<'a> Builder<'a> {
                     run,
                     turns,
                     round: context.round,
-                    bind: self.asked(&context.bind, |name| {
-                        self.asks_global(context.scope, entry, name)
-                    }),
-                    set: self.asked(&context.set, |name| {
-                        self.asks_param(context.scope, entry, name)
-                    }),
+                    inherited: self.asked(entry, pass, context),
                 };
-                self.mark(&pass.bind, &pass.set);
+                self.mark(&pass.inherited);
                 self.passes.push(pass);
                 Ok(Names::new())
             }
@@ -423,8 +352,7 @@ impl<'a> Builder<'a> {
                     prefix: format!("{name}."),
                     run,
                     round,
-                    bind: self.say(&entry.bind, position, entry, &context.bind),
-                    set: self.say(&entry.set, position, entry, &context.set),
+                    settings: self.say(entry, position, &context.settings),
                 };
                 self.entries(entries, &inner);
                 Ok(match index {
@@ -459,12 +387,12 @@ impl<'a> Builder<'a> {
             let error = InterfaceError::RoundsInRounds(counters);
             return Err(self.symbols.reports.report(error));
         }
-        let kind = ResourceKind::Buffer(Buffer {
-            count: Some(1),
-            ..Buffer::default()
-        });
         // A slash stands in no name: nothing in a document can mean this buffer.
-        let goes = Resource::new(format!("{name}/goes"), kind, Origin::Own);
+        let goes = Resource::new(
+            format!("{name}/goes"),
+            ResourceKind::buffer_of(1),
+            Origin::Own,
+        );
         Ok(Some(Round {
             counter,
             position,
@@ -491,13 +419,13 @@ impl<'a> Builder<'a> {
         };
         self.require(document);
         let mut at = self.symbols.at(position, None);
-        let of_groups = include::said(entry, document, context, &mut at);
+        let of_groups = include::said(document, &context.settings, &mut at);
         let call = Call::new(entry, include, document, &of_groups, position);
         let params = call.params(&mut at);
         let (scene, overrides) = call.outside(&mut at);
         let given = |input| call.input(input, &mut at);
         let inputs: Vec<_> = document.inputs.iter().map(given).collect();
-        self.mark(&of_groups.0, &of_groups.1);
+        self.mark(&call.settings);
         let around = self.symbols.scopes.instance_of(position.scope);
         let replaced = self.symbols.scopes.instance(around).replaced.clone();
         // With a name, or in a repetition, an include is one of its own; so is one that writes into
@@ -564,161 +492,50 @@ impl<'a> Builder<'a> {
         Ok(names)
     }
 
-    /// Returns the frames in which an entry runs, which entries inside inherit.
-    fn run(
-        &mut self,
-        entry: &Entry,
-        position: Position,
-        context: &EntryContext<'a>,
-    ) -> Reported<Option<(Run, Vec<bool>)>> {
-        let always = |run| Ok(Some((run, vec![true])));
-        let condition = match &entry.run {
-            None => return Ok(context.run.clone()),
-            Some(RunEntry::Always) => return always(Run::Always),
-            Some(RunEntry::Once) => return always(Run::Once),
-            Some(RunEntry::OnChange) => return always(Run::OnChange),
-            Some(RunEntry::When(condition)) => condition,
-        };
-        let turns = self.turns(condition, position)?;
-        let instance = self.symbols.scopes.document(position.scope);
-        let params = Arc::clone(&instance.params);
-        let outer = instance.outer.as_ref();
-        let private = outer.map_or(String::new(), |outer| outer.private.clone());
-        // Conditions of two documents are one if they are made of the same params of the root;
-        // attributes (`index` is one) are what they are here.
-        let text = condition.canonical(&mut |leaf| {
-            if leaf.is_frame_number() && turns.len() > 1 {
-                return leaf.text().to_owned();
-            }
-            if let Some(name) = leaf.as_param() {
-                let is_param = |name: &str| params.bound(name).is_some();
-                let part = leaf.as_component().filter(|(owner, _)| is_param(owner));
-                let (name, part) = match part.filter(|_| !is_param(name)) {
-                    Some((owner, part)) => (owner, format!(".{}", part.as_str())),
-                    None => (name, String::new()),
-                };
-                match params.bound(name).map(|bound| &bound.root) {
-                    Some(Some(root)) => return format!("{root}{part}"),
-                    Some(None) => return format!("{private}{name}{part}"),
-                    None => {}
-                }
-                let scopes = &self.symbols.scopes;
-                let owner = leaf.as_component().map_or(name, |(owner, _)| owner);
-                if [name, owner]
-                    .iter()
-                    .all(|it| scopes.find_value(position.scope, it).is_none())
-                {
-                    return name.to_owned();
-                }
-            }
-            let value = eval::value(leaf, &mut self.symbols.at(position, None));
-            value.map_or_else(|_| leaf.text().to_owned(), |value| value.to_string())
-        });
-        Ok(Some((Run::When(text), turns)))
-    }
-
-    /// Returns the values of a run condition, frame by frame until they repeat.
-    fn turns(&mut self, condition: &Expr, position: Position) -> Reported<Vec<bool>> {
-        let mut turns = Vec::new();
-        let mut at = self.symbols.at(position, None);
-        let (mut frame, mut repeats) = (0, 1);
-        while frame < repeats {
-            at.frame = Some((frame, repeats));
-            turns.push(eval::boolean(condition, &mut at)?);
-            (frame, repeats) = (frame + 1, at.frame.map_or(repeats, |(_, repeats)| repeats));
-            let period = least_common_multiple(self.period, repeats);
-            if period > LONGEST_PERIOD {
-                return Err(at.report(EvaluationError::FramePeriod {
-                    place: condition.span.clone(),
-                    period,
-                    most: LONGEST_PERIOD,
-                }));
-            }
-        }
-        self.period = least_common_multiple(self.period, repeats);
-        Ok(turns)
-    }
-
     /// Adds the settings of a group to those of the groups around it; the inner setting of a name
     /// replaces the outer one.
-    fn say<T>(
-        &mut self,
-        own: &'a [(Located<String>, T)],
-        position: Position,
-        group: &'a Entry,
-        outer: &[Inherited<'a, T>],
-    ) -> Vec<Inherited<'a, T>> {
-        let mut inherited = Vec::new();
-        for (name, value) in own {
-            let mut settings = self.said.iter();
-            let index = settings.position(|(_, other, _)| std::ptr::eq(*other, name));
-            let number = index.unwrap_or_else(|| {
-                self.said.push((&group.name, name, false));
-                self.said.len() - 1
-            });
-            inherited.push(Inherited {
-                name,
-                value,
-                position,
-                number,
-            });
+    fn say(&mut self, group: &'a Entry, position: Position, outer: &Settings<'a>) -> Settings<'a> {
+        let own = Settings::own(group, position);
+        for name in own.names() {
+            let setting = self.said.entry(std::ptr::from_ref(name));
+            setting.or_insert((&group.name, name, false));
         }
-        let hidden = |name: &str| own.iter().any(|(own, _)| **own == *name);
-        let outer = outer.iter().copied();
-        inherited.extend(outer.filter(|setting| !hidden(setting.name)));
-        inherited
+        own.within(outer)
     }
 
-    /// Returns the bindings or values of groups in `inherited` for the names that `asks` accepts.
-    pub fn asked<T>(
-        &self,
-        inherited: &[Inherited<'a, T>],
-        asks: impl Fn(&str) -> bool,
-    ) -> Vec<Inherited<'a, T>> {
-        let asked = inherited.iter().filter(|setting| asks(setting.name));
-        asked.copied().collect()
-    }
-
-    /// Notes that an entry uses these bindings and values of groups, so that they are not reported
-    /// as unused.
-    pub fn mark<T, U>(&mut self, bind: &[Inherited<'_, T>], set: &[Inherited<'_, U>]) {
-        let numbers = bind.iter().map(|setting| setting.number);
-        for number in numbers.chain(set.iter().map(|setting| setting.number)) {
-            self.said[number].2 = true;
+    /// Notes that an entry uses these settings of groups, so that they are not reported as unused.
+    fn mark(&mut self, settings: &Settings<'_>) {
+        for name in settings.names() {
+            if let Some((.., is_asked)) = self.said.get_mut(&std::ptr::from_ref(name)) {
+                *is_asked = true;
+            }
         }
     }
 
-    /// True if a shader of a pass has this global and the pass itself does not bind it.
-    fn asks_global(&self, scope: ScopeId, entry: &Entry, name: &str) -> bool {
-        let is_bound = entry.bind.iter().any(|(own, _)| **own == *name);
-        !is_bound
-            && self.any_shader(scope, entry, |shader| {
-                shader.global_names().any(|n| n == name)
-            })
-    }
-
-    /// True if a shader of a pass has this param or override and the pass itself does not set it.
-    fn asks_param(&self, scope: ScopeId, entry: &Entry, name: &str) -> bool {
-        let is_set = entry.set.iter().any(|(own, _)| **own == *name);
-        !is_set && self.any_shader(scope, entry, |shader| shader.params().any(|n| n == name))
-    }
-
-    fn any_shader(
-        &self,
-        scope: ScopeId,
-        entry: &Entry,
-        asks: impl Fn(&crate::shader::reflect::Shader) -> bool,
-    ) -> bool {
-        let What::Pass(pass) = &entry.what else {
-            return false;
-        };
-        let instance = self.symbols.scopes.document(scope);
+    /// Returns the settings of groups around a pass that its shaders ask for, and that it does not
+    /// make itself.
+    fn asked(&self, entry: &Entry, pass: &Pass, context: &EntryContext<'a>) -> Settings<'a> {
+        let instance = self.symbols.scopes.document(context.scope);
         let (document, replaced) = (&instance.document, &instance.replaced);
         let store = &self.symbols.graph.shaders;
         let shaders = pass.shaders.iter();
-        let mut shaders = shaders.filter_map(|shader| store.get(document, shader, replaced));
+        let shaders = shaders.filter_map(|shader| store.get(document, shader, replaced));
+        let shaders: Vec<_> = shaders.collect();
         // One with a mistake may ask for anything.
-        shaders.any(|shader| shader.as_ref().map_or(true, |shader| asks(shader)))
+        let any = |asks: &dyn Fn(&Shader) -> bool| {
+            let mut shaders = shaders.iter();
+            shaders.any(|shader| shader.as_ref().map_or(true, |shader| asks(shader)))
+        };
+        let mut settings = context.settings.clone();
+        settings.bind.retain(|it| {
+            let is_bound = entry.bind.iter().any(|(own, _)| **own == **it.name);
+            !is_bound && any(&|shader| shader.global_names().any(|name| *name == **it.name))
+        });
+        settings.set.retain(|it| {
+            let is_set = entry.set.iter().any(|(own, _)| **own == **it.name);
+            !is_set && any(&|shader| shader.params().any(|name| *name == **it.name))
+        });
+        settings
     }
 
     /// Reports once that the graph has too many passes or materials.
@@ -731,7 +548,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Finds the sizes of all resources, and returns the flat graph.
-    fn finish(mut self) -> Flat<'a> {
+    fn finish(mut self) -> (Flat<'a>, Vec<FlatPass<'a>>) {
         let mut number = 0;
         // Finding one may add others.
         while number < self.symbols.resources.len() {
@@ -740,21 +557,21 @@ impl<'a> Builder<'a> {
             let _ = self.symbols.resolve_size(id);
             number += 1;
         }
-        for (group, name, is_asked) in std::mem::take(&mut self.said) {
+        for (group, name, is_asked) in std::mem::take(&mut self.said).into_values() {
             if !is_asked && self.first_invalid.is_none() {
                 let group = group.value.to_string();
                 let error = InterfaceError::UnusedInGroup(group, name.clone());
                 self.symbols.reports.report(error);
             }
         }
-        Flat {
+        let flat = Flat {
             symbols: self.symbols,
-            passes: self.passes,
             first_invalid: self.first_invalid,
             interfaces: self.interfaces,
             merged: self.merged,
             plan_inputs: self.plan_inputs,
-        }
+        };
+        (flat, self.passes)
     }
 
     /// Notes the inputs and outputs of the root document.
@@ -773,38 +590,5 @@ impl<'a> Builder<'a> {
             outputs: Vec::new(),
             read_only,
         });
-    }
-}
-
-/// Returns the resource kind for an import.
-fn imported(import: Import) -> ResourceKind {
-    match import {
-        Import::Texture {
-            format,
-            size,
-            mips,
-            layers,
-            is_3d,
-            samples,
-            ..
-        } => ResourceKind::Texture(Texture {
-            format,
-            size,
-            layers,
-            is_3d,
-            mips,
-            samples,
-            picture: None,
-        }),
-        Import::Buffer { bytes, items, .. } => ResourceKind::Buffer(Buffer {
-            count: items,
-            bytes,
-            ..Buffer::default()
-        }),
-        Import::Sampler { filter, compare } => ResourceKind::Sampler(Sampler {
-            filter,
-            address: Default::default(),
-            compare: compare.then_some(wgt::CompareFunction::LessEqual),
-        }),
     }
 }

@@ -2,17 +2,13 @@
 
 use super::{parts, scopes::Symbol, symbols::At};
 use crate::{
-    diagnostics::reports::{Reported, Reports},
+    diagnostics::{Reported, Reports},
     errors::evaluation::EvaluationError,
-    expressions::eval::Environment,
-    language::{
-        name::Name,
-        syntax::{Attribute, Reference},
-        value::{Value, least_common_multiple},
-    },
+    expressions::Environment,
+    language::{Attribute, Name, Reference, Value, least_common_multiple},
     provided_kind::ProvidedKind,
     resource::ResourceKind,
-    source::span::Span,
+    source::Span,
 };
 
 impl Environment for At<'_, '_> {
@@ -62,15 +58,6 @@ impl Environment for At<'_, '_> {
         let scope = self.position.scope;
         scopes.document(scope).params.bound(name).is_some()
             || scopes.find_value(scope, name).is_some()
-    }
-
-    fn word_or_param(&mut self, name: &Name) -> Option<Value> {
-        let instance = self.symbols.scopes.document(self.position.scope);
-        if let Some(value) = instance.params.value(name, &mut self.symbols.reports) {
-            return value.ok();
-        }
-        let id = self.symbols.scopes.find_value(self.position.scope, name)?;
-        self.symbols.value(id).ok()
     }
 
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {

@@ -2,18 +2,16 @@
 
 use super::{
     scopes::{InstanceId, Position, ScopeId},
+    settings::Settings,
     symbols::{At, SymbolTable},
 };
 use crate::{
-    diagnostics::reports::Reported,
-    document::typed::{Entry, Pass},
+    diagnostics::Reported,
+    document::{Entry, Pass},
     expressions::eval,
-    language::{
-        name::Name,
-        syntax::{Expr, Leaf, Reference},
-    },
+    language::{Expr, Leaf, Name, Reference},
     resource::{ResourceId, Target},
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use std::{collections::BTreeSet, ops::Range};
 
@@ -45,12 +43,15 @@ impl std::fmt::Display for Run {
     }
 }
 
-/// A graph whose includes, groups and repetitions are resolved to one list of passes.
+/// Frames in which an entry runs, and the values of the expression in [`Run::When`], frame by frame
+/// until they repeat; one true for every other [`Run`].
+pub(super) type Runs = (Run, Vec<bool>);
+
+/// A graph whose includes, groups and repetitions are resolved to one list of passes, without these
+/// passes.
 pub(crate) struct Flat<'a> {
     /// Meanings of the names in the graph's documents, and the resources found so far.
     pub symbols: SymbolTable<'a>,
-    /// The passes in the order of the documents.
-    pub passes: Vec<FlatPass<'a>>,
     /// Number of passes above the first entry with a reported mistake; `None` if no entry has a
     /// mistake.
     pub first_invalid: Option<usize>,
@@ -64,7 +65,7 @@ pub(crate) struct Flat<'a> {
 
 /// An include that is replaced by an earlier include of the same content.
 pub(crate) struct Merge {
-    /// Indices in [`Flat::passes`] of the passes between the end of the earlier include and this
+    /// Indices of the passes between the end of the earlier include and this
     /// one.
     pub between: Range<usize>,
     /// Resources of the including document that are bound to the inputs of the included one, in the
@@ -89,12 +90,9 @@ pub(crate) struct FlatPass<'a> {
     pub turns: Vec<bool>,
     /// The round that the pass belongs to, of a group that ends early.
     pub round: Option<Round<'a>>,
-    /// Bindings that groups around the pass give to globals of its shader, an inner group's in
-    /// place of an outer one's.
-    pub bind: Vec<Inherited<'a, Reference>>,
-    /// Values that groups around the pass give to params and overrides of its shader, an inner
-    /// group's in place of an outer one's.
-    pub set: Vec<Inherited<'a, Expr>>,
+    /// Bindings and values that groups around the pass give to globals, params and overrides of
+    /// its shader.
+    pub inherited: Settings<'a>,
 }
 
 /// A round of a group that ends early (`while`).
@@ -115,10 +113,9 @@ pub(super) struct EntryContext<'a> {
     /// Prefix of the full names of the passes inside, such as `cascade[2].`; empty at the top of
     /// the loaded document.
     pub prefix: String,
-    pub run: Option<(Run, Vec<bool>)>,
+    pub run: Option<Runs>,
     pub round: Option<Round<'a>>,
-    pub bind: Vec<Inherited<'a, Reference>>,
-    pub set: Vec<Inherited<'a, Expr>>,
+    pub settings: Settings<'a>,
 }
 
 impl<'a> EntryContext<'a> {
@@ -128,8 +125,7 @@ impl<'a> EntryContext<'a> {
             prefix: String::new(),
             run: None,
             round: None,
-            bind: Vec::new(),
-            set: Vec::new(),
+            settings: Settings::default(),
         }
     }
 
@@ -144,24 +140,6 @@ impl<'a> EntryContext<'a> {
         }
     }
 }
-
-/// A `bind` or `set` of a group that the entries inside inherit, with the position at which its
-/// expressions are evaluated.
-pub(crate) struct Inherited<'a, T> {
-    pub name: &'a Located<String>,
-    pub value: &'a T,
-    pub position: Position,
-    /// Index of the setting in `Builder::said`.
-    pub(super) number: usize,
-}
-
-impl<T> Clone for Inherited<'_, T> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<T> Copy for Inherited<'_, T> {}
 
 /// Inputs and outputs of an instance of a document, to be compared with the accesses of its passes.
 pub(crate) struct Interface {
@@ -189,7 +167,7 @@ impl PlanInputs {
         let Some(condition) = condition else {
             return Ok(true);
         };
-        self.note(condition, at.symbols(), at.position.scope);
+        self.note(condition, at.symbols, at.position.scope);
         eval::boolean(condition, at)
     }
 

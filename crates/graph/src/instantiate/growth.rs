@@ -1,13 +1,13 @@
 //! Growth of materials between frames: first size, counter and greatest size.
 
 use crate::{
-    diagnostics::reports::Reported,
-    document::materials::{BufferEntry, GrowEntry, TextureEntry},
+    diagnostics::Reported,
+    document::{BufferEntry, GrowEntry, TextureEntry},
     errors::resource::SizeError,
-    expressions::eval::{self, Environment},
-    language::syntax::Reference,
+    expressions::{Environment, eval},
+    language::Reference,
     resource::{Buffer, Growth, Origin, Resource, ResourceKind, Target, Texture},
-    source::span::Located,
+    source::Located,
 };
 
 /// Environment in which the size of a material is found.

@@ -2,33 +2,25 @@
 //! its outputs back.
 
 use super::{
-    flat::{EntryContext, Inherited, PlanInputs},
+    flat::{EntryContext, PlanInputs},
     params::{Given, Params, SetParam},
     scopes::{Instance, Names, Outer, Position, ScopeId, Scopes, Symbol},
+    settings::{Inherited, Settings},
     symbols::At,
 };
 use crate::{
-    diagnostics::reports::Reported,
-    document::{
-        materials::{Input, InputKind, Material},
-        typed::{Document, Entry, Include},
-    },
+    diagnostics::Reported,
+    document::{Document, Entry, Include, Input, InputKind, Material},
     errors::instantiate::InterfaceError,
-    expressions::eval::{self, Environment},
-    language::{
-        name::Name,
-        syntax::{Expr, ExprKind, Reference},
-    },
+    expressions::{Environment, eval},
+    language::{Expr, ExprKind, Name, Reference},
     resource::{ResourceKind, Target},
-    source::span::Located,
+    source::Located,
 };
 use std::{collections::BTreeMap, sync::Arc};
 
 /// Material of the outer document that an output is written into, with the place that says so.
 type Bound = (Located<String>, Reported<Target>);
-
-/// Bindings and values of groups around an include that its document uses.
-type Said<'e> = (Vec<Inherited<'e, Reference>>, Vec<Inherited<'e, Expr>>);
 
 /// One repetition of an include, with all bindings and values for its document.
 pub(super) struct Call<'e> {
@@ -39,9 +31,8 @@ pub(super) struct Call<'e> {
     /// True if the include has a name of its own or is repeated, so that the names of its outputs
     /// have a prefix in the including document.
     pub has_namespace: bool,
-    /// Bindings of names of the included document: those of the include before those of groups.
-    bind: Vec<(&'e Located<String>, &'e Reference, Position)>,
-    set: Vec<(&'e Located<String>, &'e Expr, Position)>,
+    /// Settings of names of the included document: those of the include before those of groups.
+    pub settings: Settings<'e>,
 }
 
 fn has_input(document: &Document, name: &str) -> bool {
@@ -69,38 +60,32 @@ pub(super) fn is_output(document: &Document, input: &Input) -> bool {
     outputs.any(|output| output.material.path() == *input.name.as_str())
 }
 
-/// Returns the bindings and values of the groups around an include that have a name in its document
-/// and that the include does not set itself.
+/// Returns the settings of the groups around an include that have a name in its document.
 pub(super) fn said<'e>(
-    entry: &'e Entry,
     document: &Document,
-    context: &EntryContext<'e>,
+    around: &Settings<'e>,
     at: &mut At<'_, '_>,
-) -> Said<'e> {
-    let own = |name: &str| entry.bind.iter().any(|(own, _)| **own == *name);
-    let mut bind = context.bind.clone();
-    bind.retain(|bound| {
+) -> Settings<'e> {
+    let mut settings = around.clone();
+    settings.bind.retain(|bound| {
         let inputs = document.inputs.iter().map(|input| &input.name);
         let mut border = inputs.chain(document.outputs.iter().map(|output| &output.name));
-        let is_border = border.any(|name| name.as_str() == bound.name.as_str());
-        (is_border || at.is_of_scene(bound.name)) && !own(bound.name)
+        border.any(|name| name.as_str() == bound.name.as_str()) || at.is_of_scene(bound.name)
     });
-    let set_here = |name: &str| entry.set.iter().any(|(own, _)| **own == *name);
-    let mut set = context.set.clone();
-    set.retain(|setting| {
+    settings.set.retain(|setting| {
         let mut params = document.params.iter();
-        params.any(|param| param.name.value == **setting.name) && !set_here(setting.name)
+        params.any(|param| param.name.value == **setting.name)
     });
-    (bind, set)
+    settings
 }
 
 /// Returns the material of the including document that is written instead of `material`, because
 /// the include binds it to an output; `None` without such a binding.
-pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Reported<Target>> {
+pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Symbol> {
     let overrides = &at.instance().overrides;
     let (name, target) = overrides.get(material.name().as_str())?.clone();
-    Some(target.and_then(|target| {
-        let kind = &at.symbols().get(target.id).kind;
+    let target = target.and_then(|target| {
+        let kind = &at.symbols.get(target.id).kind;
         let fits = matches!(
             (material, kind),
             (Material::Texture(_), ResourceKind::Texture(_))
@@ -113,7 +98,8 @@ pub(super) fn overridden(material: &Material, at: &mut At<'_, '_>) -> Option<Rep
         let why = format!("this is {}", kind.describe());
         let declared = material.name().span.clone();
         Err(at.report(InterfaceError::BoundOutput(name, why, declared)))
-    }))
+    });
+    Some(target.map_or_else(Symbol::Invalid, Symbol::Target))
 }
 
 impl<'e> Call<'e> {
@@ -123,25 +109,16 @@ impl<'e> Call<'e> {
         entry: &'e Entry,
         include: &'e Include,
         document: &'e Document,
-        of_groups: &Said<'e>,
+        of_groups: &Settings<'e>,
         position: Position,
     ) -> Self {
-        let own_bind = entry.bind.iter();
-        let own_set = entry.set.iter();
-        let own_bind = own_bind.map(|(name, value)| (name, value, position));
-        let own_set = own_set.map(|(name, value)| (name, value, position));
-        let bind = of_groups.0.iter();
-        let set = of_groups.1.iter();
-        let bind = bind.map(|bound| (bound.name, bound.value, bound.position));
-        let set = set.map(|setting| (setting.name, setting.value, setting.position));
         Self {
             entry,
             include,
             document,
             position,
             has_namespace: include.is_named || position.index.is_some(),
-            bind: own_bind.chain(bind).collect(),
-            set: own_set.chain(set).collect(),
+            settings: Settings::own(entry, position).within(of_groups),
         }
     }
 
@@ -205,21 +182,22 @@ impl<'e> Call<'e> {
     /// to `at`, the place of the include.
     pub fn params(&self, at: &mut At<'_, '_>) -> Params {
         let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
-        for (name, expr, place) in &self.set {
+        for setting in &self.settings.set {
+            let (name, expr, place) = (setting.name, setting.value, setting.position);
             let mut params = self.document.params.iter();
             if !params.any(|param| param.name.value == name.value) {
                 let params = self.document.params.iter();
                 self.unused(name, params.map(|param| param.name.value.clone()), at);
                 continue;
             }
-            let params = &at.symbols().scopes.document(place.scope).params;
+            let params = &at.symbols.scopes.document(place.scope).params;
             let value = match params.forwarded(expr) {
                 Some(value) => value,
-                None => eval::value(expr, &mut at.elsewhere(*place)),
+                None => eval::value(expr, &mut at.elsewhere(place)),
             };
             let given = SetParam {
-                roots: at.symbols().roots(place.scope, expr),
-                expr: Located::new((*expr).clone(), expr.span.clone()),
+                roots: at.symbols.roots(place.scope, expr),
+                expr: Located::new(expr.clone(), expr.span.clone()),
                 value,
             };
             set.insert(name.value.clone(), given);
@@ -233,7 +211,7 @@ impl<'e> Call<'e> {
             exposed: exposed.collect(),
             outer: &outer,
             span: &self.include.graph.span,
-            context: at.symbols().request.surroundings(),
+            context: at.symbols.request.surroundings(),
         };
         given.bind(self.document, &set, at.reports())
     }
@@ -251,14 +229,14 @@ impl<'e> Call<'e> {
             if !is_asked || outer.bound(name).is_some() {
                 continue;
             }
-            let Some(id) = at.symbols().scopes.find_value(at.position.scope, name) else {
+            let Some(id) = at.symbols.scopes.find_value(at.position.scope, name) else {
                 continue;
             };
             let span = self.include.graph.span.clone();
             let expr = Expr::new(ExprKind::Param(name.clone()), span.clone());
             let given = SetParam {
-                roots: at.symbols().roots(at.position.scope, &expr),
-                value: at.value(id),
+                roots: at.symbols.roots(at.position.scope, &expr),
+                value: at.symbols.value(id),
                 expr: Located::new(expr, span),
             };
             set.insert(name.clone(), given);
@@ -286,7 +264,8 @@ impl<'e> Call<'e> {
         at: &mut At<'_, '_>,
     ) -> (BTreeMap<String, Reported<Target>>, BTreeMap<String, Bound>) {
         let (mut scene, mut overrides) = (BTreeMap::new(), BTreeMap::new());
-        for (name, reference, place) in &self.bind {
+        for setting in &self.settings.bind {
+            let (name, reference, place) = (setting.name, setting.value, setting.position);
             if has_input(self.document, name.as_str()) {
                 continue;
             }
@@ -299,12 +278,12 @@ impl<'e> Call<'e> {
                 self.unused(name, inputs.chain(outputs).map(ToString::to_string), at);
                 continue;
             }
-            let target = at.elsewhere(*place).resolve(reference);
+            let target = at.elsewhere(place).resolve(reference);
             match output {
                 None => drop(scene.insert(name.value.clone(), target)),
                 Some(output) => {
                     let key = output.material.path();
-                    overrides.insert(key, ((*name).clone(), target));
+                    overrides.insert(key, (name.clone(), target));
                 }
             }
         }
@@ -329,9 +308,9 @@ impl<'e> Call<'e> {
     }
 
     /// Finds the binding of an input or output of the included document.
-    fn bound(&self, name: &Name) -> Option<&(&Located<String>, &Reference, Position)> {
-        let mut bound = self.bind.iter();
-        bound.find(|(bound, ..)| bound.as_str() == name.as_str())
+    fn bound(&self, name: &Name) -> Option<&Inherited<'e, Reference>> {
+        let mut bound = self.settings.bind.iter();
+        bound.find(|bound| bound.name.as_str() == name.as_str())
     }
 
     /// Returns the resource that is bound to an input of the included document: by the include, or
@@ -339,17 +318,17 @@ impl<'e> Call<'e> {
     pub fn input(&self, input: &Input, at: &mut At<'_, '_>) -> Reported<Target> {
         let name = &input.name.value;
         let (target, span) = match self.bound(name) {
-            Some((_, reference, place)) => {
-                let target = at.elsewhere(*place).resolve(reference)?;
-                (target, reference.span.clone())
+            Some(bound) => {
+                let target = at.elsewhere(bound.position).resolve(bound.value)?;
+                (target, bound.value.span.clone())
             }
             None => {
                 let span = self.include.graph.span.clone();
-                if at.symbols().scopes.find(at.position.scope, name).is_none() {
+                if at.symbols.scopes.find(at.position.scope, name).is_none() {
                     if let Some(reported) = at.instance().incomplete {
                         return Err(reported);
                     }
-                    let names = at.symbols().scopes.known(at.position.scope);
+                    let names = at.symbols.scopes.known(at.position.scope);
                     let names = at.reports().known(names);
                     return Err(at.report(InterfaceError::NoInput {
                         document: self.document.file.name.to_string(),
@@ -365,14 +344,11 @@ impl<'e> Call<'e> {
                 (target, span)
             }
         };
-        let kind = &at.symbols().get(target.id).kind;
+        let kind = &at.symbols.get(target.id).kind;
         if takes(&input.kind, kind) {
             return Ok(target);
         }
-        let given = match kind {
-            ResourceKind::Texture(texture) => format!("a texture {:?}", texture.format),
-            other => other.describe().to_owned(),
-        };
+        let given = kind.describe_with_format();
         Err(at.report(InterfaceError::WrongInput {
             document: self.document.file.name.to_string(),
             name: name.to_string(),
@@ -402,7 +378,7 @@ impl<'e> Call<'e> {
                 }
             }
             let path = output.material.path();
-            let value = at.symbols().scopes.find_value(at.position.scope, &path);
+            let value = at.symbols.scopes.find_value(at.position.scope, &path);
             if let Some(id) = value {
                 names.insert(name.value.clone(), Symbol::Value(id));
                 continue;

@@ -5,18 +5,15 @@ use super::{
     state::Declared,
 };
 use crate::{
-    compose::loaded::Loaded,
-    diagnostics::reports::{Reported, Reports},
-    document::materials::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
+    compose::Loaded,
+    diagnostics::{Reported, Reports},
+    document::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
     errors::{evaluation::EvaluationError, resource::SizeError},
     expressions::eval,
-    language::{
-        syntax::{Expr, ExprKind},
-        value::{Scalar, Value},
-    },
+    language::{Expr, ExprKind, Scalar, Value},
     request::PlanRequest,
     resource::{Buffer, Growth, ResourceKind, Sampler, Texture},
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use std::sync::Arc;
 

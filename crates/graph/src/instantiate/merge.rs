@@ -2,16 +2,16 @@
 //! include of the G-buffer beside a method that includes it too is drawn once.
 
 use super::{
-    flat::{Merge, Run},
+    flat::{Merge, Runs},
     scopes::Names,
 };
 use crate::{
-    diagnostics::reports::Reported,
-    document::typed::{Document, Include},
-    language::{name::wgsl_identifier, syntax::Leaf},
+    diagnostics::Reported,
+    document::{Document, Include},
+    language::{Leaf, wgsl_identifier},
     param::ParamValue,
     resource::Target,
-    shader::{expand::Replaced, store::Shaders},
+    shader::{Replaced, Shaders},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -33,7 +33,7 @@ pub(super) struct Content {
     scene: BTreeMap<String, Target>,
     /// Modules that replace others which its shaders import.
     replaced: Replaced,
-    run: Option<(Run, Vec<bool>)>,
+    run: Option<Runs>,
 }
 
 /// Value of a param, the param of the root document that it is (if any), and the params of the root
@@ -73,7 +73,7 @@ impl Content {
         inputs: &[Reported<Target>],
         scene: BTreeMap<String, Reported<Target>>,
         replaced: &Replaced,
-        run: Option<(Run, Vec<bool>)>,
+        run: Option<Runs>,
     ) -> Option<Self> {
         let params = params.list.iter().map(|bound| {
             let value = bound.value.clone().ok()?;

@@ -7,6 +7,7 @@ pub(crate) mod build;
 mod environment;
 pub(crate) mod flat;
 mod growth;
+mod imports;
 pub(crate) mod include;
 pub(crate) mod lower;
 mod materials;
@@ -15,9 +16,18 @@ mod modules;
 pub(crate) mod params;
 mod parts;
 mod resolve;
+mod runs;
 pub(crate) mod scopes;
+pub(crate) mod settings;
 pub(crate) mod state;
 pub(crate) mod symbols;
 
 pub use flat::Run;
 pub use params::Claim;
+
+pub(crate) use flat::{Flat, Merge, PlanInputs, Round};
+pub(crate) use lower::LoweredPass;
+pub(crate) use params::{BoundParam, Surroundings};
+pub(crate) use scopes::{InstanceId, Position};
+pub(crate) use settings::Settings;
+pub(crate) use symbols::{At, SymbolTable};

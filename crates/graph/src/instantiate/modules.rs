@@ -5,9 +5,9 @@ use super::{
     symbols::{At, SymbolTable},
 };
 use crate::{
-    document::typed::{Document, ImportEntry},
-    expressions::eval::Environment,
-    language::syntax::Leaf,
+    document::{Document, ImportEntry},
+    expressions::Environment,
+    language::Leaf,
 };
 
 /// Modules that have not taken effect, each with the scope of its document: its condition may need

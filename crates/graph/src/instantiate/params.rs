@@ -2,17 +2,13 @@
 //! document from the document that includes it.
 
 use crate::{
-    diagnostics::reports::{Reported, Reports},
-    document::typed::Document,
+    diagnostics::{ErrorGuaranteed, Reported, Reports},
+    document::{ClaimEntry, Document},
     errors::{evaluation::EvaluationError, instantiate::ParamError},
-    expressions::eval::{self, Environment},
-    language::{
-        name::{Name, wgsl_identifier},
-        syntax::{Attribute, Expr, Reference},
-        value::Value,
-    },
+    expressions::{Environment, eval},
+    language::{Attribute, Expr, Name, Reference, Value, wgsl_identifier},
     param::{Param, ParamValue, find},
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -150,10 +146,6 @@ impl Environment for ParamsAlone<'_> {
         self.params.bound(name).is_some()
     }
 
-    fn word_or_param(&mut self, name: &Name) -> Option<Value> {
-        self.params.value(name, self.reports)?.ok()
-    }
-
     fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32> {
         Err(self.report(EvaluationError::no_index(span, entry)))
     }
@@ -231,6 +223,15 @@ pub(crate) struct Given<'a> {
     pub context: Surroundings,
 }
 
+/// Reports that a param is handed, at a place, to one that does not hold all of its values.
+fn misfit(param: &Param, outer: &BoundParam, at: &Span, reports: &mut Reports) -> ErrorGuaranteed {
+    reports.report(ParamError::Misfit {
+        name: Located::new(param.name.value.clone(), at.clone()),
+        outer: Box::new(outer.param.clone()),
+        param: Box::new(param.clone()),
+    })
+}
+
 impl Given<'_> {
     /// Returns the params of an included document with their values: exposed ones first, then those
     /// that the document declares. `set` holds the values that the include sets, by name of the
@@ -260,14 +261,10 @@ impl Given<'_> {
     ) -> BoundParam {
         let source = expr.value.as_param();
         let source = source.and_then(|name| self.outer.bound(name));
-        let misfit = source.filter(|source| !param.holds_all_of(&source.param));
-        let value = match (value, misfit) {
+        let narrow = source.filter(|source| !param.holds_all_of(&source.param));
+        let value = match (value, narrow) {
             (Err(reported), _) => Err(*reported),
-            (Ok(_), Some(source)) => Err(reports.report(ParamError::Misfit {
-                name: Located::new(param.name.value.clone(), expr.span.clone()),
-                outer: Box::new(source.param.clone()),
-                param: Box::new(param.clone()),
-            })),
+            (Ok(_), Some(source)) => Err(misfit(param, source, &expr.span, reports)),
             (Ok(value), None) => param.convert(value).map_err(|why| {
                 reports.report(ParamError::Set {
                     name: Located::new(param.name.value.clone(), expr.span.clone()),
@@ -311,11 +308,7 @@ impl Given<'_> {
         };
         match outer {
             Some(outer) if !param.holds_all_of(&outer.param) => {
-                bound.value = Err(reports.report(ParamError::Misfit {
-                    name: Located::new(name.to_owned(), self.span.clone()),
-                    outer: Box::new(outer.param.clone()),
-                    param: Box::new(param.clone()),
-                }));
+                bound.value = Err(misfit(param, outer, self.span, reports));
             }
             Some(outer) => {
                 bound.value = outer.value.clone();
@@ -386,7 +379,7 @@ pub(crate) fn claims(
 ) -> Vec<Claim> {
     let mut claims = Vec::new();
     if let Ok(params) = checked(document, asked, context, reports) {
-        for (name, claim) in &document.claims {
+        for (name, ClaimEntry(claim)) in &document.claims {
             let mut environment = ParamsAlone {
                 params: &params,
                 context,

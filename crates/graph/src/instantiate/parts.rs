@@ -1,14 +1,11 @@
 //! Parts of resources: the mips, layers or items that references select, and attributes of parts.
 
 use crate::{
-    diagnostics::diagnostic::Diagnostic,
+    diagnostics::Diagnostic,
     errors::{evaluation::EvaluationError, instantiate::InterfaceError},
-    language::{
-        syntax::{Attribute, Reference},
-        value::{Scalar, Value},
-    },
+    language::{Attribute, Reference, Scalar, Value},
     resource::{Resource, ResourceKind, Target},
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use std::ops::Range;
 

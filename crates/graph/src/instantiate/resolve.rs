@@ -2,12 +2,12 @@
 
 use super::{growth::Sizing, parts, scopes::Symbol, symbols::At};
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reported},
+    diagnostics::{ErrorGuaranteed, Reported},
     errors::instantiate::InterfaceError,
     expressions::eval,
-    language::syntax::{Expr, Reference, Segment, Selection},
+    language::{Expr, Reference, Segment, Selection},
     resource::{Resource, SubresourceRange, Target},
-    source::span::Located,
+    source::Located,
 };
 use std::ops::Range;
 

@@ -4,12 +4,12 @@
 
 use super::params::Params;
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reported},
-    document::typed::{Document, Output},
-    language::name::{Name, wgsl_identifier},
+    diagnostics::{ErrorGuaranteed, Reported},
+    document::{Document, Output},
+    language::{Name, wgsl_identifier},
     resource::Target,
-    shader::expand::Replaced,
-    source::span::Located,
+    shader::Replaced,
+    source::Located,
 };
 use std::{
     collections::{BTreeMap, HashMap},
@@ -82,10 +82,8 @@ struct Scope {
     /// Prefix of the scope's names in the document: `sample[3].`.
     path: String,
     names: Names,
-    /// Targets by the spelling of their names in shaders, those in namespaces included.
-    wgsl_name: HashMap<String, Reported<Target>>,
-    /// Values by the spelling of their names in shaders.
-    wgsl_values: HashMap<String, ValueId>,
+    /// Targets and values by the spelling of their names in shaders, those in namespaces included.
+    spellings: HashMap<String, Symbol>,
     /// Name of the repeated entry, and the index of this repetition.
     index: Option<(Name, u32)>,
 }
@@ -152,8 +150,7 @@ impl Scopes {
             parent,
             path,
             names: Names::new(),
-            wgsl_name: HashMap::new(),
-            wgsl_values: HashMap::new(),
+            spellings: HashMap::new(),
             index,
         });
         ScopeId(self.scopes.len() - 1)
@@ -229,7 +226,7 @@ impl Scopes {
     /// where documents are read.
     pub fn declare(&mut self, scope: ScopeId, name: &Name, symbol: Symbol) {
         let scope = &mut self.scopes[scope.0];
-        spell(scope, &wgsl_identifier(name), &symbol);
+        spell(&mut scope.spellings, wgsl_identifier(name), &symbol);
         scope.names.entry(name.clone()).or_insert(symbol);
     }
 
@@ -242,8 +239,12 @@ impl Scopes {
     /// Returns the target for a shader global, by its WGSL identifier; `None` if no name of the
     /// document has it.
     pub fn find_wgsl_name(&self, scope: ScopeId, identifier: &str) -> Option<Reported<Target>> {
-        self.outwards(scope)
-            .find_map(|scope| scope.wgsl_name.get(identifier).cloned())
+        let mut scopes = self.outwards(scope);
+        scopes.find_map(|scope| match scope.spellings.get(identifier)? {
+            Symbol::Target(target) => Some(Ok(target.clone())),
+            Symbol::Invalid(reported) => Some(Err(*reported)),
+            _ => None,
+        })
     }
 
     /// Returns the id of the named value `name`, or `left.edge` for the value `edge` of the include
@@ -266,8 +267,11 @@ impl Scopes {
     /// Returns the id of the named value for a shader's param or override, by its WGSL identifier;
     /// `None` if there is no such value.
     pub fn find_wgsl_value(&self, scope: ScopeId, identifier: &str) -> Option<ValueId> {
-        self.outwards(scope)
-            .find_map(|scope| scope.wgsl_values.get(identifier).copied())
+        let mut scopes = self.outwards(scope);
+        scopes.find_map(|scope| match scope.spellings.get(identifier)? {
+            Symbol::Value(id) => Some(*id),
+            _ => None,
+        })
     }
 
     /// Returns the index, from 0, of the innermost repetition around a position, or with `entry` of
@@ -323,28 +327,20 @@ impl Scopes {
 }
 
 /// Notes the spelling in shaders of a name.
-fn spell(scope: &mut Scope, spelling: &str, symbol: &Symbol) {
+fn spell(spellings: &mut HashMap<String, Symbol>, spelling: String, symbol: &Symbol) {
     match symbol {
-        Symbol::Target(target) => {
-            let names = scope.wgsl_name.entry(spelling.to_owned());
-            names.or_insert_with(|| Ok(target.clone()));
-        }
-        Symbol::Value(id) => {
-            scope.wgsl_values.entry(spelling.to_owned()).or_insert(*id);
-        }
-        Symbol::Invalid(reported) => {
-            let names = scope.wgsl_name.entry(spelling.to_owned());
-            names.or_insert(Err(*reported));
+        Symbol::Target(_) | Symbol::Value(_) | Symbol::Invalid(_) => {
+            spellings.entry(spelling).or_insert_with(|| symbol.clone());
         }
         Symbol::Namespace(names) => {
             for (name, symbol) in names {
-                spell(scope, &format!("{spelling}_{name}"), symbol);
+                spell(spellings, format!("{spelling}_{name}"), symbol);
             }
         }
         Symbol::Repeated(list) => {
             for (index, names) in list.iter().enumerate() {
                 for (name, symbol) in names {
-                    spell(scope, &format!("{spelling}_{index}_{name}"), symbol);
+                    spell(spellings, format!("{spelling}_{index}_{name}"), symbol);
                 }
             }
         }

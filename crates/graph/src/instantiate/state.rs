@@ -2,15 +2,11 @@
 
 use super::scopes::{ScopeId, Scopes, Symbol};
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reported},
-    document::{materials::Material, typed::Document},
-    language::{
-        name::Name,
-        syntax::{Expr, Leaf},
-        value::Value,
-    },
+    diagnostics::{ErrorGuaranteed, Reported},
+    document::{Document, Material},
+    language::{Expr, Leaf, Name, Value},
     resource::ResourceId,
-    source::span::Located,
+    source::Located,
 };
 use std::sync::Arc;
 

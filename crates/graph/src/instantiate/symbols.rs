@@ -7,24 +7,17 @@ use super::{
     state::{Declared, DeclaredValue, State, ValueState},
 };
 use crate::{
-    compose::loaded::Loaded,
-    diagnostics::{
-        diagnostic::Diagnostic,
-        reports::{ErrorGuaranteed, Reported, Reports},
-    },
+    compose::Loaded,
+    diagnostics::{Diagnostic, ErrorGuaranteed, Reported, Reports},
     errors::evaluation::EvaluationError,
     expressions::{eval, parser},
-    language::{
-        name::wgsl_identifier,
-        syntax::{Expr, Leaf, Reference},
-        value::Value,
-    },
+    language::{Expr, Leaf, Reference, Value, wgsl_identifier},
     provided_kind::ProvidedKind,
     provider::{Provided, ProvidedBinding},
     request::PlanRequest,
     resource::{FRAME, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
-    shader::reflect::Shader,
-    source::span::{Located, SourceFile, Span},
+    shader::Shader,
+    source::{Located, SourceFile, Span},
 };
 use std::{
     cell::RefCell,
@@ -153,13 +146,13 @@ impl<'a> SymbolTable<'a> {
     /// Adds a material whose size is found when it is first asked for.
     pub(super) fn declare(&mut self, name: String, declared: Declared) -> ResourceId {
         let kind = ResourceKind::Buffer(crate::resource::Buffer::default());
-        self.resources.push(Resource {
+        let id = self.add(Resource {
             declared: Some(declared.material().name().span.clone()),
             keep: declared.material().keeps(),
             ..Resource::new(name, kind, Origin::Own)
         });
-        self.states.push(State::Declared(declared));
-        ResourceId(self.resources.len() - 1)
+        self.states[id.0] = State::Declared(declared);
+        id
     }
 
     /// Adds a value, which is evaluated when an expression or a shader first asks for it.
@@ -288,15 +281,13 @@ impl<'a> SymbolTable<'a> {
             Some(id) => *id,
             None => {
                 let kind = match self.request.provider.describe(name) {
-                    Some(Provided {
-                        binding: ProvidedBinding::AccelerationStructure,
-                        ..
-                    }) => ResourceKind::AccelerationStructure,
-                    Some(Provided {
-                        binding: ProvidedBinding::CpuWork,
-                        ..
-                    }) => ResourceKind::CpuWork,
-                    Some(provided) => ResourceKind::Provided(provided),
+                    Some(provided) => match provided.binding {
+                        ProvidedBinding::AccelerationStructure => {
+                            ResourceKind::AccelerationStructure
+                        }
+                        ProvidedBinding::CpuWork => ResourceKind::CpuWork,
+                        _ => ResourceKind::Provided(provided),
+                    },
                     None if name == FRAME => ResourceKind::Frame,
                     None => return None,
                 };
@@ -541,7 +532,7 @@ impl<'a> SymbolTable<'a> {
 
 /// Environment that evaluates expressions and resolves references at a position of a document.
 pub(crate) struct At<'w, 'a> {
-    pub(super) symbols: &'w mut SymbolTable<'a>,
+    pub symbols: &'w mut SymbolTable<'a>,
     /// Position in a document at which the expressions and references stand.
     pub position: Position,
     /// Shader of the pass, for an expression of a pass.
@@ -556,10 +547,6 @@ impl<'a> At<'_, 'a> {
         self.symbols.reports.report(mistake)
     }
 
-    pub fn symbols(&self) -> &SymbolTable<'a> {
-        self.symbols
-    }
-
     /// Returns the use of a document that this position lies in.
     pub fn instance(&self) -> &Instance {
         self.symbols.scopes.document(self.position.scope)
@@ -568,15 +555,6 @@ impl<'a> At<'_, 'a> {
     /// Returns an environment at another position in a document, without constants of a shader.
     pub fn elsewhere(&mut self, position: Position) -> At<'_, 'a> {
         self.symbols.at(position, None)
-    }
-
-    pub fn value(&mut self, id: ValueId) -> Reported<Value> {
-        self.symbols.value(id)
-    }
-
-    /// Returns the target that a request names, as [`SymbolTable::find_full`] does.
-    pub fn find_full(&mut self, name: &str) -> Option<Reported<Target>> {
-        self.symbols.find_full(name)
     }
 
     /// Returns the target for the name of a provided resource, as [`SymbolTable::find_scene`] does.

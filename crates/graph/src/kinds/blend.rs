@@ -1,9 +1,9 @@
 //! Blending of what is drawn with what is there: a word, or factors and an operation.
 
 use super::kind::Lowering;
-use crate::{errors::document::DocumentError, language::syntax::Expr, source::span::Located};
-use serde::{Deserialize, Deserializer};
-use skiagraph_located_ron::reader::{raw, read};
+use crate::{errors::document::DocumentError, fields::by_text, language::Expr, source::Located};
+use serde::Deserialize;
+use skiagraph_located_ron::reader::read;
 use wgt::{BlendComponent, BlendFactor, BlendOperation, BlendState};
 
 /// How what is drawn is mixed with what is there: a word, or `(source: …, target: …, …)`.
@@ -13,16 +13,11 @@ pub(super) enum Blend {
     Factors(Located<BlendFields>),
 }
 
-impl<'de> Deserialize<'de> for Blend {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, _) = raw(deserializer)?;
-        if text.starts_with('(') {
-            read(text).map(Self::Factors)
-        } else {
-            read(text).map(Self::Word)
-        }
-    }
-}
+by_text!(Blend, |text, _| if text.starts_with('(') {
+    read(text).map(Self::Factors)
+} else {
+    read(text).map(Self::Word)
+});
 
 /// How what is drawn is mixed with what is there.
 #[derive(Clone, Copy, Debug, Deserialize)]

@@ -4,7 +4,7 @@ use super::{
     kind::{Lowering, PassKind},
     step::{Operand, Step},
 };
-use crate::language::syntax::{Expr, Reference};
+use crate::language::{Expr, Reference};
 use serde::Deserialize;
 
 /// Sets a texture to a value, or a buffer to zero.

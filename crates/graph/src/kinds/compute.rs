@@ -5,7 +5,7 @@ use super::{
     kind::{Lowering, PassKind},
     step::{Dispatch, Groups, Operand, Step, Threads},
 };
-use crate::language::syntax::{Expr, Reference};
+use crate::language::{Expr, Reference};
 use serde::Deserialize;
 
 /// One dispatch of a compute shader.

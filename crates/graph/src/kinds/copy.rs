@@ -5,7 +5,7 @@ use super::{
     kind::{Lowering, PassKind},
     step::{Operand, Step},
 };
-use crate::language::syntax::Reference;
+use crate::language::Reference;
 use serde::Deserialize;
 
 /// Copies a texture or buffer onto another of equal format and size.

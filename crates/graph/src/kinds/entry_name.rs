@@ -1,9 +1,8 @@
 //! Names of entry points, or one of two by a condition.
 
 use super::kind::Lowering;
-use crate::{language::syntax::Expr, source::span::Located};
-use serde::{Deserialize, Deserializer};
-use skiagraph_located_ron::reader::{raw, read};
+use crate::{fields::by_text, language::Expr, source::Located};
+use skiagraph_located_ron::reader::read;
 
 /// The name of a shader's entry point, or one of two: `"masked ? fragment_masked : none"`.
 #[derive(Clone, Debug)]
@@ -15,16 +14,11 @@ pub(crate) enum EntryName {
 /// Word for no entry point in an [`EntryName`].
 const NO_ENTRY: &str = "none";
 
-impl<'de> Deserialize<'de> for EntryName {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, _) = raw(deserializer)?;
-        if text.contains('?') {
-            read(text).map(Self::Choice)
-        } else {
-            read(text).map(Self::Name)
-        }
-    }
-}
+by_text!(EntryName, |text, _| if text.contains('?') {
+    read(text).map(Self::Choice)
+} else {
+    read(text).map(Self::Name)
+});
 
 impl EntryName {
     /// Returns the chosen name; `None` for the word `none`.

@@ -6,7 +6,7 @@ use super::{
     step::{Draw, DrawCall, Step},
     targets::{self, ColorEntry, StencilEntry},
 };
-use crate::language::syntax::Expr;
+use crate::language::Expr;
 use serde::Deserialize;
 
 /// Runs a fragment shader once for each pixel of its targets.

@@ -2,16 +2,12 @@
 
 use super::step::{Names, Operand, Program, Scratch, ShaderUse, Step, Threads};
 use crate::{
-    diagnostics::{code::Code, diagnostic::Diagnostic, reports::ErrorGuaranteed},
+    diagnostics::{Code, Diagnostic, ErrorGuaranteed},
     errors::evaluation::EvaluationError,
-    expressions::eval::{self, Environment},
+    expressions::{Environment, eval},
     fields::Chosen,
-    language::{
-        name::Name,
-        syntax::{Attribute, Expr, ExprKind, Reference, Subject},
-        value::{Scalar, Value},
-    },
-    source::span::Located,
+    language::{Attribute, Expr, ExprKind, Name, Reference, Scalar, Subject, Value},
+    source::Located,
 };
 use std::fmt;
 

@@ -15,3 +15,10 @@ mod targets;
 
 pub use kind::{Lowering, PassKind};
 pub use registry::Registry;
+
+pub(crate) use kind::OF_PASS;
+pub(crate) use registry::StandIn;
+pub(crate) use step::{
+    ColorTarget, CpuCall, CpuItems, DepthTarget, Dispatch, Draw, DrawCall, Groups, Names, Operand,
+    Program, Scratch, ShaderUse, Stage, StencilTarget, Step, Threads,
+};

@@ -8,11 +8,11 @@ use super::{
 };
 use crate::{
     errors::{document::DocumentError, evaluation::EvaluationError},
-    fields::Chosen,
-    language::syntax::{Expr, Reference},
+    fields::{Chosen, by_text},
+    language::{Expr, Reference},
 };
-use serde::{Deserialize, Deserializer};
-use skiagraph_located_ron::reader::{raw, read};
+use serde::Deserialize;
+use skiagraph_located_ron::reader::read;
 use std::ops::Range;
 
 /// One draw call, whose vertices the shader pulls by their index.
@@ -49,8 +49,9 @@ pub(super) struct Raster {
     #[serde(default = "counter_clockwise")]
     front_face: Chosen<Winding>,
     /// Primitives that vertices form; `TriangleList` without it.
-    #[serde(default)]
-    topology: Topology,
+    #[serde(default, deserialize_with = "Topology::deserialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "Topology"))]
+    topology: wgt::PrimitiveTopology,
     /// Counts every pixel that a triangle touches, not only those whose centre it covers.
     #[serde(default)]
     conservative: bool,
@@ -89,16 +90,14 @@ pub(super) enum CallWords {
     Indirect(Reference),
 }
 
-impl<'de> Deserialize<'de> for Call {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, _) = raw(deserializer)?;
-        if text.starts_with(|c: char| c.is_alphabetic()) {
-            read(text).map(|CallWords::Indirect(buffer)| Self::Indirect(buffer))
-        } else {
-            read(text).map(Self::Vertices)
-        }
+by_text!(
+    Call,
+    |text, _| if text.starts_with(|c: char| c.is_alphabetic()) {
+        read(text).map(|CallWords::Indirect(buffer)| Self::Indirect(buffer))
+    } else {
+        read(text).map(Self::Vertices)
     }
-}
+);
 
 /// Which triangles are left out.
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -126,10 +125,10 @@ enum Winding {
 }
 
 /// Primitives that vertices form.
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(remote = "wgt::PrimitiveTopology")]
 enum Topology {
-    #[default]
     TriangleList,
     TriangleStrip,
     LineList,
@@ -155,12 +154,7 @@ impl PassKind for Raster {
             }
         };
         let primitive = wgt::PrimitiveState {
-            topology: match self.topology {
-                Topology::TriangleList => wgt::PrimitiveTopology::TriangleList,
-                Topology::TriangleStrip => wgt::PrimitiveTopology::TriangleStrip,
-                Topology::LineList => wgt::PrimitiveTopology::LineList,
-                Topology::PointList => wgt::PrimitiveTopology::PointList,
-            },
+            topology: self.topology,
             front_face: match pass.word(&self.front_face, &WINDINGS) {
                 Winding::Ccw => wgt::FrontFace::Ccw,
                 Winding::Cw => wgt::FrontFace::Cw,

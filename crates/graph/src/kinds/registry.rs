@@ -8,7 +8,7 @@ use super::{
     kind::{OF_PASS, PassKind},
     raster::Raster,
 };
-use crate::{diagnostics::diagnostic::Diagnostic, source::span::Span};
+use crate::{diagnostics::Diagnostic, source::Span};
 use serde::de::DeserializeOwned;
 use skiagraph_located_ron::{fields::from_some_fields, reader::Field};
 use std::{fmt, sync::Arc};

@@ -40,7 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::{language::syntax::Reference, source::span::Located};
+use crate::{language::Reference, source::Located};
 use std::{fmt::Debug, ops::Range};
 
 /// Types by which a [`Step`] refers to resources, shaders and sizes at one stage of processing. The

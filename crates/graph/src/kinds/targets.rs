@@ -7,12 +7,12 @@ use super::{
 };
 use crate::{
     errors::document::DocumentError,
-    fields::{Compare, Load, short_or_long},
-    language::syntax::{Expr, Reference},
-    source::span::Located,
+    fields::{Compare, Load, by_text, short_or_long},
+    language::{Expr, Reference},
+    source::Located,
 };
 use serde::{Deserialize, Deserializer};
-use skiagraph_located_ron::reader::{raw, refuse};
+use skiagraph_located_ron::reader::refuse;
 
 /// A colour attachment: `"image"`, or `(target: "image", load: …, blend: …, write: …, resolve: …,
 /// if: …)`.
@@ -41,19 +41,17 @@ pub(super) struct ColorFields {
     condition: Option<Expr>,
 }
 
-impl<'de> Deserialize<'de> for ColorEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let short = |target| ColorFields {
-            target,
-            load: None,
-            blend: None,
-            write: WriteMask::default(),
-            resolve: None,
-            condition: None,
-        };
-        short_or_long(deserializer, Self, |target| Self(short(target)))
-    }
-}
+by_text!(ColorEntry, |text, span| {
+    let short = |target| ColorFields {
+        target,
+        load: None,
+        blend: None,
+        write: WriteMask::default(),
+        resolve: None,
+        condition: None,
+    };
+    short_or_long((text, span), Self, |target| Self(short(target)))
+});
 
 /// Channels that are written: `rg`, `true`, `false`.
 #[derive(Clone, Copy, Debug)]
@@ -65,28 +63,25 @@ impl Default for WriteMask {
     }
 }
 
-impl<'de> Deserialize<'de> for WriteMask {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let (text, span) = raw(deserializer)?;
-        let channel = |sign| match sign {
-            'r' => Some(wgt::ColorWrites::RED),
-            'g' => Some(wgt::ColorWrites::GREEN),
-            'b' => Some(wgt::ColorWrites::BLUE),
-            'a' => Some(wgt::ColorWrites::ALPHA),
-            _ => None,
-        };
-        match text {
-            "true" => Ok(Self::default()),
-            "false" => Ok(Self(wgt::ColorWrites::empty())),
-            _ => text
-                .chars()
-                .map(channel)
-                .collect::<Option<_>>()
-                .map(Self)
-                .ok_or_else(|| refuse(DocumentError::WriteMask(span))),
-        }
+by_text!(WriteMask, |text, span| {
+    let channel = |sign| match sign {
+        'r' => Some(wgt::ColorWrites::RED),
+        'g' => Some(wgt::ColorWrites::GREEN),
+        'b' => Some(wgt::ColorWrites::BLUE),
+        'a' => Some(wgt::ColorWrites::ALPHA),
+        _ => None,
+    };
+    match text {
+        "true" => Ok(Self::default()),
+        "false" => Ok(Self(wgt::ColorWrites::empty())),
+        _ => text
+            .chars()
+            .map(channel)
+            .collect::<Option<_>>()
+            .map(Self)
+            .ok_or_else(|| refuse(DocumentError::WriteMask(span))),
     }
-}
+});
 
 /// A depth attachment: `"depth"`, or
 /// `(target: "depth", load: …, compare: …, write: …, bias: …)`.
@@ -113,18 +108,16 @@ pub(super) struct DepthFields {
     bias: BiasEntry,
 }
 
-impl<'de> Deserialize<'de> for DepthEntry {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let short = |target| DepthFields {
-            target,
-            load: None,
-            compare: Compare::default(),
-            write: true,
-            bias: BiasEntry::default(),
-        };
-        short_or_long(deserializer, Self, |target| Self(short(target)))
-    }
-}
+by_text!(DepthEntry, |text, span| {
+    let short = |target| DepthFields {
+        target,
+        load: None,
+        compare: Compare::default(),
+        write: true,
+        bias: BiasEntry::default(),
+    };
+    short_or_long((text, span), Self, |target| Self(short(target)))
+});
 
 fn yes() -> bool {
     true
@@ -157,11 +150,13 @@ pub(super) struct StencilEntry {
     /// Operation before the first draw; cleared to zero without it.
     load: Option<Load>,
     /// Triangles that show their front.
-    #[serde(default)]
-    front: FaceEntry,
+    #[serde(default, deserialize_with = "FaceEntry::deserialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "FaceEntry"))]
+    front: wgt::StencilFaceState,
     /// Triangles that show their back.
-    #[serde(default)]
-    back: FaceEntry,
+    #[serde(default, deserialize_with = "FaceEntry::deserialize")]
+    #[cfg_attr(feature = "schema", schemars(with = "FaceEntry"))]
+    back: wgt::StencilFaceState,
     /// The bits that are compared.
     #[serde(default = "all_ones")]
     read_mask: u32,
@@ -177,41 +172,47 @@ fn all_ones() -> u32 {
 }
 
 /// Test and operations of one side.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[cfg_attr(feature = "schema", schemars(rename = "StencilFace"))]
-#[serde(deny_unknown_fields)]
+#[serde(remote = "wgt::StencilFaceState", deny_unknown_fields)]
 struct FaceEntry {
     /// The test of `reference` against what is stored; `Always` without it.
-    #[serde(default = "always")]
-    compare: Compare,
+    #[serde(default = "always", deserialize_with = "compare")]
+    #[cfg_attr(feature = "schema", schemars(with = "Compare"))]
+    compare: wgt::CompareFunction,
     /// Operation where the test fails; `Keep` without it, as below.
-    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[serde(
+        default,
+        rename = "fail",
+        deserialize_with = "StencilOperation::deserialize"
+    )]
     #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
-    fail: wgt::StencilOperation,
+    fail_op: wgt::StencilOperation,
     /// Where it passes and that of depth fails.
-    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[serde(
+        default,
+        rename = "depth_fail",
+        deserialize_with = "StencilOperation::deserialize"
+    )]
     #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
-    depth_fail: wgt::StencilOperation,
+    depth_fail_op: wgt::StencilOperation,
     /// Where both pass.
-    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[serde(
+        default,
+        rename = "pass",
+        deserialize_with = "StencilOperation::deserialize"
+    )]
     #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
-    pass: wgt::StencilOperation,
+    pass_op: wgt::StencilOperation,
 }
 
-impl Default for FaceEntry {
-    fn default() -> Self {
-        Self {
-            compare: always(),
-            fail: wgt::StencilOperation::Keep,
-            depth_fail: wgt::StencilOperation::Keep,
-            pass: wgt::StencilOperation::Keep,
-        }
-    }
+fn always() -> wgt::CompareFunction {
+    wgt::CompareFunction::Always
 }
 
-fn always() -> Compare {
-    Compare::Always
+fn compare<'de, D: Deserializer<'de>>(deserializer: D) -> Result<wgt::CompareFunction, D::Error> {
+    Compare::deserialize(deserializer).map(Into::into)
 }
 
 /// Operation on a stencil value; wgpu's names.
@@ -227,17 +228,6 @@ enum StencilOperation {
     DecrementClamp,
     IncrementWrap,
     DecrementWrap,
-}
-
-impl From<FaceEntry> for wgt::StencilFaceState {
-    fn from(face: FaceEntry) -> Self {
-        Self {
-            compare: face.compare.into(),
-            fail_op: face.fail,
-            depth_fail_op: face.depth_fail,
-            pass_op: face.pass,
-        }
-    }
 }
 
 /// The value that an attachment is cleared to; `None` keeps what is there. Clearing knows no area.
@@ -333,8 +323,8 @@ pub(super) fn stencil(
             _ => value[0] as u32,
         }),
         state: wgt::StencilState {
-            front: entry.front.into(),
-            back: entry.back.into(),
+            front: entry.front,
+            back: entry.back,
             read_mask: entry.read_mask,
             write_mask: entry.write_mask,
         },

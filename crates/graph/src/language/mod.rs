@@ -8,3 +8,10 @@ pub(crate) mod value;
 
 pub use name::{Name, wgsl_identifier};
 pub use syntax::{Expr, Reference};
+
+pub(crate) use formats::{FORMATS, format_named};
+pub(crate) use name::{NameFault, RESERVED};
+pub(crate) use syntax::{
+    Attribute, Binary, Component, ExprKind, Function, Leaf, Segment, Selection, Subject, Unary,
+};
+pub(crate) use value::{Scalar, Value, Word, least_common_multiple};

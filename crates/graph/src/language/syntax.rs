@@ -1,7 +1,7 @@
 //! Syntax trees of expressions and references.
 
 use super::{name::Name, value::Value};
-use crate::source::span::{Located, Span};
+use crate::source::{Located, Span};
 
 /// A parsed expression of a document, whose value is a number, size, vector, bool, word or format:
 /// `"ceil_div(viewport.size, 2)"`. docs/authoring.md has the grammar. [`Lowering`](crate::Lowering)

@@ -9,14 +9,14 @@ use super::{
     textures::scalar_of,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
-    language::syntax::Reference,
+    kinds::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
+    language::Reference,
     resource::{ResourceKind, Target, Texture},
-    scalar_class::ScalarClass,
-    shader::varyings::{Varying, Varyings},
-    source::span::{Located, Span},
+    scalar_class::ItemScalar,
+    shader::{Varying, Varyings},
+    source::{Located, Span},
 };
 use wgt::{
     Features, TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages,
@@ -147,8 +147,8 @@ fn colors(
         let mut locations = outputs.iter().map(|output| output.location);
         if let Some(location) = locations.find(|location| *location >= targets) {
             let (pass, entry) = (scope.pass.clone(), span.clone());
-            let reports = scope.reports();
-            reports.warn(LinkError::NoTarget(pass, location, entry));
+            let error = LinkError::NoTarget(pass, location, entry);
+            scope.symbols.reports.warn(error);
         }
     }
     let most = limits.max_color_attachment_bytes_per_sample;
@@ -243,9 +243,9 @@ fn check_output(
     Err(LinkError::FragmentOutput {
         name,
         format,
-        expected: expected.map_or("…".to_owned(), |scalar| scalar.to_string()),
+        expected: expected.map_or("…", ItemScalar::as_str).to_owned(),
         needed,
-        written: format!("{width} × {scalar}"),
+        written: format!("{width} × {}", scalar.as_str()),
         location,
         entry: entry.clone(),
     })
@@ -312,33 +312,28 @@ pub(super) fn clear_value(
     value: [f64; 4],
 ) -> Result<(), LinkError> {
     let mut channels = &value[..usize::from(format.components()).min(4)];
-    let is_stencil = |v: &f64| v.fract() == 0.0 && (0.0..=255.0).contains(v);
-    if format.is_combined_depth_stencil_format() && is_stencil(&value[1]) {
+    let is_stencil = |value: f64| value.fract() == 0.0 && (0.0..=255.0).contains(&value);
+    if format.is_combined_depth_stencil_format() && is_stencil(value[1]) {
         channels = &value[..1];
     } else if format.has_stencil_aspect() && !format.has_depth_aspect() {
         // A single number stands in all four; of two the second is the stencil.
         channels = &value[1..2];
     }
-    let (fits, expected): (fn(&f64) -> bool, _) = match scalar_of(format, TextureAspect::All) {
-        _ if format.is_combined_depth_stencil_format() => (
-            |v| (0.0..=1.0).contains(v),
-            "a depth from 0 to 1, and a stencil from 0 to 255",
-        ),
-        _ if format.has_depth_aspect() => (|v| (0.0..=1.0).contains(v), "a depth from 0 to 1"),
-        _ if format.has_stencil_aspect() => (
-            |v| v.fract() == 0.0 && (0.0..=255.0).contains(v),
-            "a whole number from 0 to 255",
-        ),
-        Some(ScalarClass::Uint) => (
-            |v| v.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(v),
-            "whole numbers from 0",
-        ),
-        Some(ScalarClass::Sint) => (
-            |v| v.fract() == 0.0 && (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(v),
-            "whole numbers of 32 bits",
-        ),
-        _ => (|v| v.is_finite(), "finite numbers"),
+    let (is_whole, range, expected) = match scalar_of(format, TextureAspect::All) {
+        _ if format.is_combined_depth_stencil_format() => {
+            let expected = "a depth from 0 to 1, and a stencil from 0 to 255";
+            (false, 0.0..=1.0, expected)
+        }
+        _ if format.has_depth_aspect() => (false, 0.0..=1.0, "a depth from 0 to 1"),
+        _ if format.has_stencil_aspect() => (true, 0.0..=255.0, "a whole number from 0 to 255"),
+        Some(ItemScalar::U32) => (true, 0.0..=u32::MAX.into(), "whole numbers from 0"),
+        Some(ItemScalar::I32) => {
+            let range = i32::MIN.into()..=i32::MAX.into();
+            (true, range, "whole numbers of 32 bits")
+        }
+        _ => (false, f64::MIN..=f64::MAX, "finite numbers"),
     };
+    let fits = |value: &f64| range.contains(value) && !(is_whole && value.fract() != 0.0);
     match channels.iter().find(|value| !fits(value)) {
         None => Ok(()),
         Some(&wrong) => Err(LinkError::ClearValue {

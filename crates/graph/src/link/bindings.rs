@@ -7,15 +7,16 @@ use super::{
     textures,
 };
 use crate::{
-    diagnostics::reports::Reported,
-    document::materials::Filter,
+    diagnostics::Reported,
+    document::Filter,
     errors::link::LinkError,
-    kinds::step::Program,
+    kinds::Program,
     provider::ProvidedBinding,
     resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
-    shader::{class::Class, members::reads_below, reflect::Global},
+    shader::{Class, Global, members::reads_below},
 };
 use std::num::NonZeroU64;
+use wgt::BufferBindingType::{Storage, Uniform};
 
 /// Target and type of a binding, and the usage that its resource must allow.
 type Binding = (BindTarget, wgt::BindingType, Usage);
@@ -35,7 +36,7 @@ pub(super) fn bind(
         }
         (Class::Uniform { size, members, .. }, None) if global.name == "params" => {
             let block = params::block(global, *size, members, scope)?;
-            (BindTarget::Params(block), uniform(*size))
+            (BindTarget::Params(block), buffer(Uniform, *size))
         }
         (_, bound) => {
             let mut target = match bound {
@@ -88,7 +89,7 @@ fn binding(
             return uniform_buffer(global, target, *size, provided.stride, scope);
         }
         (Class::Uniform { size, .. }, ResourceKind::Buffer(_)) => {
-            let id = scope.symbols().base(target.id);
+            let id = scope.symbols.base(target.id);
             scope.layouts.see(id, &target.part, global);
             return uniform_buffer(global, target, *size, u64::MAX, scope);
         }
@@ -106,11 +107,16 @@ fn binding(
             let least = fixed + stride.unwrap_or(0);
             return storage_buffer(global, target, least, *read_only, scope);
         }
-        (Class::Texture(class), ResourceKind::Texture(texture)) => {
-            let (ty, usage, aspect) =
-                textures::texture(global, class, (texture, target), (linked, program), scope)?;
+        (Class::Texture(dimension, class), ResourceKind::Texture(texture)) => {
+            let (ty, usage, aspect) = textures::texture(
+                global,
+                (*dimension, class),
+                (texture, target),
+                (linked, program),
+                scope,
+            )?;
             target.part.aspect = aspect;
-            let (target, dimension) = (target.clone(), class.dimension());
+            let (target, dimension) = (target.clone(), *dimension);
             let bound = BindTarget::Texture { target, dimension };
             return Ok((bound, ty, Usage::Texture(usage)));
         }
@@ -137,7 +143,7 @@ fn binding(
         (Class::AccelerationStructure, _) => "an acceleration structure",
         (Class::Uniform { .. }, _) => "a uniform buffer",
         (Class::Storage { .. }, _) => "a storage buffer",
-        (Class::Texture(_), _) => "a texture",
+        (Class::Texture(..), _) => "a texture",
         _ => "a sampler",
     };
     Err(scope.report(LinkError::WrongKind {
@@ -175,7 +181,7 @@ fn uniform_buffer(
     aligned(global, target, alignment, scope)?;
     Ok((
         BindTarget::Buffer(target.clone()),
-        uniform(size),
+        buffer(Uniform, size),
         Usage::Buffer(wgt::BufferUsages::UNIFORM),
     ))
 }
@@ -219,15 +225,11 @@ fn storage_buffer(
     }
     let alignment = scope.request().limits.min_storage_buffer_offset_alignment;
     aligned(global, target, alignment, scope)?;
-    let id = scope.symbols().base(target.id);
+    let id = scope.symbols.base(target.id);
     scope.layouts.see(id, &target.part, global);
     Ok((
         BindTarget::Buffer(target.clone()),
-        wgt::BindingType::Buffer {
-            ty: wgt::BufferBindingType::Storage { read_only },
-            has_dynamic_offset: false,
-            min_binding_size: NonZeroU64::new(least),
-        },
+        buffer(Storage { read_only }, least),
         Usage::Buffer(wgt::BufferUsages::STORAGE),
     ))
 }
@@ -253,10 +255,11 @@ fn sampler_type(
     }
 }
 
-fn uniform(size: u64) -> wgt::BindingType {
+/// Returns the type of a binding of a buffer of `least` bytes at least.
+pub(super) fn buffer(ty: wgt::BufferBindingType, least: u64) -> wgt::BindingType {
     wgt::BindingType::Buffer {
-        ty: wgt::BufferBindingType::Uniform,
+        ty,
         has_dynamic_offset: false,
-        min_binding_size: NonZeroU64::new(size),
+        min_binding_size: NonZeroU64::new(least),
     }
 }

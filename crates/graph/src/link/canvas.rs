@@ -3,12 +3,12 @@
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::{link::LinkError, resource::SizeError},
-    kinds::step::{Draw, Names},
+    kinds::{Draw, Names},
     resource::Texture,
-    shader::reflect::Shader,
-    source::span::Located,
+    shader::Shader,
+    source::Located,
 };
 use naga::ShaderStage;
 use std::sync::Arc;

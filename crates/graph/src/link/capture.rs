@@ -7,14 +7,14 @@ use super::{
     steps,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::plan::OutputError,
-    instantiate::flat::Run,
-    kinds::step::{Operand, Scratch, Step},
+    instantiate::Run,
+    kinds::{Operand, Scratch, Step},
     provider::Provided,
     request::Capture,
     resource::{Buffer, Origin, Resource, ResourceKind, SubresourceRange, Target},
-    source::span::Located,
+    source::Located,
 };
 use std::ops::Range;
 
@@ -25,8 +25,8 @@ pub(super) fn link(
     passes: &[LinkedPass],
     scope: &mut PassScope<'_>,
 ) -> Reported<LinkedPass> {
-    let Some(target) = scope.resolve_full(&capture.material) else {
-        let symbols = scope.symbols();
+    let Some(target) = scope.symbols.find_full(&capture.material) else {
+        let symbols = &scope.symbols;
         let materials = symbols.reports.known(symbols.full_names());
         return Err(scope.report(OutputError::NoMaterial {
             graph: symbols.graph.path().to_owned(),
@@ -39,7 +39,7 @@ pub(super) fn link(
         target.part = part;
     }
     let kind = scope.check(copy_of(capture, &target, scope))?;
-    let name = Located::new(capture.name(), scope.symbols().graph.place());
+    let name = Located::new(capture.name(), scope.symbols.graph.place());
     let copy = scope.add(name.value.clone(), kind);
     scope.enter_capture(target, copy);
     let steps = [Step::Copy {

@@ -5,17 +5,17 @@ use super::{
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::{CpuCall, CpuItems, Names, Operand},
+    kinds::{CpuCall, CpuItems, Names, Operand},
     resource::{ResourceId, ResourceKind, Target},
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 
 pub(super) fn link(call: &CpuCall<Names>, scope: &mut PassScope<'_>) -> Reported<CpuCall<Ids>> {
     let source = Usage::Buffer(wgt::BufferUsages::COPY_SRC);
     let (count, span) = buffer(&call.count, scope)?;
-    let base = scope.symbols().base(count.id);
+    let base = scope.symbols.base(count.id);
     scope.layouts.at_least(base, &count.part, 4, &span);
     scope.access(&count, (true, false, false), source, &span);
     let mut reads = Vec::new();
@@ -71,7 +71,7 @@ fn buffer(operand: &Operand, scope: &mut PassScope<'_>) -> Reported<(Target, Spa
 
 fn items(items: &CpuItems<Names>, scope: &mut PassScope<'_>) -> Reported<(CpuItems<Ids>, Span)> {
     let (buffer, span) = buffer(&items.buffer, scope)?;
-    let base = scope.symbols().base(buffer.id);
+    let base = scope.symbols.base(buffer.id);
     scope.layouts.hand(base, items.bytes, &span);
     let bytes = items.bytes;
     Ok((CpuItems { buffer, bytes }, span))

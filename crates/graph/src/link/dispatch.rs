@@ -6,9 +6,9 @@ use super::{
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::{Dispatch, Groups, Names, Operand, Threads},
+    kinds::{Dispatch, Groups, Names, Operand, Threads},
     resource::{ResourceKind, Target},
 };
 use naga::ShaderStage;
@@ -46,7 +46,7 @@ pub(super) fn indirect(
         let kind = resource.kind.describe();
         return Err(scope.report(LinkError::NoArguments(name, kind)));
     }
-    let id = scope.symbols().base(target.id);
+    let id = scope.symbols.base(target.id);
     scope.layouts.at_least(id, &target.part, bytes, &name.span);
     let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
     scope.access(&target, (true, false, false), usage, &name.span);

@@ -2,14 +2,10 @@
 
 use crate::{
     errors::layout::LayoutError,
-    instantiate::symbols::SymbolTable,
-    resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange},
-    shader::{
-        class::Class,
-        items::{Field, Item},
-        reflect::Global,
-    },
-    source::span::{Located, Span},
+    instantiate::SymbolTable,
+    resource::{Buffer, FRAME_BYTES, Origin, ResourceId, ResourceKind, SubresourceRange, Target},
+    shader::{Class, Field, Global, Item},
+    source::{Located, Span},
 };
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -20,7 +16,7 @@ pub(super) struct Layouts {
     least: BTreeMap<ResourceId, (u64, Span)>,
     /// Bytes of an item as the CPU has it.
     handed: BTreeMap<ResourceId, Vec<(u64, Span)>>,
-    same: Vec<[Copied; 2]>,
+    same: Vec<[(Target, Located<String>); 2]>,
 }
 
 /// How a shader sees a buffer or some of its items.
@@ -32,13 +28,6 @@ struct Seen {
     span: Span,
     part: SubresourceRange,
     uniform: bool,
-}
-
-/// Source or destination of a copy.
-struct Copied {
-    id: ResourceId,
-    part: SubresourceRange,
-    name: Located<String>,
 }
 
 impl Layouts {
@@ -84,16 +73,8 @@ impl Layouts {
 
     /// Adds that the buffer `from`, or part of it, is copied onto `to`, so that both must have the
     /// same size.
-    pub fn same(
-        &mut self,
-        from: (ResourceId, &SubresourceRange, &Located<String>),
-        to: (ResourceId, &SubresourceRange, &Located<String>),
-    ) {
-        self.same.push([from, to].map(|(id, part, name)| Copied {
-            id,
-            part: part.clone(),
-            name: name.clone(),
-        }));
+    pub fn same(&mut self, from: (Target, Located<String>), to: (Target, Located<String>)) {
+        self.same.push([from, to]);
     }
 
     /// Returns every buffer of the plan, by id, with its size, item stride and content, and the
@@ -307,7 +288,7 @@ impl Layouts {
         symbols: &SymbolTable<'_>,
         buffers: &mut BTreeMap<ResourceId, Buffer>,
     ) -> Vec<LayoutError> {
-        let bytes = |buffers: &BTreeMap<ResourceId, Buffer>, copied: &Copied| {
+        let bytes = |buffers: &BTreeMap<ResourceId, Buffer>, copied: &Target| {
             let (bytes, stride) = match (buffers.get(&copied.id), &symbols.get(copied.id).kind) {
                 (Some(buffer), _) => (buffer.bytes, buffer.stride),
                 (_, ResourceKind::Provided(provided)) => {
@@ -323,7 +304,7 @@ impl Layouts {
         // Copies of copies: each round sizes one more link at least, or is the last.
         let mut sized = true;
         while std::mem::take(&mut sized) {
-            for [a, b] in &self.same {
+            for [(a, _), (b, _)] in &self.same {
                 let sizes = [bytes(buffers, b), bytes(buffers, a)];
                 for (copied, size) in [a, b].into_iter().zip(sizes) {
                     if let Some(buffer) = buffers.get_mut(&copied.id)
@@ -337,15 +318,15 @@ impl Layouts {
                 }
             }
         }
-        let differs = |[a, b]: &&[Copied; 2]| bytes(buffers, a) != bytes(buffers, b);
-        let different = self.same.iter().filter(differs);
-        different
-            .map(|[a, b]| LayoutError::Copy {
-                from: a.name.clone(),
-                to: b.name.clone(),
-                bytes: [bytes(buffers, a), bytes(buffers, b)],
-            })
-            .collect()
+        let mut errors = Vec::new();
+        for [(a, from), (b, to)] in &self.same {
+            let bytes = [bytes(buffers, a), bytes(buffers, b)];
+            if bytes[0] != bytes[1] {
+                let (from, to) = (from.clone(), to.clone());
+                errors.push(LayoutError::Copy { from, to, bytes });
+            }
+        }
+        errors
     }
 }
 

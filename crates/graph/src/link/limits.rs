@@ -3,17 +3,13 @@
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::{
         limits::{Entry, Excess, LimitError},
         link::LinkError,
     },
-    kinds::step::{Draw, Names},
-    shader::{
-        footprint::{Footprint, Memory},
-        reflect::{Global, Shader},
-        varyings::{Varying, Varyings},
-    },
+    kinds::{Draw, Names},
+    shader::{Footprint, Global, Memory, Shader, Varying, Varyings},
 };
 use naga::ShaderStage;
 
@@ -245,7 +241,10 @@ fn misfit(taken: &Varying, given: &[Varying]) -> Option<String> {
     if given.scalar != taken.scalar || given.width < taken.width {
         return Some(format!(
             "holds {} × {}, not {} × {}",
-            given.width, given.scalar, taken.width, taken.scalar
+            given.width,
+            given.scalar.as_str(),
+            taken.width,
+            taken.scalar.as_str()
         ));
     }
     let same = given.interpolation == taken.interpolation && given.sampling == taken.sampling;

@@ -1,31 +1,22 @@
 //! Linking of all passes, one after the other.
 
-use super::{
-    capture,
-    pass::{Access, LinkedPass},
-    rounds,
-    scope::PassScope,
-    steps,
-};
+use super::{capture, pass::LinkedPass, rounds, scope::PassScope, steps};
 use crate::{
-    diagnostics::reports::{Reported, Reports},
+    diagnostics::{Reported, Reports},
     errors::{instantiate::InterfaceError, layout::LayoutError, link::LinkError},
-    instantiate::{
-        flat::{Interface, Merge, PlanInputs},
-        lower::{Lowered, LoweredPass},
-        scopes::InstanceId,
-        symbols::SymbolTable,
-    },
-    language::syntax::Reference,
+    instantiate::{Flat, InstanceId, LoweredPass},
+    language::Reference,
     request::Capture,
-    resource::{Origin, Resource, ResourceId, ResourceKind, SubresourceRange},
+    resource::{Origin, Resource, ResourceKind},
 };
 use std::collections::BTreeSet;
 
 /// All passes of a graph after linking, with its resources.
 pub(crate) struct Linked<'a> {
-    /// Resources of the graph, with their sizes, and the meanings of names.
-    pub symbols: SymbolTable<'a>,
+    /// Resources of the graph, with their sizes, the meanings of names, and what else flattening
+    /// found. `first_invalid` is the number of passes above the first mistake. After a mistake all
+    /// passes are in the order of the documents, and writes of those below it are not known.
+    pub flat: Flat<'a>,
     /// The linked passes and captures, in the order in which they run.
     pub passes: Vec<LinkedPass>,
     /// Use of a document (the loaded one or an include) that each pass belongs to, parallel to
@@ -33,37 +24,29 @@ pub(crate) struct Linked<'a> {
     pub instances: Vec<Option<InstanceId>>,
     /// Index in `passes` of each pass of the documents, by its index before captures were added.
     pub numbers: Vec<usize>,
-    /// Includes that are replaced by an earlier include of the same content.
-    pub merged: Vec<Merge>,
-    /// Number of passes above the first mistake; `None` without a mistake. After a mistake all
-    /// passes are in the order of the documents, and writes of those below it are not known.
-    pub first_invalid: Option<usize>,
-    /// Inputs and outputs of each use of a document: of the loaded document and of every include.
-    pub interfaces: Vec<Interface>,
-    /// Params and features that decide which entries of the documents exist.
-    pub plan_inputs: PlanInputs,
 }
 
 /// Links all passes, brings them into the order that `arrange` returns, and adds the passes of the
 /// request's captures. `arrange` is given the passes, the resources, and the number of passes above
 /// the first mistake.
 pub(crate) fn link<'a>(
-    lowered: Lowered<'a>,
+    mut flat: Flat<'a>,
+    lowered: Vec<LoweredPass<'a>>,
     arrange: impl FnOnce(&[LinkedPass], &[Resource], usize, &mut Reports) -> Vec<usize>,
 ) -> Linked<'a> {
-    let mut scope = PassScope::new(lowered.symbols);
+    let mut scope = PassScope::new(flat.symbols);
     let (mut in_file, mut instances_in_file) = (Vec::new(), Vec::new());
     // The writes of a pass with a mistake are not known.
     let mut first_invalid: Option<usize> = None;
     let mut numbers = Vec::new();
-    for (index, pass) in lowered.passes.into_iter().enumerate() {
+    for (index, pass) in lowered.into_iter().enumerate() {
         numbers.push(in_file.len());
         // For each mistake all names are searched for what was meant.
-        if scope.reports().has_enough() {
+        if scope.symbols.reports.has_enough() {
             first_invalid.get_or_insert(in_file.len());
             break;
         }
-        if lowered.first_invalid == Some(index) {
+        if flat.first_invalid == Some(index) {
             first_invalid.get_or_insert(in_file.len());
         }
         let (instance, is_broken) = (pass.instance, pass.is_broken);
@@ -75,13 +58,13 @@ pub(crate) fn link<'a>(
             _ => drop(first_invalid.get_or_insert(in_file.len())),
         }
     }
-    if lowered.first_invalid.is_some() {
+    if flat.first_invalid.is_some() {
         first_invalid.get_or_insert(in_file.len());
     }
     let above = first_invalid.unwrap_or(in_file.len());
-    let mut reports = std::mem::take(scope.reports());
-    let mut sequence = arrange(&in_file, &scope.symbols().resources, above, &mut reports);
-    *scope.reports() = reports;
+    let mut reports = std::mem::take(&mut scope.symbols.reports);
+    let mut sequence = arrange(&in_file, &scope.symbols.resources, above, &mut reports);
+    scope.symbols.reports = reports;
     if first_invalid.is_some() {
         sequence.sort_unstable();
     }
@@ -92,9 +75,9 @@ pub(crate) fn link<'a>(
     }
     let place = |index: usize| places.get(index).copied().unwrap_or(passes.len());
     let numbers = numbers.into_iter().map(place).collect();
-    let first_invalid = first_invalid.map(place);
+    flat.first_invalid = first_invalid.map(place);
     let layouts = std::mem::take(&mut scope.layouts);
-    let mut symbols = scope.into_symbols();
+    let mut symbols = scope.symbols;
     let (buffers, errors) = layouts.sized(&symbols);
     for error in errors {
         match error {
@@ -110,15 +93,12 @@ pub(crate) fn link<'a>(
         symbols.resources[id.index()].kind = ResourceKind::Buffer(buffer);
     }
     symbols.size_previous();
+    flat.symbols = symbols;
     Linked {
-        symbols,
+        flat,
         passes,
         instances,
         numbers,
-        merged: lowered.merged,
-        first_invalid,
-        interfaces: lowered.interfaces,
-        plan_inputs: lowered.plan_inputs,
     }
 }
 
@@ -179,12 +159,7 @@ fn reads(pass: &LinkedPass, references: &[Reference], scope: &mut PassScope<'_>)
         }
     }
     let unstated = pass.accesses.iter().find(|access| {
-        let kind = &scope.get(access.resource).kind;
-        let is_given = matches!(kind, ResourceKind::Provided(_) | ResourceKind::Frame)
-            || matches!(
-                kind,
-                ResourceKind::AccelerationStructure | ResourceKind::CpuWork
-            );
+        let is_given = scope.get(access.resource).kind.is_given();
         access.reads && !is_given && !stated.contains(&access.resource)
     });
     match unstated {
@@ -229,7 +204,7 @@ impl Linked<'_> {
     /// Returns the error for the first include that cannot be merged with the earlier one, because
     /// a pass between them writes a resource that it reads or writes; `None` if all can.
     pub fn two_copies(&self) -> Option<InterfaceError> {
-        self.merged.iter().find_map(|merge| {
+        self.flat.merged.iter().find_map(|merge| {
             // After a mistake the last passes are not there.
             let between = self.numbers.get(merge.between.clone())?.iter();
             between.copied().find_map(|number| {
@@ -237,25 +212,17 @@ impl Linked<'_> {
                 let written = pass.accesses.iter().find(|access| {
                     let id = access.resource;
                     let is_own = merge.owned.contains(&id.index())
-                        && self.symbols.get(id).origin == Origin::Own;
+                        && self.flat.symbols.get(id).origin == Origin::Own;
                     access.writes && (is_own || merge.inputs.contains(&id))
                 })?;
                 Some(InterfaceError::TwoCopies {
                     graph: merge.graph.clone(),
                     pass: pass.name.value.clone(),
-                    material: self.symbols.get(written.resource).name.clone(),
+                    material: self.flat.symbols.get(written.resource).name.clone(),
                     span: merge.span.clone(),
                     by: pass.name.span.clone(),
                 })
             })
         })
-    }
-
-    /// True if the pass at the index `pass` in `passes` writes to a part of the resource `id` that
-    /// overlaps `part`.
-    pub fn writes(&self, pass: usize, id: ResourceId, part: &SubresourceRange) -> bool {
-        let writes =
-            |access: &Access| access.writes && access.resource == id && access.part.overlaps(part);
-        self.passes[pass].accesses.iter().any(writes)
     }
 }

@@ -24,3 +24,5 @@ pub use pass::{
     Access, Attachment, BindTarget, Block, CAPTURE, Ids, LinkedBinding, LinkedPass, LinkedProgram,
     PassId, Usage,
 };
+
+pub(crate) use linker::Linked;

@@ -5,45 +5,36 @@ use super::{
     scope::{Asked, PassScope},
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::Program,
-    language::value::{Scalar, Value, Word},
+    kinds::Program,
+    language::{Scalar, Value, Word},
     param::{Param, ParamValue},
-    scalar_class::{ScalarClass, ShaderType},
-    shader::{
-        class::Member,
-        reflect::{Global, Shader},
-    },
-    source::span::{Located, Span},
+    scalar_class::{ItemScalar, ShaderType},
+    shader::{Global, Member, Shader},
+    source::{Located, Span},
 };
 
 /// Returns the bits of a number in a shader's scalar type; `None` if the type cannot hold the
 /// number.
-fn bits(class: ScalarClass, scalar: Scalar) -> Option<u32> {
+fn bits(class: ItemScalar, scalar: Scalar) -> Option<u32> {
     match (class, scalar) {
-        (ScalarClass::Float, scalar) => {
-            let number = scalar.number() as f32;
-            number.is_finite().then(|| number.to_bits())
-        }
-        (ScalarClass::Uint, Scalar::Whole(whole)) => u32::try_from(whole).ok(),
-        (ScalarClass::Sint, Scalar::Whole(whole)) => {
-            i32::try_from(whole).ok().map(i32::cast_unsigned)
-        }
-        _ => None,
+        (ItemScalar::F32, _) if !(scalar.number() as f32).is_finite() => None,
+        (ItemScalar::U32 | ItemScalar::I32, Scalar::Number(_)) => None,
+        _ => class.bits(scalar.number()),
     }
 }
 
 /// Returns a param's value as the words of a uniform.
 pub(crate) fn words(param: &Param, value: &ParamValue) -> (ShaderType, Vec<u32>) {
     let (class, words) = match value {
-        ParamValue::F32(value) => (ScalarClass::Float, vec![value.to_bits()]),
-        ParamValue::I32(value) => (ScalarClass::Sint, vec![value.cast_unsigned()]),
+        ParamValue::F32(value) => (ItemScalar::F32, vec![value.to_bits()]),
+        ParamValue::I32(value) => (ItemScalar::I32, vec![value.cast_unsigned()]),
         ParamValue::Vec(values) => {
             let words = values.iter().map(|value| value.to_bits());
-            (ScalarClass::Float, words.collect())
+            (ItemScalar::F32, words.collect())
         }
-        other => (ScalarClass::Uint, vec![param.as_u32(other).unwrap_or(0)]),
+        other => (ItemScalar::U32, vec![param.as_u32(other).unwrap_or(0)]),
     };
     let width = words.len() as u32;
     (ShaderType { class, width }, words)
@@ -67,7 +58,7 @@ pub(super) fn constants(
                 // The plan depends on a param that a constant asks for.
                 if let Some(bound) = scope.param(name) {
                     let roots = bound.roots.clone();
-                    scope.reports().depend_on(roots.iter());
+                    scope.symbols.reports.depend_on(roots.iter());
                 }
                 scope.check(number(name, &asked, shader, &span, scope))?
             }
@@ -100,13 +91,11 @@ fn number(
     };
     let class = shader.override_class(name);
     let number = match (&value, asked, class) {
-        (Value::Bool(value), _, None | Some(ScalarClass::Uint)) => {
-            Some(f64::from(u8::from(*value)))
-        }
-        (Value::Word(value), Asked::Value(..), Some(ScalarClass::Uint)) => {
+        (Value::Bool(value), _, None | Some(ItemScalar::U32)) => Some(f64::from(u8::from(*value))),
+        (Value::Word(value), Asked::Value(..), Some(ItemScalar::U32)) => {
             Some(f64::from(word(name, value, position, shader, scope)?))
         }
-        (Value::Word(_), Asked::Param(param, value, _), Some(ScalarClass::Uint)) => {
+        (Value::Word(_), Asked::Param(param, value, _), Some(ItemScalar::U32)) => {
             param.as_u32(value).map(f64::from)
         }
         (Value::Scalar(scalar), _, Some(class)) => bits(class, *scalar).map(|_| scalar.number()),
@@ -206,7 +195,7 @@ fn member_words(
     scope: &mut PassScope<'_>,
 ) -> Reported<(Vec<u32>, Option<String>)> {
     let Some(asked) = scope.asked(&member.name).transpose()? else {
-        let params = scope.symbols().reports.known(scope.params());
+        let params = scope.symbols.reports.known(scope.params());
         return Err(scope.report(LinkError::UnknownMember {
             member: member.name.clone(),
             span: global.span.clone(),
@@ -222,7 +211,7 @@ fn member_words(
         Asked::Index(index) => {
             return match member.vector {
                 Some(ShaderType {
-                    class: ScalarClass::Uint,
+                    class: ItemScalar::U32,
                     width: 1,
                 }) => Ok((vec![index], None)),
                 _ => Err(scope.report(LinkError::IndexMember(global.span.clone()))),

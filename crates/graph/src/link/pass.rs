@@ -1,11 +1,11 @@
 //! Linked passes: their steps refer to resources by id, and list their reads and writes.
 
 use crate::{
-    instantiate::flat::Run,
-    kinds::step::{Stage, Step},
+    instantiate::Run,
+    kinds::{Stage, Step},
     resource::{ResourceId, SubresourceRange, Target},
-    shader::reflect::Shader,
-    source::span::{Located, Span},
+    shader::Shader,
+    source::{Located, Span},
 };
 use naga::ShaderStage;
 use std::sync::Arc;
@@ -59,6 +59,13 @@ impl LinkedPass {
         self.kind == CAPTURE
     }
 
+    /// True if the pass writes to a part of a resource.
+    pub(crate) fn writes_to(&self, id: ResourceId, part: &SubresourceRange) -> bool {
+        self.accesses
+            .iter()
+            .any(|access| access.writes_to(id, part))
+    }
+
     /// Iterates over the bytes of the `params` uniform of each step, one entry per step, in the
     /// order of the steps. The uniform holds the values of params for the step's shader. `None` for
     /// a step whose shader has no global `params`, and for one without a shader.
@@ -94,6 +101,33 @@ pub struct Access {
     pub span: Span,
     /// Index in [`LinkedPass::steps`] of the step that makes the access.
     pub step: usize,
+}
+
+impl Access {
+    /// Creates an access to a target that reads, writes and fully overwrites as `used` says.
+    pub(super) fn new(
+        target: &Target,
+        (reads, writes, fully_overwrites): (bool, bool, bool),
+        usage: Usage,
+        span: &Span,
+    ) -> Self {
+        Self {
+            resource: target.id,
+            part: target.part.clone(),
+            reads,
+            writes,
+            fully_overwrites,
+            triggers: true,
+            usage,
+            span: span.clone(),
+            step: 0,
+        }
+    }
+
+    /// True if the access writes to a part of a resource.
+    pub(crate) fn writes_to(&self, id: ResourceId, part: &SubresourceRange) -> bool {
+        self.writes && self.resource == id && self.part.overlaps(part)
+    }
 }
 
 /// Usage that one [`Access`] needs the resource to be created with.
@@ -231,6 +265,18 @@ impl Block {
             changed |= *place != byte;
             *place = byte;
         }
+        changed
+    }
+
+    /// Writes the value of a param, as words, to every place that it has. Returns true if any byte
+    /// changed.
+    pub(crate) fn set(&mut self, name: &str, words: &[u32]) -> bool {
+        let places = std::mem::take(&mut self.params);
+        let own = places.iter().filter(|(param, _)| param == name);
+        let changed = own.fold(false, |changed, (_, offset)| {
+            self.write(*offset, words) || changed
+        });
+        self.params = places;
         changed
     }
 }

@@ -6,12 +6,13 @@ use super::{
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::Program,
-    shader::reflect::{Global, Shader},
+    kinds::Program,
+    shader::{Global, Shader},
 };
 use naga::ShaderStage;
+use wgt::BindingType as Type;
 
 pub(super) fn link(
     program: &Program,
@@ -106,68 +107,58 @@ fn bound_globals(
             wrong = Some(scope.report(LinkError::UnusedBind {
                 shader: shader.source.file.name.to_string(),
                 name: bound.clone(),
-                globals: scope.symbols().reports.known(names),
+                globals: scope.symbols.reports.known(names),
             }));
         }
     }
     wrong.map_or(Ok(()), Err)
 }
 
+/// Returns the word for bindings of a type.
+fn describe(ty: &Type) -> &'static str {
+    match ty {
+        Type::Buffer { ty, .. } if *ty == wgt::BufferBindingType::Uniform => "uniform buffers",
+        Type::Buffer { .. } => "storage buffers",
+        Type::StorageTexture { .. } => "storage textures",
+        Type::Texture { .. } | Type::ExternalTexture => "textures",
+        Type::Sampler(_) => "samplers",
+        Type::AccelerationStructure { .. } => "acceleration structures",
+    }
+}
+
 /// Checks the numbers of bindings that wgpu limits for each stage.
 fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()> {
+    const BOTH: &str = "buffers and acceleration structures";
     let limits = &scope.request().limits;
-    use wgt::{BindingType as Type, BufferBindingType::Storage, BufferBindingType::Uniform};
-    type IsOf = fn(&Type) -> bool;
-    let kinds: [(&str, IsOf, u32); 7] = [
+    let both = limits.max_buffers_and_acceleration_structures_per_shader_stage;
+    let structures = limits.max_acceleration_structures_per_shader_stage;
+    let most = [
         (
             "storage buffers",
-            |ty| {
-                matches!(
-                    ty,
-                    Type::Buffer {
-                        ty: Storage { .. },
-                        ..
-                    }
-                )
-            },
             limits.max_storage_buffers_per_shader_stage,
         ),
         (
             "uniform buffers",
-            |ty| matches!(ty, Type::Buffer { ty: Uniform, .. }),
             limits.max_uniform_buffers_per_shader_stage,
         ),
-        (
-            "textures",
-            |ty| matches!(ty, Type::Texture { .. }),
-            limits.max_sampled_textures_per_shader_stage,
-        ),
+        ("textures", limits.max_sampled_textures_per_shader_stage),
         (
             "storage textures",
-            |ty| matches!(ty, Type::StorageTexture { .. }),
             limits.max_storage_textures_per_shader_stage,
         ),
-        (
-            "samplers",
-            |ty| matches!(ty, Type::Sampler(_)),
-            limits.max_samplers_per_shader_stage,
-        ),
-        (
-            "acceleration structures",
-            |ty| matches!(ty, Type::AccelerationStructure { .. }),
-            limits.max_acceleration_structures_per_shader_stage,
-        ),
-        (
-            "buffers and acceleration structures",
-            |ty| matches!(ty, Type::Buffer { .. } | Type::AccelerationStructure { .. }),
-            limits.max_buffers_and_acceleration_structures_per_shader_stage,
-        ),
+        ("samplers", limits.max_samplers_per_shader_stage),
+        ("acceleration structures", structures),
+        (BOTH, both),
     ];
-    for (what, is, most) in kinds {
+    for (what, most) in most {
+        let is_counted = |ty: &Type| match ty {
+            Type::Buffer { .. } | Type::AccelerationStructure { .. } if what == BOTH => true,
+            ty => describe(ty) == what,
+        };
         let of_stage = |stage: wgt::ShaderStages| {
             let bindings = bindings.iter();
             let seen = bindings.filter(|bound| bound.visibility.contains(stage));
-            seen.filter(|bound| is(&bound.ty)).count()
+            seen.filter(|bound| is_counted(&bound.ty)).count()
         };
         let stages = [
             wgt::ShaderStages::VERTEX,

@@ -2,22 +2,20 @@
 //! which hold 0 in the rounds that do not run.
 
 use super::{
+    bindings::buffer,
     pass::{BindTarget, Ids, LinkedBinding, LinkedProgram, Usage},
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reported},
+    diagnostics::{ErrorGuaranteed, Reported},
     errors::link::LinkError,
-    instantiate::flat::Round,
-    kinds::step::{Dispatch, DrawCall, Groups, Step},
-    resource::{Buffer, ResourceKind, SubresourceRange, Target},
-    shader::{expand::Expanded, reflect::Shader},
-    source::span::SourceFile,
+    instantiate::Round,
+    kinds::{Dispatch, DrawCall, Groups, Step},
+    resource::{ResourceKind, SubresourceRange, Target},
+    shader::{Expanded, Shader},
+    source::SourceFile,
 };
-use std::{
-    num::NonZeroU64,
-    sync::{Arc, LazyLock},
-};
+use std::sync::{Arc, LazyLock};
 
 /// The shader of all rounds; `None` if it is not valid, which a test excludes.
 static SHADER: LazyLock<Option<Arc<Shader>>> = LazyLock::new(|| {
@@ -28,38 +26,26 @@ static SHADER: LazyLock<Option<Arc<Shader>>> = LazyLock::new(|| {
     Shader::new(source).ok().map(Arc::new)
 });
 
-/// A step of a round, and the step before it that makes its arguments.
-pub(super) struct Guarded {
-    pub guard: Step<Ids>,
-    pub step: Step<Ids>,
-    pub arguments: Target,
-}
-
 /// Returns the first step of a round: it reads the counter.
 pub(super) fn begin(round: &Round<'_>, scope: &mut PassScope<'_>) -> Reported<Step<Ids>> {
     let counter = counter(round, scope)?;
-    let goes = scope.symbols().whole(round.goes);
-    dispatch(
-        "begin",
-        &[("counter", &counter), ("goes", &goes)],
-        &[],
-        round,
-        scope,
-    )
+    let goes = scope.symbols.whole(round.goes);
+    let bound = [("counter", &counter), ("goes", &goes)];
+    dispatch("begin", &bound, &[], round, scope)
 }
 
-/// Returns the step with arguments of its own; `None` for one that may run in every round: clearing
-/// the counter.
+/// Gives a step arguments of its own. Returns the step before it that makes them, and their buffer;
+/// `None` for a step that may run in every round: clearing the counter.
 ///
 /// # Errors
 /// A step that cannot be left out by its arguments.
-pub(super) fn guarded(
-    mut step: Step<Ids>,
+pub(super) fn guard(
+    step: &mut Step<Ids>,
     round: &Round<'_>,
     scope: &mut PassScope<'_>,
-) -> Reported<Result<Guarded, Step<Ids>>> {
-    let refusal = match &step {
-        Step::Clear { target, .. } if *target == counter(round, scope)? => return Ok(Err(step)),
+) -> Reported<Option<(Step<Ids>, Target)>> {
+    let refusal = match &*step {
+        Step::Clear { target, .. } if *target == counter(round, scope)? => return Ok(None),
         Step::Clear { .. } => Some("clearing a material"),
         Step::Copy { .. } => Some("a copy"),
         Step::Cpu(_) => Some("work of the CPU"),
@@ -79,7 +65,7 @@ pub(super) fn guarded(
         return Err(refused(what, round, scope));
     }
     let is_part = |target: &Target| target.part != SubresourceRange::WHOLE;
-    let is_part = match &step {
+    let is_part = match &*step {
         Step::Draw(draw) => matches!(&draw.call, DrawCall::Indirect(asked) if is_part(asked)),
         Step::Dispatch(it) => matches!(&it.groups, Groups::Indirect(asked) if is_part(asked)),
         _ => false,
@@ -89,24 +75,15 @@ pub(super) fn guarded(
     }
     let number = scope.accesses.len();
     let name = format!("{}/arguments{number}", scope.pass.value);
-    let kind = ResourceKind::Buffer(Buffer {
-        count: Some(4),
-        ..Buffer::default()
-    });
-    let arguments = scope.add(name, kind);
-    let call = match &mut step {
+    let arguments = scope.add(name, ResourceKind::buffer_of(4));
+    let call = match step {
         Step::Draw(draw) => {
             let call = DrawCall::Indirect(arguments.clone());
             match std::mem::replace(&mut draw.call, call) {
                 DrawCall::Direct {
-                    vertices,
+                    vertices: v,
                     instances,
-                } => Ok([
-                    vertices.len() as u32,
-                    instances.len() as u32,
-                    vertices.start,
-                    0,
-                ]),
+                } => Ok([v.len() as u32, instances.len() as u32, v.start, 0]),
                 DrawCall::Indirect(asked) => Err(asked),
             }
         }
@@ -117,9 +94,9 @@ pub(super) fn guarded(
                 Groups::Indirect(asked) => Err(asked),
             }
         }
-        _ => return Ok(Err(step)),
+        _ => return Ok(None),
     };
-    let goes = scope.symbols().whole(round.goes);
+    let goes = scope.symbols.whole(round.goes);
     let bound = [("goes", &goes), ("arguments", &arguments)];
     let guard = match &call {
         Ok(numbers) => dispatch("direct", &bound, numbers, round, scope)?,
@@ -129,11 +106,7 @@ pub(super) fn guarded(
             dispatch("indirect", &bound, &[], round, scope)?
         }
     };
-    Ok(Ok(Guarded {
-        guard,
-        step,
-        arguments,
-    }))
+    Ok(Some((guard, arguments)))
 }
 
 /// Reports a part of a pass that no arguments can leave out: once, whatever the round.
@@ -148,7 +121,7 @@ pub(super) fn refused(
 
 /// Resolves the counter, which must be a buffer, all of it: an item may begin where none is bound.
 fn counter(round: &Round<'_>, scope: &mut PassScope<'_>) -> Reported<Target> {
-    let target = scope.resolve_at(round.counter, round.position)?;
+    let target = scope.symbols.resolve(round.counter, round.position)?;
     let wrong = match &scope.get(target.id).kind {
         ResourceKind::Buffer(_) if target.part == SubresourceRange::WHOLE => None,
         ResourceKind::Buffer(_) => Some("a part of a buffer"),
@@ -157,7 +130,7 @@ fn counter(round: &Round<'_>, scope: &mut PassScope<'_>) -> Reported<Target> {
     if let Some(kind) = wrong {
         return Err(scope.report(LinkError::Counter(round.counter.located(), kind)));
     }
-    let (base, span) = (scope.symbols().base(target.id), &round.counter.span);
+    let (base, span) = (scope.symbols.base(target.id), &round.counter.span);
     scope.layouts.at_least(base, &target.part, 4, span);
     Ok(target)
 }
@@ -185,18 +158,13 @@ fn dispatch(
         let usage = Usage::Buffer(wgt::BufferUsages::STORAGE);
         let used = (global.reads, global.writes, false);
         scope.access(target, used, usage, &round.counter.span);
-        let ty = wgt::BindingType::Buffer {
-            ty: wgt::BufferBindingType::Storage {
-                read_only: matches!(global.name.as_str(), "counter" | "asked"),
-            },
-            has_dynamic_offset: false,
-            min_binding_size: NonZeroU64::new(if global.name == "arguments" { 16 } else { 4 }),
-        };
+        let read_only = matches!(global.name.as_str(), "counter" | "asked");
+        let least = if global.name == "arguments" { 16 } else { 4 };
         bindings.push(LinkedBinding {
             group: global.group,
             binding: global.binding,
             target: BindTarget::Buffer((*target).clone()),
-            ty,
+            ty: buffer(wgt::BufferBindingType::Storage { read_only }, least),
             visibility: global.stages,
         });
     }

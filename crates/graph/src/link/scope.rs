@@ -5,37 +5,24 @@ use super::{
     pass::{Access, Usage},
 };
 use crate::{
-    diagnostics::{
-        diagnostic::Diagnostic,
-        reports::{ErrorGuaranteed, Reported, Reports},
-    },
+    diagnostics::{Diagnostic, ErrorGuaranteed, Reported},
     errors::{instantiate::InterfaceError, link::LinkError},
     expressions::eval,
-    instantiate::{
-        flat::{Inherited, Round},
-        lower::LoweredPass,
-        params::BoundParam,
-        scopes::Position,
-        symbols::SymbolTable,
-    },
-    kinds::step::{Operand, Program},
-    language::{
-        name::{Name, wgsl_identifier},
-        syntax::{Expr, Reference},
-        value::Value,
-    },
+    instantiate::{BoundParam, LoweredPass, Position, Round, Settings, SymbolTable},
+    kinds::{Operand, Program},
+    language::{Expr, Name, Reference, Value, wgsl_identifier},
     param::{Param, ParamType, ParamValue},
     request::PlanRequest,
     resource::{Origin, Resource, ResourceId, ResourceKind, Sampler, Target},
-    shader::reflect::{Global, Shader},
-    source::span::{Located, Span},
+    shader::{Global, Shader},
+    source::{Located, Span},
 };
 use std::{collections::BTreeSet, sync::Arc};
 
 /// Names and resources of a graph as the pass that is being linked sees them, with the reads,
 /// writes and layouts found so far.
 pub(super) struct PassScope<'a> {
-    symbols: SymbolTable<'a>,
+    pub symbols: SymbolTable<'a>,
     /// Layouts that shaders of the passes linked so far declare for buffers.
     pub layouts: Layouts,
     /// Full name of the pass that is being linked, with its place.
@@ -46,8 +33,7 @@ pub(super) struct PassScope<'a> {
     /// Buffers that only the pass uses; for a capture, its source and destination.
     scratch: Vec<Target>,
     set: &'a [(Located<String>, Expr)],
-    inherited_bind: Vec<Inherited<'a, Reference>>,
-    inherited_set: Vec<Inherited<'a, Expr>>,
+    inherited: Settings<'a>,
     /// Name of the shader that the pass's own `bind` and `set` are for; `None` before the first
     /// pass.
     pub own_shader: Option<Located<String>>,
@@ -80,8 +66,7 @@ impl<'a> PassScope<'a> {
             accesses: Vec::new(),
             scratch: Vec::new(),
             set: &[],
-            inherited_bind: Vec::new(),
-            inherited_set: Vec::new(),
+            inherited: Settings::default(),
             own_shader: None,
             asked: BTreeSet::new(),
             round: None,
@@ -95,8 +80,7 @@ impl<'a> PassScope<'a> {
         let scratch = pass.scratch.iter().map(|id| self.symbols.whole(*id));
         self.scratch = scratch.collect();
         self.set = &pass.flat.entry.set;
-        self.inherited_bind = std::mem::take(&mut pass.flat.bind);
-        self.inherited_set = std::mem::take(&mut pass.flat.set);
+        self.inherited = std::mem::take(&mut pass.flat.inherited);
         self.own_shader = Some(pass.shader.clone());
         self.asked.clear();
         self.round = pass.flat.round;
@@ -106,19 +90,6 @@ impl<'a> PassScope<'a> {
     pub fn enter_capture(&mut self, from: Target, to: Target) {
         self.round = None;
         self.scratch = vec![from, to];
-    }
-
-    pub fn into_symbols(self) -> SymbolTable<'a> {
-        self.symbols
-    }
-
-    pub fn symbols(&self) -> &SymbolTable<'a> {
-        &self.symbols
-    }
-
-    /// Returns the collection of the mistakes reported so far, to add to.
-    pub fn reports(&mut self) -> &mut Reports {
-        &mut self.symbols.reports
     }
 
     pub fn report(&mut self, mistake: impl Into<Diagnostic>) -> ErrorGuaranteed {
@@ -139,24 +110,8 @@ impl<'a> PassScope<'a> {
     /// Adds a use of `target` by the current step to the pass's accesses: true in the triple if the
     /// step reads the part, writes it, and overwrites all of it. `span` is the place that causes
     /// the use.
-    pub fn access(
-        &mut self,
-        target: &Target,
-        (reads, writes, fully_overwrites): (bool, bool, bool),
-        usage: Usage,
-        span: &Span,
-    ) {
-        self.accesses.push(Access {
-            resource: target.id,
-            part: target.part.clone(),
-            reads,
-            writes,
-            fully_overwrites,
-            triggers: true,
-            usage,
-            span: span.clone(),
-            step: 0,
-        });
+    pub fn access(&mut self, target: &Target, used: (bool, bool, bool), usage: Usage, span: &Span) {
+        self.accesses.push(Access::new(target, used, usage, span));
     }
 
     /// Adds a resource of the graph that no document names, such as the copy for a capture. Returns
@@ -177,17 +132,6 @@ impl<'a> PassScope<'a> {
     /// Returns the resource, or part of it, that a reference in the pass's document means.
     pub fn resolve(&mut self, reference: &Reference) -> Reported<Target> {
         self.symbols.resolve(reference, self.position)
-    }
-
-    /// Returns the resource, or part of it, that a reference at another position means.
-    pub fn resolve_at(&mut self, reference: &Reference, position: Position) -> Reported<Target> {
-        self.symbols.resolve(reference, position)
-    }
-
-    /// Resolves a full name, or a reference of the root document, from a request; `None` if the
-    /// name is unknown.
-    pub fn resolve_full(&mut self, name: &str) -> Option<Reported<Target>> {
-        self.symbols.find_full(name)
     }
 
     /// Returns the target of an operand of a step, and its name with its place, for messages.
@@ -259,7 +203,7 @@ impl<'a> PassScope<'a> {
     /// True if a global means something here that a pass does not bind itself.
     pub fn is_known(&mut self, global: &str) -> bool {
         let scope = self.position.scope;
-        let mut inherited = self.inherited_bind.iter();
+        let mut inherited = self.inherited.bind.iter();
         inherited.any(|bound| bound.name.value == global)
             || self.symbols.find_global(global, scope).is_some()
     }
@@ -267,8 +211,8 @@ impl<'a> PassScope<'a> {
     /// Returns the target of a shader's global that the pass itself does not bind: bound by a group
     /// around the pass, or else of the same name.
     pub fn target(&mut self, global: &Global) -> Reported<Target> {
-        let mut inherited = self.inherited_bind.iter();
-        if let Some(&bound) = inherited.find(|bound| bound.name.value == global.name) {
+        let mut inherited = self.inherited.bind.iter();
+        if let Some(bound) = inherited.find(|bound| bound.name.value == global.name) {
             return self.symbols.resolve(bound.value, bound.position);
         }
         let scope = self.position.scope;
@@ -322,7 +266,7 @@ impl<'a> PassScope<'a> {
         let own = self.set.iter().find(|(set, _)| **set == *name);
         let own = own.map(|(_, expr)| (expr, self.position));
         let inherited = || {
-            let mut settings = self.inherited_set.iter();
+            let mut settings = self.inherited.set.iter();
             let setting = settings.find(|setting| setting.name.value == name)?;
             Some((setting.value, setting.position))
         };

@@ -2,18 +2,18 @@
 
 use super::{
     attachments, cpu, dispatch,
-    pass::{Ids, LinkedPass, Usage},
+    pass::{Access, Ids, LinkedPass, Usage},
     rounds,
     scope::PassScope,
     transfers,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    instantiate::flat::Run,
-    kinds::step::{Names, Step},
+    instantiate::Run,
+    kinds::{Names, Step},
     resource::{Origin, name_within},
-    source::span::Located,
+    source::Located,
 };
 
 /// Links the steps of a pass.
@@ -33,30 +33,23 @@ pub(super) fn link(
         wrong = push(begun, 0, &mut linked, scope).err();
     }
     for step in steps {
-        let first = scope.accesses.len();
+        let mut first = scope.accesses.len();
         let mut step = self::step(step, scope);
-        if let (Ok(linked_step), Some(round)) = (step.clone(), &round) {
+        if let (Ok(linked_step), Some(round)) = (&mut step, &round) {
             let mut own = scope.accesses.split_off(first);
-            let guarded = rounds::guarded(linked_step, round, scope);
-            step = match guarded {
-                Err(reported) => Err(reported),
-                Ok(Err(step)) => Ok(step),
-                Ok(Ok(guarded)) => {
-                    wrong = push(Ok(guarded.guard), first, &mut linked, scope)
-                        .err()
-                        .or(wrong);
+            match rounds::guard(linked_step, round, scope) {
+                Err(reported) => step = Err(reported),
+                Ok(None) => {}
+                Ok(Some((guard, arguments))) => {
+                    let guarded = push(Ok(guard), first, &mut linked, scope);
+                    wrong = guarded.err().or(wrong);
                     let usage = Usage::Buffer(wgt::BufferUsages::INDIRECT);
-                    let used = (true, false, false);
-                    let first = scope.accesses.len();
-                    scope.access(&guarded.arguments, used, usage, &round.counter.span);
-                    own.extend(scope.accesses.split_off(first));
-                    Ok(guarded.step)
+                    let (used, span) = ((true, false, false), &round.counter.span);
+                    own.push(Access::new(&arguments, used, usage, span));
                 }
-            };
-            let first = scope.accesses.len();
+            }
+            first = scope.accesses.len();
             scope.accesses.append(&mut own);
-            wrong = push(step, first, &mut linked, scope).err().or(wrong);
-            continue;
         }
         wrong = push(step, first, &mut linked, scope).err().or(wrong);
     }

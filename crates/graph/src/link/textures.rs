@@ -2,23 +2,23 @@
 
 use super::{pass::LinkedProgram, scope::PassScope};
 use crate::{
-    diagnostics::reports::Reported,
-    document::materials::Filter,
+    diagnostics::Reported,
+    document::Filter,
     errors::link::{LinkError, TextureMisfit},
-    kinds::step::Program,
+    kinds::Program,
     resource::{Target, Texture},
-    scalar_class::ScalarClass,
-    shader::{class::TextureClass, reflect::Global},
+    scalar_class::ItemScalar,
+    shader::{Global, SampledClass, TextureClass},
 };
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
 /// Returns the scalar type that a shader reads from a format, or from one aspect of a format with
 /// two; `None` if it cannot be read.
-pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ScalarClass> {
+pub(super) fn scalar_of(format: TextureFormat, aspect: TextureAspect) -> Option<ItemScalar> {
     Some(match format.sample_type(Some(aspect), None)? {
-        wgt::TextureSampleType::Float { .. } | wgt::TextureSampleType::Depth => ScalarClass::Float,
-        wgt::TextureSampleType::Uint => ScalarClass::Uint,
-        wgt::TextureSampleType::Sint => ScalarClass::Sint,
+        wgt::TextureSampleType::Float { .. } | wgt::TextureSampleType::Depth => ItemScalar::F32,
+        wgt::TextureSampleType::Uint => ItemScalar::U32,
+        wgt::TextureSampleType::Sint => ItemScalar::I32,
     })
 }
 
@@ -27,26 +27,25 @@ type Bound = (wgt::BindingType, TextureUsages, TextureAspect);
 
 pub(super) fn texture(
     global: &Global,
-    class: &TextureClass,
+    (dimension, class): (wgt::TextureViewDimension, &TextureClass),
     (texture, target): (&Texture, &Target),
     (linked, program): (&LinkedProgram, &Program),
     scope: &mut PassScope<'_>,
 ) -> Reported<Bound> {
     let grows = scope.get(target.id).growth.is_some();
-    let misfit = wrong_shape(class.dimension(), texture, target, grows);
+    let misfit = wrong_shape(dimension, texture, target, grows);
     let bound = match (misfit, class) {
         (Some(misfit), _) => Err(misfit),
-        (None, TextureClass::Sampled { .. }) => {
-            sampled(global, class, texture, (linked, program), scope)
+        (None, TextureClass::Sampled(class)) => sampled(
+            global,
+            (dimension, *class),
+            texture,
+            (linked, program),
+            scope,
+        ),
+        (None, TextureClass::Storage(format, access)) => {
+            storage((format, *access, dimension), texture, target, scope)
         }
-        (
-            None,
-            TextureClass::Storage {
-                format,
-                access,
-                dimension,
-            },
-        ) => storage((format, *access, *dimension), texture, target, scope),
     };
     bound.map_err(|misfit| {
         let resource = scope.get(target.id);
@@ -63,26 +62,22 @@ pub(super) fn texture(
 
 fn sampled(
     global: &Global,
-    class: &TextureClass,
+    (dimension, class): (wgt::TextureViewDimension, SampledClass),
     texture: &Texture,
     (linked, program): (&LinkedProgram, &Program),
     scope: &mut PassScope<'_>,
 ) -> Result<Bound, TextureMisfit> {
-    let TextureClass::Sampled {
+    let SampledClass {
         scalar,
-        dimension,
         depth,
         multisampled,
-    } = *class
-    else {
-        return Err(TextureMisfit::Samples(texture.samples));
-    };
+    } = class;
     let format = texture.format;
     let features = format.guaranteed_format_features(scope.request().features);
     // For a texture with both, the shader's type says which is meant.
     let aspect = match (format.is_combined_depth_stencil_format(), scalar) {
         (false, _) => TextureAspect::All,
-        (true, ScalarClass::Uint) => TextureAspect::StencilOnly,
+        (true, ItemScalar::U32) => TextureAspect::StencilOnly,
         (true, _) => TextureAspect::DepthOnly,
     };
     let declared = scalar_of(format, aspect);
@@ -97,8 +92,8 @@ fn sampled(
     let able = wgt::Features::FLOAT32_FILTERABLE;
     let with_feature = format.guaranteed_format_features(able).flags;
     let by_feature = with_feature.contains(Flags::FILTERABLE);
-    let asks = by_feature && scope.symbols().graph.features().contains(able);
-    let suits = filterable || asks && scope.symbols().reports.any_adapter;
+    let asks = by_feature && scope.symbols.graph.features().contains(able);
+    let suits = filterable || asks && scope.symbols.reports.any_adapter;
     let is_linear = |name: &String| {
         let sampler = scope.sampler(program, name);
         sampler.is_some_and(|it| it.filter == Filter::Linear && it.compare.is_none())
@@ -109,11 +104,11 @@ fn sampled(
     }
     let sample_type = match (scalar, depth) {
         (_, true) => wgt::TextureSampleType::Depth,
-        (ScalarClass::Float, _) => wgt::TextureSampleType::Float {
+        (ItemScalar::F32, _) => wgt::TextureSampleType::Float {
             filterable: filterable && !multisampled,
         },
-        (ScalarClass::Uint, _) => wgt::TextureSampleType::Uint,
-        (ScalarClass::Sint, _) => wgt::TextureSampleType::Sint,
+        (ItemScalar::U32, _) => wgt::TextureSampleType::Uint,
+        (ItemScalar::I32, _) => wgt::TextureSampleType::Sint,
     };
     let ty = wgt::BindingType::Texture {
         sample_type,
@@ -130,7 +125,7 @@ fn storage(
     scope: &PassScope<'_>,
 ) -> Result<Bound, TextureMisfit> {
     let format = texture.format;
-    let features = if scope.symbols().reports.any_adapter {
+    let features = if scope.symbols.reports.any_adapter {
         // A device may have any.
         wgt::Features::all()
     } else {

@@ -6,9 +6,9 @@ use super::{
     scope::PassScope,
 };
 use crate::{
-    diagnostics::reports::Reported,
+    diagnostics::Reported,
     errors::link::LinkError,
-    kinds::step::{Operand, Step},
+    kinds::{Operand, Step},
     resource::{ResourceKind, Target, Texture},
 };
 
@@ -43,9 +43,10 @@ pub(super) fn copy(from: &Operand, to: &Operand, scope: &mut PassScope<'_>) -> R
             ResourceKind::Buffer(_) | ResourceKind::Provided(_) | ResourceKind::Frame,
             ResourceKind::Buffer(_),
         ] => {
-            let sized = scope.symbols().base(source.id);
-            let source = (sized, &source.part, &from);
-            scope.layouts.same(source, (target.id, &target.part, &to));
+            let mut sized = source.clone();
+            sized.id = scope.symbols.base(source.id);
+            let copied = (sized, from.clone());
+            scope.layouts.same(copied, (target.clone(), to.clone()));
             [wgt::BufferUsages::COPY_SRC, wgt::BufferUsages::COPY_DST].map(Usage::Buffer)
         }
         [a, b] => {

@@ -1,6 +1,6 @@
 //! Check for backends that lack part of WebGPU: a graph is refused unless it is proven there.
 
-use crate::{compose::loaded::Loaded, errors::plan::OutputError, request::PartialBackend};
+use crate::{compose::Loaded, errors::plan::OutputError, request::PartialBackend};
 
 /// Returns the error for a backend that the graph does not list in `proven_on`; `None` if it lists
 /// the backend.

@@ -5,24 +5,15 @@ use super::{
     plan::Plan,
 };
 use crate::{
-    compose::{loaded::Loaded, used::Used},
-    diagnostics::{
-        code::Code,
-        diagnostic::{Diagnostic, Severity},
-        list::Diagnostics,
-        reports::Reports,
-    },
-    document::{
-        materials::InputKind,
-        raw::Invalid,
-        typed::{Document, Entry, What},
-    },
+    compose::{Loaded, Used},
+    diagnostics::{Code, Diagnostic, Diagnostics, Reports, Severity},
+    document::{Document, Entry, InputKind, Invalid, What},
     errors::flow::OrderError,
-    instantiate::{flat::PlanInputs, params::claims},
+    instantiate::{PlanInputs, params::claims},
     param::{Param, ParamType, ParamValue},
     provider::Import,
     request::PlanRequest,
-    source::span::{Located, Span},
+    source::{Located, Span},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -135,24 +126,12 @@ fn stand_ins(
     let mut imports = request.imports.clone();
     for input in &document.inputs {
         let import = match input.kind {
-            InputKind::Texture(format) => Import::Texture {
-                format: format.unwrap_or(any),
-                size: request.viewport,
-                mips: 1,
-                layers: 1,
-                is_3d: false,
-                samples: 1,
-                usage: wgt::TextureUsages::all(),
-            },
-            InputKind::Buffer => Import::Buffer {
-                bytes: u64::from(u32::MAX),
-                items: Some(1),
-                usage: wgt::BufferUsages::all(),
-            },
-            InputKind::Sampler { compare } => Import::Sampler {
-                filter: Default::default(),
-                compare,
-            },
+            InputKind::Texture(format) => {
+                let usages = wgt::TextureUsages::all();
+                Import::plain_texture(format.unwrap_or(any), request.viewport, usages)
+            }
+            InputKind::Buffer => Import::buffer(u32::MAX.into(), Some(1), wgt::BufferUsages::all()),
+            InputKind::Sampler { compare } => Import::sampler(Default::default(), compare),
         };
         let name = input.name.value.to_string();
         imports.entry(name).or_insert(import);

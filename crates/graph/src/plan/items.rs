@@ -2,10 +2,10 @@
 //! needs.
 
 use crate::{
-    kinds::step::Step,
-    link::pass::{Access, BindTarget, Ids, LinkedPass},
+    kinds::Step,
+    link::{Access, BindTarget, Ids, LinkedPass},
     resource::{Resource, ResourceId, ResourceKind, Target},
-    shader::items::{Item, item},
+    shader::{Item, items::item},
 };
 use std::{collections::BTreeSet, ops::Range};
 
@@ -90,14 +90,12 @@ pub(super) fn part<'p>(
             _ => None,
         });
     let target = copied.unwrap_or(target);
-    let whole = match &resources[target.id.0].kind {
-        ResourceKind::Texture(texture) => [texture.mips, texture.layers],
-        ResourceKind::Buffer(buffer) => {
-            let count = buffer.count.map(u32::try_from);
-            [1, count.and_then(Result::ok).unwrap_or(u32::MAX)]
-        }
-        _ => [1, u32::MAX],
+    let kind = &resources[target.id.0].kind;
+    let mips = match kind {
+        ResourceKind::Texture(texture) => texture.mips,
+        _ => 1,
     };
+    let whole = [mips, kind.layers(0)];
     let layers = &target.part.layers;
     PartSummary {
         mips: target.part.mips.clone(),

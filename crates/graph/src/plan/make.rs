@@ -8,36 +8,22 @@ use super::{
     usages,
 };
 use crate::{
-    compose::loaded::Loaded,
-    diagnostics::{diagnostic::Diagnostic, reports::Reports},
+    compose::Loaded,
+    diagnostics::{Diagnostic, Reports},
     errors::{
         flow::OrderError, instantiate::InterfaceError, plan::OutputError, resource::SizeError,
     },
     flow::{
-        aliases::aliases,
-        arrange::arrange,
-        conditions::conditions,
-        cull,
-        lifetimes::{Lifetime, Lifetimes, lifetimes},
-        order::{Order, order},
-        schedule::{Schedule, sequence},
-        view::GraphView,
+        GraphView, Lifetime, Lifetimes, Order, Schedule, aliases::aliases, arrange::arrange,
+        conditions::conditions, cull, lifetimes::lifetimes, order::order, schedule::sequence,
     },
-    instantiate::{
-        build::flatten,
-        flat::{Merge, PlanInputs},
-        lower::lower,
-        params::checked,
-    },
-    link::{
-        linker::{Linked, link},
-        pass::{Access, LinkedPass, PassId},
-    },
+    instantiate::{Merge, PlanInputs, build::flatten, lower::lower, params::checked},
+    link::{Access, Linked, LinkedPass, PassId, linker::link},
     param::ParamValue,
     provider::{Described, Provided},
     request::{PlanRequest, Request},
     resource::{Buffer, Growth, Origin, Resource, ResourceId, ResourceKind, Target},
-    source::span::Located,
+    source::Located,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -110,14 +96,13 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
     let before = reports.clone();
     let mut merges = true;
     let mut linked = loop {
-        let flat = flatten(graph, request, params.clone(), merges, reports);
+        let (mut flat, passes) = flatten(graph, request, params.clone(), merges, reports);
         if flat.symbols.reports.iter().any(is_lacking) {
             return Outcome::lacking(flat.symbols.reports, flat.plan_inputs);
         }
-        let mut lowered = lower(flat);
-        let symbols = &mut lowered.symbols;
-        check_captures(request, &lowered.passes, &mut symbols.reports);
-        let linked = link(lowered, |passes, resources, above, reports| {
+        let lowered = lower(&mut flat, passes);
+        check_captures(request, &lowered, &mut flat.symbols.reports);
+        let linked = link(flat, lowered, |passes, resources, above, reports| {
             arrange(GraphView { passes, resources }, above, reports)
         });
         let Some(copies) = linked.two_copies() else {
@@ -128,9 +113,9 @@ pub(super) fn plan_all(graph: &Arc<Loaded>, request: &PlanRequest<'_>) -> Outcom
         reports.warn(copies);
         merges = false;
     };
-    let mut plan_inputs = std::mem::take(&mut linked.plan_inputs);
-    let mut reports = std::mem::take(&mut linked.symbols.reports);
-    let refused = refused_light(&graph.document, linked.symbols.kinds());
+    let mut plan_inputs = std::mem::take(&mut linked.flat.plan_inputs);
+    let mut reports = std::mem::take(&mut linked.flat.symbols.reports);
+    let refused = refused_light(&graph.document, linked.flat.symbols.kinds());
     let inputs = &mut plan_inputs;
     match (
         schedule(graph, linked, request, values, inputs, &mut reports),
@@ -158,8 +143,8 @@ fn schedule(
     plan_inputs: &mut PlanInputs,
     reports: &mut Reports,
 ) -> Option<Planned> {
-    let is_complete = linked.first_invalid.is_none();
-    let first_invalid = linked.first_invalid.unwrap_or(linked.passes.len());
+    let is_complete = linked.flat.first_invalid.is_none();
+    let first_invalid = linked.flat.first_invalid.unwrap_or(linked.passes.len());
     let order = order(view(&linked), first_invalid, reports);
     if is_complete {
         never_written(view(&linked), &order, reports);
@@ -168,17 +153,17 @@ fn schedule(
     }
     let written = |target: &Target| !is_complete || !order.final_writers(target).is_empty();
     // Outputs are found as names in documents are, and so are their mistakes.
-    std::mem::swap(&mut linked.symbols.reports, reports);
-    let root = linked.symbols.root();
-    let at = &mut linked.symbols.at(root, None);
+    std::mem::swap(&mut linked.flat.symbols.reports, reports);
+    let root = linked.flat.symbols.root();
+    let at = &mut linked.flat.symbols.at(root, None);
     let readable = readable(graph, request, at, written, plan_inputs);
-    std::mem::swap(&mut linked.symbols.reports, reports);
+    std::mem::swap(&mut linked.flat.symbols.reports, reports);
     if !is_complete || reports.errors() > 0 {
         return None;
     }
-    let named_values = linked.symbols.found_values();
-    let asked = linked.symbols.take_asked();
-    let (passes, resources) = (linked.passes, linked.symbols.resources);
+    let named_values = linked.flat.symbols.found_values();
+    let mut asked = linked.flat.symbols.take_asked();
+    let (passes, resources) = (linked.passes, linked.flat.symbols.resources);
     let view = GraphView {
         passes: &passes,
         resources: &resources,
@@ -216,7 +201,11 @@ fn schedule(
     let largest = request.limits.max_buffer_size;
     let aliases = aliases(view, &sequence, &lifetimes, &kept, largest);
     let culled = culled(view, &live);
-    let relies_on = unbound(asked, &lifetimes, view);
+    // Not those that live passes bind.
+    let used = lifetimes.keys().map(|id| view.resource(*id));
+    for resource in used.filter(|resource| resource.is_provided()) {
+        asked.remove(&resource.name);
+    }
     let is_own = |base: &&ResourceId| view.resource(**base).origin == Origin::Own;
     let own = previous.values().filter(is_own);
     let schedule = Schedule {
@@ -238,22 +227,8 @@ fn schedule(
         culled,
         warnings: Vec::new(),
         depends_on: BTreeSet::new(),
-        relies_on,
+        relies_on: asked,
     })
-}
-
-/// Leaves out the provided resources that live passes bind.
-fn unbound<T>(
-    mut asked: BTreeMap<String, T>,
-    lifetimes: &Lifetimes,
-    view: GraphView<'_>,
-) -> BTreeMap<String, T> {
-    for resource in lifetimes.keys().map(|id| view.resource(*id)) {
-        if resource.is_provided() {
-            asked.remove(&resource.name);
-        }
-    }
-    asked
 }
 
 fn finish(
@@ -314,7 +289,7 @@ fn is_lacking(diagnostic: &Diagnostic) -> bool {
 fn view<'l>(linked: &'l Linked<'_>) -> GraphView<'l> {
     GraphView {
         passes: &linked.passes,
-        resources: &linked.symbols.resources,
+        resources: &linked.flat.symbols.resources,
     }
 }
 
@@ -361,11 +336,8 @@ fn live(view: GraphView<'_>, readable: &[(String, Target)], order: &Order) -> Ve
 
 /// Returns the passes that write a part of a resource, in whichever frame.
 fn writers(view: GraphView<'_>, target: &Target) -> BTreeSet<PassId> {
-    let writes = |access: &Access| {
-        access.writes && access.resource == target.id && access.part.overlaps(&target.part)
-    };
     let passes = view.ids();
-    let writers = passes.filter(|(_, pass)| pass.accesses.iter().any(writes));
+    let writers = passes.filter(|(_, pass)| pass.writes_to(target.id, &target.part));
     writers.map(|(id, _)| id).collect()
 }
 
@@ -522,24 +494,32 @@ fn check_counters(view: GraphView<'_>, order: &Order, reports: &mut Reports) {
 
 /// Checks that documents write their outputs, and do not write inputs that are no outputs.
 fn interfaces(linked: &Linked<'_>, reports: &mut Reports) {
-    for border in &linked.interfaces {
+    for border in &linked.flat.interfaces {
         let within = |pass: &usize| {
-            linked.instances[*pass]
-                .is_some_and(|instance| linked.symbols.scopes.is_within(instance, border.instance))
+            linked.instances[*pass].is_some_and(|instance| {
+                linked
+                    .flat
+                    .symbols
+                    .scopes
+                    .is_within(instance, border.instance)
+            })
         };
         let passes: Vec<usize> = (0..linked.passes.len()).filter(within).collect();
         for (name, target) in &border.outputs {
             let is_merged = |merge: &Merge| merge.owned.contains(&target.id.index());
-            let has_content = linked.symbols.get(target.id).origin != Origin::Own
-                || linked.merged.iter().any(is_merged);
+            let has_content = linked.flat.symbols.get(target.id).origin != Origin::Own
+                || linked.flat.merged.iter().any(is_merged);
             let mut passes = passes.iter();
-            if !has_content && !passes.any(|pass| linked.writes(*pass, target.id, &target.part)) {
+            if !has_content
+                && !passes.any(|pass| linked.passes[*pass].writes_to(target.id, &target.part))
+            {
                 reports.report(InterfaceError::UnwrittenOutput(name.text()));
             }
         }
         for (name, target) in &border.read_only {
             let mut passes = passes.iter();
-            let writer = passes.find(|pass| linked.writes(**pass, target.id, &target.part));
+            let writer =
+                passes.find(|pass| linked.passes[**pass].writes_to(target.id, &target.part));
             if let Some(writer) = writer {
                 let by = linked.passes[*writer].name.span.clone();
                 reports.report(InterfaceError::WrittenInput(name.text(), by));

@@ -3,12 +3,9 @@
 use super::text;
 use crate::{
     errors::plan::OutputError,
-    flow::{
-        aliases::{Allocation, Alone},
-        schedule::Schedule,
-    },
+    flow::{Allocation, Alone, Schedule},
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind},
-    source::span::Span,
+    source::Span,
 };
 
 /// Greatest number of allocations that a memory table lists; small ones rarely matter.

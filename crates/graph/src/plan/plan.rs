@@ -5,29 +5,21 @@ use super::{
     backend::not_proven,
     items::{self, PartSummary},
     make::{CulledPass, Planned, plan_all},
-    memory::{Memory, MemoryEntry},
+    memory::MemoryEntry,
     summary::{OutputSummary, PassSummary},
     uniforms,
 };
 use crate::{
-    compose::loaded::Loaded,
-    diagnostics::{diagnostic::Diagnostic, list::Diagnostics, reports::Reports},
-    flow::{
-        discard::discarded,
-        order::{Dependences, dependences},
-        schedule::Schedule,
-        view::GraphView,
-    },
-    language::value::least_common_multiple,
-    link::{
-        params::words,
-        pass::{LinkedPass, PassId},
-    },
+    compose::Loaded,
+    diagnostics::{Diagnostic, Diagnostics, Reports},
+    flow::{Dependences, GraphView, Schedule, discard::discarded, order::dependences},
+    language::least_common_multiple,
+    link::{LinkedPass, PassId, params::words},
     param::{ParamType, ParamValue},
     provider::{Describe, Import, Provided},
     request::{PartialBackend, PlanRequest},
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind, Target},
-    shader::items::Item,
+    shader::Item,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -165,7 +157,7 @@ impl Plan {
     /// uses, with its size in memory, in the order of [`resources`](Self::resources). Imported and
     /// provided resources, which the host makes, are left out.
     pub fn memory(&self) -> Vec<MemoryEntry> {
-        self.own_memory().entries()
+        self.0.memory().entries()
     }
 
     /// Returns the buffers and textures that [live](Self::live) passes use and that may grow
@@ -173,34 +165,34 @@ impl Plan {
     /// greatest number of [items](crate#terms) or layers. The device's limits may lower the number
     /// that the document gives.
     pub fn growing(&self) -> Vec<(ResourceId, Growth)> {
-        self.own_memory().growing(&self.0.request.limits)
+        self.0.memory().growing(&self.0.request.limits)
     }
 
     /// Returns the size in bytes of all textures and buffers in [`memory`](Self::memory) together;
     /// memory that they share counts once. A resource that a pass also reads as it was in the frame
     /// before (`.previous`) counts twice.
     pub fn memory_bytes(&self) -> u64 {
-        self.own_memory().bytes()
+        self.0.memory().bytes()
     }
 
     /// Returns the number of bytes that sharing memory between resources saves, compared with an
     /// allocation for each resource.
     pub fn saved_bytes(&self) -> u64 {
-        self.own_memory().saved_bytes()
+        self.0.memory().saved_bytes()
     }
 
     /// Returns a table as text, for people to read, of the memory that the graph takes. It has one
     /// line for each of the 12 largest allocations, with the names of its materials, size, format
     /// and bytes; then a line for all smaller allocations together; then the sum.
     pub fn memory_table(&self) -> String {
-        self.own_memory().table()
+        self.0.memory().table()
     }
 
     /// Returns the number of textures or buffers that are made on the device for a resource of the
     /// graph: 2 if a pass also reads it as it was in the frame before (`.previous`), otherwise 1.
     /// Each frame writes one of the two and reads the other.
     pub fn versions(&self, id: ResourceId) -> usize {
-        self.own_memory().versions(id)
+        self.0.memory().versions(id)
     }
 
     /// Checks that the plan may run on a backend that lacks part of WebGPU, even if its request
@@ -435,10 +427,6 @@ impl Plan {
     /// without warnings. [`Graph::warnings`](crate::Graph::warnings) has those of loading.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.0.warnings
-    }
-
-    fn own_memory(&self) -> Memory<'_> {
-        self.0.memory()
     }
 }
 

@@ -1,15 +1,11 @@
 //! Finds the outputs and captures that can be read back, and reports the others with a reason.
 
 use crate::{
-    compose::loaded::Loaded,
-    diagnostics::reports::Reports,
+    compose::Loaded,
+    diagnostics::Reports,
     errors::plan::OutputError,
-    expressions::eval::Environment,
-    instantiate::{
-        flat::PlanInputs,
-        lower::LoweredPass,
-        symbols::{At, SymbolTable},
-    },
+    expressions::Environment,
+    instantiate::{At, LoweredPass, PlanInputs, SymbolTable},
     request::{Capture, PlanRequest},
     resource::{Origin, ResourceKind, Target},
 };
@@ -54,10 +50,10 @@ pub(super) fn readable(
         if !written(&target) {
             let material = material.located();
             at.report(OutputError::UnwrittenOutput { name, material });
-        } else if !is_wanted(&name.value, output.on_request) && is_import(at.symbols(), &target) {
+        } else if !is_wanted(&name.value, output.on_request) && is_import(at.symbols, &target) {
             // A pass may write an import only where it is listed as an output.
             continue;
-        } else if let Some((what, way_out)) = unreadable(at.symbols(), &target) {
+        } else if let Some((what, way_out)) = unreadable(at.symbols, &target) {
             at.report(OutputError::UnreadableOutput {
                 name,
                 material: material.span.clone(),
@@ -76,17 +72,11 @@ pub(super) fn readable(
         let Some(target) = captured(graph, capture, &declared, at) else {
             continue;
         };
-        if matches!(
-            at.symbols().get(target.id).kind,
-            ResourceKind::Provided(_)
-                | ResourceKind::AccelerationStructure
-                | ResourceKind::CpuWork
-                | ResourceKind::Frame
-        ) {
+        if at.symbols.get(target.id).kind.is_given() {
             at.report(OutputError::Provided(name));
         } else if !written(&target) {
             at.report(OutputError::Unwritten(name));
-        } else if let Some((what, _)) = unreadable(at.symbols(), &target) {
+        } else if let Some((what, _)) = unreadable(at.symbols, &target) {
             at.report(OutputError::Unreadable { name, what });
         } else {
             readable.push((name, target));
@@ -104,12 +94,12 @@ fn captured(
 ) -> Option<Target> {
     let name = capture.name();
     // Those after a pass were entered as resources of their own.
-    if let Some(target) = at.find_full(&name) {
+    if let Some(target) = at.symbols.find_full(&name) {
         return target.ok();
     }
     if capture.after.is_none() {
         let outputs = declared.iter().map(|&name| name.to_owned());
-        let materials = at.symbols().full_names().into_iter().chain(outputs);
+        let materials = at.symbols.full_names().into_iter().chain(outputs);
         let materials = at.reports().known(materials);
         at.report(OutputError::NoMaterial {
             graph: graph.path().to_owned(),

@@ -1,7 +1,7 @@
 //! Summaries of a plan's passes and outputs, for lists that people read.
 
 use crate::{
-    document::typed::Document,
+    document::Document,
     errors::plan::OutputError,
     provided_kind::ProvidedKind,
     resource::{ResourceKind, Target},

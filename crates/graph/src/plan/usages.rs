@@ -1,14 +1,14 @@
 //! Usages of the host's imports, compared with the needs of passes.
 
 use crate::{
-    diagnostics::reports::Reports,
+    diagnostics::Reports,
     errors::plan::OutputError,
-    flow::view::GraphView,
-    link::pass::{PassId, Usage},
+    flow::GraphView,
+    link::{PassId, Usage},
     provider::Import,
     request::PlanRequest,
     resource::Origin,
-    source::span::Located,
+    source::Located,
 };
 
 /// Checks that the host's imports were created with the usages that passes need.

@@ -1,7 +1,7 @@
 //! Class of a resource global: a uniform, a storage buffer, a texture, a sampler, each with its
 //! layout.
 
-use crate::scalar_class::{ScalarClass, ShaderType};
+use crate::scalar_class::{ItemScalar, ShaderType};
 use naga::{AddressSpace, Handle, ImageClass, TypeInner, proc::Layouter};
 
 /// Type of a resource global of a shader, with the layout that a resource must have to be bound to
@@ -22,7 +22,7 @@ pub(crate) enum Class {
         read_only: bool,
         layout: String,
     },
-    Texture(TextureClass),
+    Texture(wgt::TextureViewDimension, TextureClass),
     Sampler {
         comparison: bool,
     },
@@ -30,28 +30,19 @@ pub(crate) enum Class {
     Unsupported(&'static str),
 }
 
-/// Type of a texture global: sampled or storage.
+/// Type of a texture global: sampled, or storage with its format and access.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum TextureClass {
-    Sampled {
-        scalar: ScalarClass,
-        dimension: wgt::TextureViewDimension,
-        depth: bool,
-        multisampled: bool,
-    },
-    Storage {
-        format: String,
-        dimension: wgt::TextureViewDimension,
-        access: wgt::StorageTextureAccess,
-    },
+    Sampled(SampledClass),
+    Storage(String, wgt::StorageTextureAccess),
 }
 
-impl TextureClass {
-    pub fn dimension(&self) -> wgt::TextureViewDimension {
-        match self {
-            Self::Sampled { dimension, .. } | Self::Storage { dimension, .. } => *dimension,
-        }
-    }
+/// Type of a sampled texture global.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SampledClass {
+    pub scalar: ItemScalar,
+    pub depth: bool,
+    pub multisampled: bool,
 }
 
 /// A member of a uniform struct.
@@ -71,7 +62,7 @@ pub(super) fn vector(module: &naga::Module, ty: Handle<naga::Type>) -> Option<Sh
         TypeInner::Vector { size, scalar } => (scalar, size as u32),
         _ => return None,
     };
-    let class = ScalarClass::from_kind(scalar.kind)?;
+    let class = ItemScalar::from_kind(scalar.kind)?;
     Some(ShaderType { class, width })
 }
 
@@ -136,19 +127,18 @@ fn image(dim: naga::ImageDimension, arrayed: bool, class: ImageClass) -> Class {
         _ => return Class::Unsupported("a 1D texture"),
     };
     let sampled = |scalar, depth, multisampled| {
-        Class::Texture(TextureClass::Sampled {
+        TextureClass::Sampled(SampledClass {
             scalar,
-            dimension,
             depth,
             multisampled,
         })
     };
-    match class {
-        ImageClass::Sampled { kind, multi } => match ScalarClass::from_kind(kind) {
+    let class = match class {
+        ImageClass::Sampled { kind, multi } => match ItemScalar::from_kind(kind) {
             Some(scalar) => sampled(scalar, false, multi),
-            None => Class::Unsupported("a texture of this scalar type"),
+            None => return Class::Unsupported("a texture of this scalar type"),
         },
-        ImageClass::Depth { multi } => sampled(ScalarClass::Float, true, multi),
+        ImageClass::Depth { multi } => sampled(ItemScalar::F32, true, multi),
         ImageClass::Storage { format, access } => {
             let load = access.contains(naga::StorageAccess::LOAD);
             let store = access.contains(naga::StorageAccess::STORE);
@@ -160,14 +150,11 @@ fn image(dim: naga::ImageDimension, arrayed: bool, class: ImageClass) -> Class {
                 (true, false) => wgt::StorageTextureAccess::ReadOnly,
                 _ => wgt::StorageTextureAccess::WriteOnly,
             };
-            Class::Texture(TextureClass::Storage {
-                format: format!("{format:?}"),
-                dimension,
-                access,
-            })
+            TextureClass::Storage(format!("{format:?}"), access)
         }
-        _ => Class::Unsupported("an external texture"),
-    }
+        _ => return Class::Unsupported("an external texture"),
+    };
+    Class::Texture(dimension, class)
 }
 
 /// Bytes before the runtime-sized array and its stride, or the whole size.

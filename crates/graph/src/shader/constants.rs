@@ -5,7 +5,7 @@ use super::{expand::Expanded, reflect::Shader, text::identifiers};
 use crate::{
     errors::shader::ShaderError,
     param::{Param, ParamType},
-    source::span::Located,
+    source::Located,
 };
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

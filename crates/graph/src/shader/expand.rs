@@ -6,12 +6,12 @@
 
 use super::text::{BREAKS, Comments, declares};
 use crate::{
-    diagnostics::{diagnostic::Diagnostic, suggest::likeness},
+    diagnostics::{Diagnostic, suggest::likeness},
     errors::shader::ImportError,
     source::{
+        Located, SourceFile, Sources, Span,
         paths::{escapes, folder_of, import_candidates, module_candidates, shader_candidates},
-        sources::{self, Sources},
-        span::{Located, SourceFile, Span},
+        sources,
     },
 };
 use std::{

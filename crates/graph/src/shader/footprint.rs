@@ -2,7 +2,7 @@
 //! and values of each thread. Sizes are sums in 64 bits; nothing is allocated.
 
 use super::{compiled::Specialised, expand::Expanded};
-use crate::source::span::{Located, Span};
+use crate::source::{Located, Span};
 use naga::{
     AddressSpace, Block, Function, Handle, Module, ShaderStage, Statement, TypeInner,
     valid::FunctionInfo,

@@ -1,6 +1,7 @@
 //! Item layouts of buffers, scalar by scalar, as the shaders that bind the buffers declare them.
 
-use naga::{Handle, ScalarKind, TypeInner};
+use crate::scalar_class::ItemScalar;
+use naga::{Handle, TypeInner};
 
 /// One scalar in each item of a buffer, such as `origin.x`, as a shader declares the item.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,43 +13,6 @@ pub struct Field {
     pub offset: usize,
     /// Type of the scalar, which takes 4 bytes.
     pub scalar: ItemScalar,
-}
-
-/// Type of a 32-bit scalar in an item of a buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ItemScalar {
-    /// `f32`.
-    F32,
-    /// `i32`.
-    I32,
-    /// `u32`.
-    U32,
-}
-
-impl ItemScalar {
-    /// Returns the name of the type in WGSL.
-    pub(crate) fn as_str(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::I32 => "i32",
-            Self::U32 => "u32",
-        }
-    }
-
-    /// Returns the bits of `number` as this type; `None` if the type cannot hold it.
-    pub(crate) fn bits(self, number: f64) -> Option<u32> {
-        let whole = number.fract() == 0.0;
-        match self {
-            Self::F32 => Some((number as f32).to_bits()),
-            Self::U32 => {
-                (whole && (0.0..=f64::from(u32::MAX)).contains(&number)).then_some(number as u32)
-            }
-            Self::I32 => {
-                let fits = (f64::from(i32::MIN)..=f64::from(i32::MAX)).contains(&number);
-                (whole && fits).then_some((number as i32).cast_unsigned())
-            }
-        }
-    }
 }
 
 /// Layout of one item of a buffer: an element of its array, or the whole buffer without an array,
@@ -89,12 +53,7 @@ fn flatten(
     fields: &mut Vec<Field>,
 ) -> Option<()> {
     let mut push = |name: String, offset, scalar: naga::Scalar| {
-        let scalar = match (scalar.kind, scalar.width) {
-            (ScalarKind::Float, 4) => ItemScalar::F32,
-            (ScalarKind::Sint, 4) => ItemScalar::I32,
-            (ScalarKind::Uint, 4) => ItemScalar::U32,
-            _ => return None,
-        };
+        let scalar = ItemScalar::from_kind(scalar.kind).filter(|_| scalar.width == 4)?;
         fields.push(Field {
             name,
             offset,

@@ -18,5 +18,12 @@ pub(crate) mod unused;
 pub(crate) mod varyings;
 mod wgsl_errors;
 
-pub use items::{Field, Item, ItemScalar};
+pub use items::{Field, Item};
 pub use reflect::Shader;
+
+pub(crate) use class::{Class, Member, SampledClass, TextureClass};
+pub(crate) use expand::{Expanded, Replaced, ShaderFiles};
+pub(crate) use footprint::{Footprint, Memory};
+pub(crate) use reflect::Global;
+pub(crate) use store::Shaders;
+pub(crate) use varyings::{Varying, Varyings};

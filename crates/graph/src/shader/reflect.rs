@@ -14,9 +14,9 @@ use super::{
 };
 use crate::{
     errors::shader::ShaderError,
-    language::value::Scalar,
-    scalar_class::ScalarClass,
-    source::span::{Located, Span},
+    language::Scalar,
+    scalar_class::ItemScalar,
+    source::{Located, Span},
 };
 use naga::{
     Handle, ShaderStage, TypeInner,
@@ -276,7 +276,7 @@ impl Shader {
             }
             let class = class_of(&self.module, &self.layouter, variable);
             let storage_texture = match &class {
-                Class::Texture(TextureClass::Storage { access, .. }) => Some(*access),
+                Class::Texture(_, TextureClass::Storage(_, access)) => Some(*access),
                 _ => None,
             };
             // Atomics read what they add to; a storage texture's declared access is what the device
@@ -366,12 +366,12 @@ impl Shader {
 
     /// Returns the scalar class of an override; `None` for a `bool`, and if there is no such
     /// override.
-    pub(crate) fn override_class(&self, name: &str) -> Option<ScalarClass> {
+    pub(crate) fn override_class(&self, name: &str) -> Option<ItemScalar> {
         let mut overrides = self.module.overrides.iter();
         let (_, declared) =
             overrides.find(|(_, declared)| declared.name.as_deref() == Some(name))?;
         let scalar = self.module.types[declared.ty].inner.scalar()?;
-        ScalarClass::from_kind(scalar.kind)
+        ItemScalar::from_kind(scalar.kind)
     }
 
     /// Returns the value of a scalar constant at module scope; `None` if there is no such constant,

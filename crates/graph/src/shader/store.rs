@@ -8,14 +8,11 @@ use super::{
     wgsl_errors::unknown_name,
 };
 use crate::{
-    diagnostics::reports::{ErrorGuaranteed, Reports},
-    document::typed::Document,
+    diagnostics::{ErrorGuaranteed, Reports},
+    document::Document,
     errors::shader::{ImportError, ShaderError},
-    kinds::step::ShaderUse,
-    source::{
-        paths::folder_of,
-        span::{Located, Span},
-    },
+    kinds::ShaderUse,
+    source::{Located, Span, paths::folder_of},
 };
 use std::{
     collections::{BTreeSet, HashMap, HashSet},

@@ -6,7 +6,7 @@ use super::{
     text::{DECLARES, identifiers},
     wgsl_errors::functions,
 };
-use crate::source::span::{Located, SourceFile};
+use crate::source::{Located, SourceFile};
 use naga::Expression;
 use std::collections::{BTreeMap, BTreeSet};
 

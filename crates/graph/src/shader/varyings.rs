@@ -2,14 +2,14 @@
 //! and the share of the device's limit that built-in values take.
 
 use super::class::vector;
-use crate::scalar_class::ScalarClass;
+use crate::scalar_class::ItemScalar;
 use naga::{Binding, BuiltIn, Handle, Module, Type, TypeInner};
 
 /// A scalar or vector that passes from one shader stage to the next at a `@location`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Varying {
     pub location: u32,
-    pub scalar: ScalarClass,
+    pub scalar: ItemScalar,
     /// Number of components, from 1 to 4; 1 for a scalar.
     pub width: u32,
     pub interpolation: Option<naga::Interpolation>,

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     diagnostics::suggest::{likeness, suggestion},
     errors::shader::ShaderError,
-    source::span::Span,
+    source::Span,
 };
 use naga::{
     Handle,

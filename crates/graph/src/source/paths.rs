@@ -13,31 +13,25 @@ pub(crate) fn shader_candidates(folder: &str, name: &str) -> Vec<String> {
 /// same folders as for shaders.
 pub(crate) fn module_candidates(folder: &str, file: &str) -> Vec<String> {
     let folder = Path::new(folder);
-    let mut candidates = vec![join(folder, file)];
-    if let Some(parent) = folder.parent() {
-        candidates.push(join(parent, &format!("shaders/{file}")));
-        // A document in a sub-folder of pipelines (a shared sub-graph) finds the shaders of its
-        // house too.
-        if let Some(grandparent) = parent.parent() {
-            candidates.push(join(grandparent, &format!("shaders/{file}")));
-        }
-    }
-    candidates.push(format!("shaders/{file}"));
-    candidates.dedup();
-    candidates
+    let in_shaders = format!("shaders/{file}");
+    // A document in a sub-folder of pipelines (a shared sub-graph) finds the shaders of its house
+    // too.
+    let above = folder.ancestors().skip(1).take(2);
+    let above = above.map(|above| join(above, &in_shaders));
+    once_each(
+        [join(folder, file)]
+            .into_iter()
+            .chain(above)
+            .chain([in_shaders.clone()]),
+    )
 }
 
 /// Returns the paths that `#import "path"` in the file `importer` may mean, in the order in which
 /// they are tried: beside the importer, one folder above, and in the store's `shaders` folder.
 pub(crate) fn import_candidates(importer: &str, path: &str) -> Vec<String> {
     let folder = Path::new(importer).parent().unwrap_or(Path::new(""));
-    let mut candidates = vec![join(folder, path)];
-    if let Some(parent) = folder.parent() {
-        candidates.push(join(parent, path));
-    }
-    candidates.push(format!("shaders/{path}"));
-    candidates.dedup();
-    candidates
+    let beside = folder.ancestors().take(2).map(|folder| join(folder, path));
+    once_each(beside.chain([format!("shaders/{path}")]))
 }
 
 /// Returns the paths that `Include(graph: "path")` in the document `includer` may mean, in the
@@ -47,12 +41,8 @@ pub(crate) fn include_candidates(includer: &str, path: &str) -> Vec<String> {
     let parts = path.split('/').filter(|part| !matches!(*part, "" | "."));
     let parts: Vec<&str> = parts.collect();
     let path = parts.join("/");
-    let mut candidates = vec![
-        join(Path::new(folder_of(includer)), &path),
-        format!("pipelines/{path}"),
-    ];
-    candidates.dedup();
-    candidates
+    let beside = join(Path::new(folder_of(includer)), &path);
+    once_each([beside, format!("pipelines/{path}")])
 }
 
 /// Returns the folder of a path; empty for a bare file name.
@@ -65,6 +55,12 @@ pub(crate) fn folder_of(path: &str) -> &str {
 /// `/`, or contains a backslash or a colon, which Windows takes for a folder or a drive.
 pub(crate) fn escapes(path: &str) -> bool {
     path.split('/').any(|part| part == "..") || path.starts_with('/') || path.contains(['\\', ':'])
+}
+
+fn once_each(paths: impl IntoIterator<Item = String>) -> Vec<String> {
+    let mut paths: Vec<String> = paths.into_iter().collect();
+    paths.dedup();
+    paths
 }
 
 fn join(folder: &Path, file: &str) -> String {

@@ -6,7 +6,8 @@ use crate::{
     language::{
         name::Name,
         syntax::{
-            Attribute, Binary, Component, Expr, ExprKind, Function, Reference, Subject, Unary,
+            AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Reference,
+            Subject, Unary,
         },
         value::{Scalar, Value, Word},
     },
@@ -21,6 +22,8 @@ pub(crate) trait Environment {
     fn viewport(&self) -> [u32; 2];
 
     fn has(&self, feature: wgt::Features) -> bool;
+
+    fn adapter(&self, fact: AdapterFact) -> Value;
 
     /// Returns the number of items of a buffer that the scene provides, by its name; `None` if it
     /// is not known.
@@ -96,6 +99,7 @@ pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> 
         },
         ExprKind::Constant(name) => env.constant(name, &expr.span),
         ExprKind::Has(feature) => Ok(Value::Bool(env.has(*feature))),
+        ExprKind::Adapter(fact) => Ok(env.adapter(*fact)),
         ExprKind::Unary(Unary::Not, operand) => Ok(Value::Bool(!boolean(operand, env)?)),
         ExprKind::Unary(Unary::Minus, operand) => {
             let values = [value(operand, env)?, Value::whole(0)];

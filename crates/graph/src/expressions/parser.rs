@@ -8,8 +8,8 @@ use crate::{
         formats::format_named,
         name::Name,
         syntax::{
-            Attribute, Binary, Component, Expr, ExprKind, Function, Reference, Segment, Selection,
-            Subject, Unary,
+            AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Reference,
+            Segment, Selection, Subject, Unary,
         },
         value::{Scalar, Value},
     },
@@ -390,6 +390,12 @@ impl<'a> Parser<'a> {
         if let Some(part) = path.iter().find(|part| part.selection.is_some()) {
             let place = self.file.span(part.range.clone());
             return Err(SyntaxFault::Part(place, "number"));
+        }
+        if let [owner, fact] = path.as_slice()
+            && owner.word == "adapter"
+            && let Some(fact) = AdapterFact::named(fact.word)
+        {
+            return Ok(ExprKind::Adapter(fact));
         }
         let names = path.iter().map(|part| Ok(self.name(part)?.to_string()));
         let names = names.collect::<Parsed<Vec<_>>>()?;

@@ -7,7 +7,7 @@ use crate::{
     expressions::eval::Environment,
     language::{
         name::Name,
-        syntax::{Attribute, Reference},
+        syntax::{AdapterFact, Attribute, Reference},
         value::{Value, least_common_multiple},
     },
     provided_kind::ProvidedKind,
@@ -22,6 +22,10 @@ impl Environment for At<'_, '_> {
 
     fn has(&self, feature: wgt::Features) -> bool {
         self.symbols.request.features.contains(feature)
+    }
+
+    fn adapter(&self, fact: AdapterFact) -> Value {
+        self.symbols.request.surroundings().fact(fact)
     }
 
     fn provided_items(&self, name: &str) -> Option<u64> {

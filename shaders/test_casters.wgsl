@@ -1,5 +1,5 @@
 // Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
-// test. Receivers that no complete list answers are left to a ray. `fragment`: a full-screen
+// test. Receivers that no complete list answers are uncertain. `fragment`: a full-screen
 // triangle, as some adapters take long to write texels in a compute stage; `compute`: one thread
 // per pixel, as others take long to draw.
 
@@ -7,8 +7,8 @@
 #import "shared/asked_list.wgsl"
 #import "shared/ray_triangle.wgsl"
 
-// Workgroups of fill_rays in x, y, z.
-var<storage, read_write> fill_groups: array<atomic<u32>, 3>;
+// 1 if a receiver is uncertain.
+var<storage, read_write> is_any_uncertain: atomic<u32>;
 
 struct Answer {
     @location(0) visibility: u32,
@@ -34,22 +34,11 @@ fn answer(pixel: vec2<u32>) -> u32 {
     if pixel_status == STATUS_UNCERTAIN {
         pixel_status = test_casters(receiver.xyz, textureLoad(primitive, pixel, 0).x);
     }
-    if pixel_status == STATUS_UNCERTAIN {
-        ask_rays();
+    // Asked first: many need not queue.
+    if pixel_status == STATUS_UNCERTAIN && atomicLoad(&is_any_uncertain) == 0u {
+        atomicStore(&is_any_uncertain, 1u);
     }
     return pixel_status;
-}
-
-// Has the rays filled in: by one workgroup for 32 by 32 pixels.
-fn ask_rays() {
-    // Asked first: many need not queue.
-    if atomicLoad(&fill_groups[2]) == 1u {
-        return;
-    }
-    let groups = (textureDimensions(primitive) + 31u) / 32u;
-    atomicStore(&fill_groups[0], groups.x);
-    atomicStore(&fill_groups[1], groups.y);
-    atomicStore(&fill_groups[2], 1u);
 }
 
 fn test_casters(receiver: vec3<f32>, own: u32) -> u32 {

@@ -3,6 +3,7 @@
 #import "shared/binned_caster.wgsl"
 #import "shared/entry_keys.wgsl"
 #import "shared/linked_lists.wgsl"
+#import "shared/steps.wgsl"
 
 struct Params {
     longest_list: u32,
@@ -40,10 +41,12 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
     let advance = vec2(step % columns, step / columns);
     var number = first;
     loop {
+        begin_round();
         var inside = vec2(0u);
         var at = tile;
         while all(inside == vec2(0u)) && number < end {
             at = tile;
+            count_step(TILE_STEP);
             inside = texels_in(caster, tile);
             number += step;
             tile += advance;
@@ -56,6 +59,7 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
         var listed = vec2(0u);
         loop {
             let bit = first_bit(inside);
+            count_step(TEXEL_STEP);
             if is_listed(caster, at * TILE + first_of(inside)) {
                 listed |= bit;
             }
@@ -71,6 +75,7 @@ fn bin(caster: Binned, first: u32, end: u32, step: u32) {
         let entries_here = countOneBits(listed.x) + countOneBits(listed.y);
         var slot = reserved_slots(entries_here);
         while any(listed != vec2(0u)) {
+            count_step(ENTRY_STEP);
             append(caster, at * TILE + first_of(listed), slot, lines);
             listed &= ~first_bit(listed);
             slot += 1u;
@@ -150,7 +155,7 @@ fn texels_in(caster: Binned, tile: vec2<u32>) -> vec2<u32> {
     let shading = shading_functions(caster, middle, max_depth);
     let corner = tile * TILE;
     let box = shaded_texels(caster, max_depth);
-    let may_shade = depth_bits(depth) <= marked.x
+    let may_shade = depth_bits(depth) <= marked.x && is_tile_wanted(marked)
         && all(shading >= -f32(TILE) * caster.edge_threshold)
         && all(box.xy < corner + TILE) && all(box.zw >= max(corner, box.xy));
     let low = max(box.xy, corner) - corner;
@@ -185,5 +190,5 @@ fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {
         other = bc;
     }
     let key = entry_key(least_depth(caster, centre), one, other);
-    append_entry(number, slot, caster_primitive(caster.number), key);
+    append_entry(number, slot, caster.number, key);
 }

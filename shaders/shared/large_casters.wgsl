@@ -10,17 +10,30 @@ struct Large {
 }
 
 var<storage, read_write> large: Large;
-// Workgroups in x, y, z: one for each part.
+// Workgroups in x, y, z: one for each PARTS_PER_GROUP parts.
 var<storage, read_write> large_groups: array<atomic<u32>, 3>;
 
-fn append_part(part: Part) {
-    let slot = atomicAdd(&large.count, 1u);
-    if slot >= arrayLength(&large.parts) {
+// Returns the first slot of as many parts, and has workgroups run for them.
+fn reserved_parts(count: u32) -> u32 {
+    let slot = atomicAdd(&large.count, count);
+    let end = min(slot + count, arrayLength(&large.parts));
+    if slot + count > end {
         atomicStore(&texels[arrayLength(&texels) - 1u].length, LIST_LACKS);
-        return;
     }
-    large.parts[slot] = part;
-    atomicMax(&large_groups[0], min(slot + 1u, GROUPS_PER_ROW));
-    atomicMax(&large_groups[1], slot / GROUPS_PER_ROW + 1u);
+    let groups = (end + PARTS_PER_GROUP - 1u) / PARTS_PER_GROUP;
+    atomicMax(&large_groups[0], min(groups, GROUPS_PER_ROW));
+    atomicMax(&large_groups[1], (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
     atomicMax(&large_groups[2], 1u);
+    return slot;
+}
+
+fn store_part(slot: u32, part: Part) {
+    if slot < arrayLength(&large.parts) {
+        large.parts[slot] = part;
+    }
+}
+
+// Parts that have room.
+fn part_count() -> u32 {
+    return min(atomicLoad(&large.count), arrayLength(&large.parts));
 }

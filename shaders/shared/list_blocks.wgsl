@@ -23,6 +23,10 @@ const BEFORE_LARGEST: u32 = 496u;
 // Blocks that begin farther on than any buffer ends are not counted, lest the sum overflows.
 const MOST_ENTRIES: u32 = 0x40000000u;
 
+fn is_tile_wanted(tile: vec4<u32>) -> bool {
+    return true;
+}
+
 fn is_within_list(texel: u32) -> bool {
     return true;
 }
@@ -31,7 +35,7 @@ fn reserved_slots(count: u32) -> u32 {
     return 0u;
 }
 
-fn append_entry(texel: u32, slot: u32, primitive: u32, key: vec2<u32>) {
+fn append_entry(texel: u32, slot: u32, caster: u32, key: vec2<u32>) {
     let index = atomicAdd(&texels[texel].length, 1u) & ~LIST_LACKS;
     if index >= params.longest_list {
         return;
@@ -54,7 +58,7 @@ fn append_entry(texel: u32, slot: u32, primitive: u32, key: vec2<u32>) {
         atomicOr(&texels[texel].length, LIST_LACKS);
         return;
     }
-    entries[number - 1u] = vec4(next, primitive, key);
+    entries[number - 1u] = vec4(next, caster_primitive(caster), key);
 }
 
 // The number of a block's first entry. Threads that miss the block at the same time take room each,

@@ -1,65 +1,12 @@
-// A ray against a triangle, watertight: Woop, Benthin, Wald, "Watertight Ray/Triangle
-// Intersection", JCGT 2(1), 2013.
+// A ray against a primitive of the scene.
 
 #import "shared/geometry.wgsl"
-#import "shared/ray.wgsl"
-#import "shared/predicates.wgsl"
-#import "shared/solid.wgsl"
+#import "shared/ray_corners.wgsl"
 
-// The axis permutation and the shear that turn a ray into the z axis.
-struct Sheared {
-    origin: vec3<f32>,
-    // The direction's longest component.
-    longest: u32,
-    shear: vec3<f32>,
-}
-
-fn sheared(ray: Ray) -> Sheared {
-    let size = abs(ray.direction);
-    let largest = max(size.x, max(size.y, size.z));
-    let longest = select(select(2u, 1u, size.y == largest), 0u, size.x == largest);
-    let d = permute(ray.direction, longest);
-    return Sheared(ray.origin, longest, vec3(d.xy, 1.0) / d.z);
-}
-
-// Tests one triangle, two-sided, edges and corners included; shortens `hit` to it.
+// Tests a primitive as `intersect_corners` does; shortens `hit` to it.
 fn intersect(ray: Sheared, primitive: u32, t_min: f32, hit: ptr<function, Hit>) -> bool {
-    let a = shear(ray, corner_position(3u * primitive));
-    let b = shear(ray, corner_position(3u * primitive + 1u));
-    let c = shear(ray, corner_position(3u * primitive + 2u));
-    let weights = vec3(edge_area(b.xy, c.xy), edge_area(c.xy, a.xy), edge_area(a.xy, b.xy));
-    if any(weights < vec3(0.0)) && any(weights > vec3(0.0)) {
-        return false;
-    }
-    // On the line of an edge, but beyond its end: all corners on one line with the ray, whose
-    // rounding would pass for an area.
-    if any(weights == vec3(0.0)) && !bbox_contains(a.xy, b.xy, c.xy) {
-        return false;
-    }
-    // Zero for triangles without area and for those that the ray meets edge-on: a neighbour is hit
-    // instead.
-    let sum = weights.x + weights.y + weights.z;
-    if sum == 0.0 {
-        return false;
-    }
-    // Divided first: the product of a small area and a small distance would underflow.
-    let barycentric = weights / sum;
-    let t = dot(barycentric, vec3(a.z, b.z, c.z));
-    if !(t > t_min && t <= (*hit).t) || !is_opaque(primitive, barycentric.y, barycentric.z) {
-        return false;
-    }
-    *hit = Hit(t, primitive, barycentric.y, barycentric.z);
-    return true;
-}
-
-// A corner in the space where the ray is the z axis, z in units of its direction.
-fn shear(ray: Sheared, corner: vec3<f32>) -> vec3<f32> {
-    let p = permute(corner - ray.origin, ray.longest);
-    return vec3(p.xy - ray.shear.xy * p.z, ray.shear.z * p.z);
-}
-
-// The axes in cyclic order, `last` last. Selects, because a vector that is indexed at run time
-// lives in memory.
-fn permute(v: vec3<f32>, last: u32) -> vec3<f32> {
-    return select(select(v, v.zxy, last == 1u), v.yzx, last == 0u);
+    let a = corner_position(3u * primitive);
+    let b = corner_position(3u * primitive + 1u);
+    let c = corner_position(3u * primitive + 2u);
+    return intersect_corners(ray, Corners(a, b, c, primitive), t_min, hit);
 }

@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3, Vec3};
 use skiagraph_gpu::{Executor, FrameReport, device::Gpu};
 use skiagraph_graph::{Capture, ParamValue};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::statistics::status;
+use skiagraph_reference::statistics::{UNANSWERED, status};
 use skiagraph_scene::{DirectionalLight, Mesh, Scene, View};
 use skiagraph_tests::cpu_reference::{SLACK, TexelTriangle, exact};
 use std::{collections::BTreeSet, sync::Arc};
@@ -98,6 +98,7 @@ impl Bench {
             request
                 .captures
                 .extend(captured.iter().map(|name| Capture::new(*name)));
+            request.captures.push(Capture::new("pending_state"));
         });
         Executor::on(&self.gpu, plan, &mut self.provider).unwrap_or_else(|error| panic!("{error}"))
     }
@@ -116,22 +117,29 @@ impl Bench {
     }
 
     fn answer(&self, executor: &mut Executor) -> Answer {
-        let read = ["visibility", "status", "entry_count", "ray_count"];
+        let read = ["visibility", "status", "entry_count", "pending_state"];
         let report = frame(&self.gpu, executor, &read);
         let statuses = values(&report, "status");
         let count = |wanted: u32| statuses.iter().filter(|status| **status == wanted).count();
-        let [lit, shadow, uncertain] = [
+        let [lit, shadow, unanswered] = [
             status::CERTAIN_LIGHT,
             status::CERTAIN_SHADOW,
             status::UNCERTAIN,
         ]
         .map(count);
-        assert_eq!(values(&report, "ray_count"), [uncertain as u32]);
+        let visibility = values(&report, "visibility");
+        let is_unanswered = |shown: &&u32| **shown == UNANSWERED;
+        assert_eq!(visibility.iter().filter(is_unanswered).count(), unanswered);
+        // As shaders/shared/pending.wgsl has it.
+        let state = values(&report, "pending_state");
+        let [placed, unplaced] = [state[1], state[2]];
+        assert_eq!(*state.last().unwrap(), unanswered as u32);
         Answer {
-            visibility: values(&report, "visibility"),
+            visibility,
             lit,
             shadow,
-            uncertain,
+            unlisted: (placed + unplaced) as usize,
+            unanswered,
             entries: values(&report, "entry_count")[0],
         }
     }
@@ -141,7 +149,10 @@ struct Answer {
     visibility: Vec<u32>,
     lit: usize,
     shadow: usize,
-    uncertain: usize,
+    /// Receivers that no list answered.
+    unlisted: usize,
+    /// Receivers that nothing answered.
+    unanswered: usize,
     /// That were needed.
     entries: u32,
 }
@@ -357,7 +368,7 @@ fn answers_are_those_of_rays_whatever_the_map() {
         ] {
             let lists = bench.by_lists(fit, &[("map_size", map_size)]);
             assert!(lists.visibility == rays, "scene {seed}, map {map_size}");
-            assert_eq!(lists.uncertain, 0, "scene {seed}, map {map_size}");
+            assert_eq!(lists.unlisted, 0, "scene {seed}, map {map_size}");
             (lit, shadow) = (lit + lists.lit, shadow + lists.shadow);
         }
     }
@@ -368,7 +379,7 @@ fn answers_are_those_of_rays_whatever_the_map() {
 }
 
 #[test]
-fn what_has_no_room_is_a_ray() {
+fn what_has_no_room_is_tested_apart() {
     let scene = mixed(2);
     let mut bench = Bench::new(&scene);
     let rays = bench.by_rays();
@@ -381,18 +392,18 @@ fn what_has_no_room_is_a_ray() {
     for (most, is_short) in [(1, true), (needed / 2, true), (2 * needed, false)] {
         let lists = with(&mut bench, most);
         assert!(lists.visibility == rays, "{most} of {needed} entries");
-        assert_eq!(lists.uncertain > 0, is_short, "{most} of {needed} entries");
+        assert_eq!(lists.unlisted > 0, is_short, "{most} of {needed} entries");
         assert_eq!(lists.entries > most, is_short, "{most} of {needed} entries");
     }
-    // Where some have room, some receivers need no ray.
+    // Where some have room, some receivers are answered by their lists.
     let [single, most] = [1, needed / 10 * 9].map(|most| with(&mut bench, most));
     assert!(most.visibility == rays);
-    assert!(most.uncertain < single.uncertain, "{}", most.uncertain);
+    assert!(most.unlisted < single.unlisted, "{}", most.unlisted);
 }
 
 /// Nothing covers a texel before another caster, so that their order decides nothing.
 #[test]
-fn an_entry_without_room_leaves_one_texel_to_rays() {
+fn an_entry_without_room_leaves_out_one_texel() {
     let scene = scene(crowd(0.8), DVec3::new(0.3, 1.2, 0.9), DVec3::NEG_Y);
     let mut bench = Bench::new(&scene);
     let rays = bench.by_rays();
@@ -410,12 +421,12 @@ fn an_entry_without_room_leaves_one_texel_to_rays() {
     let short = with(&mut bench, needed - 1);
     assert!(short.visibility == rays);
     assert_eq!(short.entries, needed);
-    let more = short.uncertain - ample.uncertain;
+    let more = short.unlisted - ample.unlisted;
     assert!((1..100).contains(&more), "{more}");
 }
 
 #[test]
-fn a_list_that_is_too_long_to_look_at_is_a_ray() {
+fn a_list_that_is_too_long_is_not_looked_at() {
     let scene = mixed(1);
     let mut bench = Bench::new(&scene);
     let rays = bench.by_rays();
@@ -424,11 +435,11 @@ fn a_list_that_is_too_long_to_look_at_is_a_ray() {
         let lists = bench.by_lists("receivers", &[("map_size", 16), ("longest_list", longest)]);
         assert!(lists.visibility == rays, "{longest}");
         assert!(
-            (1..before).contains(&lists.uncertain),
+            (1..before).contains(&lists.unlisted),
             "{longest}: {}",
-            lists.uncertain
+            lists.unlisted
         );
-        before = lists.uncertain;
+        before = lists.unlisted;
     }
 }
 
@@ -443,10 +454,10 @@ fn compute_threads_answer_as_fragments_do() {
         let by_fragments = bench.by_lists("receivers", &params);
         bench.stage = "compute";
         let by_threads = bench.by_lists("receivers", &params);
-        let asked = by_fragments.lit + by_fragments.shadow + by_fragments.uncertain;
+        let asked = by_fragments.lit + by_fragments.shadow;
         assert!(asked > 500, "{asked}");
         assert!(by_threads.visibility == by_fragments.visibility);
-        let counts = |answer: &Answer| [answer.lit, answer.shadow, answer.uncertain];
+        let counts = |answer: &Answer| [answer.lit, answer.shadow, answer.unlisted];
         assert_eq!(counts(&by_threads), counts(&by_fragments));
     }
 }
@@ -463,7 +474,7 @@ fn a_crowded_texel_is_exact_and_takes_no_more_room_than_others() {
         let params = [("map_size", map_size), ("longest_list", longest)];
         let lists = bench.by_lists("scene", &params);
         assert!(lists.visibility == rays, "map {map_size}, {longest}");
-        assert!(lists.uncertain > 1000, "{}", lists.uncertain);
+        assert!(lists.unlisted > 1000, "{}", lists.unlisted);
         assert!(lists.entries <= longest * map_size * map_size);
     }
 }
@@ -482,7 +493,7 @@ fn receivers_crowd_one_texel() {
     assert_eq!(asked, 1);
     let lists = bench.answer(&mut executor);
     assert!(lists.visibility == rays);
-    assert_eq!(lists.uncertain, 0);
+    assert_eq!(lists.unlisted, 0);
     assert!(lists.lit + lists.shadow > 100_000 && lists.shadow > 1000);
 }
 
@@ -496,11 +507,11 @@ fn lists_are_exact_before_and_after_they_have_grown() {
     let first = bench.answer(&mut executor);
     assert!(first.visibility == rays);
     assert!(first.entries > 65_536, "{}", first.entries);
-    assert!(first.uncertain > 0);
+    assert!(first.unlisted > 0);
     assert!(executor.grow(&mut bench.provider).unwrap().is_some());
     let second = bench.answer(&mut executor);
     assert!(second.visibility == rays);
-    assert_eq!(second.uncertain, 0);
+    assert_eq!(second.unlisted, 0);
     assert!(executor.grow(&mut bench.provider).unwrap().is_none());
 }
 
@@ -523,14 +534,15 @@ fn long_lists_are_walked() {
         assert!(long > 30, "map {map_size}: {long}");
         let lists = bench.answer(&mut executor);
         assert!(lists.visibility == rays, "map {map_size}");
-        assert_eq!(lists.uncertain, 0, "map {map_size}");
+        assert_eq!(lists.unlisted, 0, "map {map_size}");
     }
 }
 
-/// More parts of large triangles than there is room for: the lists that lack them are not known.
+/// More parts of large triangles than there is room for: the lists that lack them are not known,
+/// and receivers have no answer before there is room.
 #[test]
 #[ignore = "a suite: `./test.sh --all` runs it"]
-fn parts_without_room_leave_all_to_rays() {
+fn parts_without_room_are_told_and_get_it() {
     let corners = (0..70_000).flat_map(|layer| {
         let height = 0.5 + 1e-6 * layer as f32;
         [(-9.0, -9.0), (9.0, -9.0), (0.0, 9.0)].map(|(x, z)| Vec3::new(x, height, z))
@@ -541,10 +553,17 @@ fn parts_without_room_leave_all_to_rays() {
     let scene = scene(sheets, DVec3::new(0.3, 0.2, 0.9), DVec3::NEG_Y);
     let mut bench = Bench::from_scene(&scene, [24, 24]);
     let rays = bench.by_rays();
-    let lists = bench.by_lists("scene", &[("map_size", 48), ("longest_list", 16)]);
-    assert!(lists.visibility == rays);
-    assert_eq!((lists.lit, lists.shadow), (0, 0));
-    assert!(lists.uncertain > 50, "{}", lists.uncertain);
+    let params = [("map_size", 48), ("longest_list", 16)];
+    let mut executor = bench.executor("scene", &params, &[]);
+    let first = bench.answer(&mut executor);
+    assert!(first.unanswered > 0 && first.unlisted == first.lit + first.shadow + first.unanswered);
+    for (shown, right) in first.visibility.iter().zip(&rays) {
+        assert!(shown == right || *shown == UNANSWERED);
+    }
+    assert!(executor.grow(&mut bench.provider).unwrap().is_some());
+    let second = bench.answer(&mut executor);
+    assert!(second.visibility == rays);
+    assert_eq!((second.unlisted, second.unanswered), (first.unlisted, 0));
 }
 
 /// So many parts that one workgroup does not see them all.
@@ -557,7 +576,7 @@ fn a_triangle_over_a_large_grid_is_shared_out() {
     // 648 texels along an edge: the grid is no finer for so many pixels.
     let lists = bench.by_lists("scene", &[("map_size", 8192)]);
     assert!(lists.visibility == rays);
-    assert_eq!(lists.uncertain, 0);
+    assert_eq!(lists.unlisted, 0);
 }
 
 /// Whose texels are decided by rounding: the grid of the hard case is that over its scene.
@@ -569,7 +588,7 @@ fn receivers_on_texel_corners_are_right() {
     for map_size in [128, 256] {
         let lists = bench.by_lists("scene", &[("map_size", map_size)]);
         assert!(lists.visibility == rays, "map {map_size}");
-        assert_eq!(lists.uncertain, 0);
+        assert_eq!(lists.unlisted, 0);
     }
 }
 
@@ -613,7 +632,7 @@ fn the_grid_is_laid_over_the_receivers() {
     assert!(narrower > 3, "{narrower}");
 }
 
-/// Where f32 cannot place a receiver in as many texels, there are fewer, and no rays.
+/// Where f32 cannot place a receiver in as many texels, there are fewer.
 #[test]
 fn far_from_the_origin_the_grid_is_coarser() {
     let scene = moved(&mixed(4), 1e3);
@@ -630,7 +649,7 @@ fn far_from_the_origin_the_grid_is_coarser() {
         assert!(size.iter().all(is_coarse), "{fit}: {size:?}");
         let lists = bench.by_lists(fit, &params);
         assert!(lists.visibility == rays);
-        assert_eq!(lists.uncertain, 0);
+        assert_eq!(lists.unlisted, 0);
     }
 }
 
@@ -643,13 +662,14 @@ pub(crate) fn moved(scene: &Scene, by: f32) -> Arc<Scene> {
     Arc::new(scene)
 }
 
-/// Texels as large as half a texel's rounding: where a receiver's texel is not certain, a ray is.
+/// Texels as large as half a texel's rounding: where a receiver's texel is not certain, all casters
+/// are tested.
 #[test]
-fn far_from_the_origin_rays_answer() {
+fn far_from_the_origin_no_list_answers() {
     let mut bench = Bench::new(&moved(&mixed(4), 4e5));
     let rays = bench.by_rays();
     let lists = bench.by_lists("scene", &[("map_size", 2048)]);
     assert!(lists.visibility == rays);
-    assert_eq!((lists.lit, lists.shadow), (0, 0), "of {}", lists.uncertain);
-    assert!(lists.uncertain > 100);
+    assert_eq!(lists.lit + lists.shadow, lists.unlisted);
+    assert!(lists.unlisted > 100 && lists.unanswered == 0);
 }

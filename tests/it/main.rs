@@ -62,6 +62,7 @@ mod rays;
 mod readme;
 mod receivers;
 mod roles;
+mod rounds;
 mod shaders;
 mod sheets;
 mod shuffled;

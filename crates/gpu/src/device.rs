@@ -15,7 +15,7 @@
 //! ```
 
 use crate::{experimental, pipelines::pipelines::Pipelines};
-use skiagraph_graph::PartialBackend;
+use skiagraph_graph::{AdapterFacts, PartialBackend};
 use std::{cmp::Reverse, time::Duration};
 
 /// An open wgpu device with its instance, adapter and queue.
@@ -154,6 +154,16 @@ pub fn partial(backend: wgpu::Backend) -> Option<PartialBackend> {
                 compilers of its own that get some loops wrong"
             .to_owned(),
     })
+}
+
+/// Returns the facts about a device's adapter for
+/// [`PlanRequest::adapter`](skiagraph_graph::PlanRequest).
+pub fn adapter_facts(device: &wgpu::Device) -> AdapterFacts {
+    let info = device.adapter_info();
+    AdapterFacts {
+        is_software: info.device_type == wgpu::DeviceType::Cpu,
+        subgroup_size: info.subgroup_min_size,
+    }
 }
 
 fn instance(backends: wgpu::Backends) -> wgpu::Instance {

@@ -257,7 +257,7 @@ impl Graph {
         features: wgt::Features,
     ) -> Result<BTreeMap<String, ParamValue>, Diagnostics> {
         let mut reports = Reports::default();
-        let context = Surroundings { viewport, features };
+        let context = Surroundings::of(viewport, features);
         match checked(&self.0.document, asked, context, &mut reports) {
             Ok(params) => Ok(params.values()),
             Err(_) => Err(self.0.diagnostics(reports.into_list())),
@@ -277,7 +277,7 @@ impl Graph {
         features: wgt::Features,
     ) -> Result<Vec<Claim>, Diagnostics> {
         let mut reports = Reports::default();
-        let context = Surroundings { viewport, features };
+        let context = Surroundings::of(viewport, features);
         let claims = claims(&self.0.document, asked, context, &mut reports);
         match reports.errors() {
             0 => Ok(claims),

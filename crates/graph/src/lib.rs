@@ -106,7 +106,7 @@ pub use picture::Picture;
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
-pub use request::{Capture, PartialBackend, PlanRequest, Request};
+pub use request::{AdapterFacts, Capture, PartialBackend, PlanRequest, Request};
 pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,
     SubresourceRange, Target, Texture,

@@ -19,6 +19,17 @@ pub struct PartialBackend {
     pub lacks: String,
 }
 
+/// Facts about an adapter, by which a document may choose how it does its work; its results must not
+/// depend on them. Expressions read them as `adapter.software` and `adapter.subgroup_size`. The
+/// default is a GPU of which nothing else is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AdapterFacts {
+    /// True if the adapter runs shaders on the CPU.
+    pub is_software: bool,
+    /// Least number of threads of a subgroup, 0 if that is not known.
+    pub subgroup_size: u32,
+}
+
 /// A [`Request`] with a borrowed provider, which [`Graph::plan`](crate::Graph::plan) takes. Create
 /// one with [`PlanRequest::new`](Request::new) and change its fields.
 pub type PlanRequest<'a> = Request<&'a dyn Describe>;
@@ -58,6 +69,9 @@ pub struct Request<P> {
     /// for a graph that requires others ([`any_adapter`](Self::any_adapter): a warning);
     /// expressions of documents test features by `has(…)`.
     pub features: wgt::Features,
+    /// Facts about the adapter of the device that will run the graph, by which documents choose how
+    /// they do their work. `device::adapter_facts` of `skiagraph-gpu` returns those of a device.
+    pub adapter: AdapterFacts,
     /// The backend of the device, if it lacks part of WebGPU; `None` for any other. Planning
     /// returns an error if the document does not list this backend in `proven_on`. The executor,
     /// which runs the plan on a device, refuses such a plan too, so `None` only delays the error.
@@ -108,6 +122,7 @@ impl<'a> PlanRequest<'a> {
             captures: Vec::new(),
             limits: wgt::Limits::default(),
             features: wgt::Features::empty(),
+            adapter: AdapterFacts::default(),
             partial_backend: None,
             memory_limit: None,
             imports: BTreeMap::new(),
@@ -152,6 +167,8 @@ impl<'a> PlanRequest<'a> {
         Surroundings {
             viewport: self.viewport,
             features: self.features,
+            adapter: self.adapter,
+            storage_binding: self.limits.max_storage_buffer_binding_size,
         }
     }
 }
@@ -168,6 +185,7 @@ impl<P> Request<P> {
             captures: self.captures.clone(),
             limits: self.limits.clone(),
             features: self.features,
+            adapter: self.adapter,
             partial_backend: self.partial_backend.clone(),
             memory_limit: self.memory_limit,
             imports: self.imports.clone(),

@@ -58,10 +58,7 @@ pub enum Error {
     },
     /// Some pixels have no answer: their `visibility` is
     /// [`UNANSWERED`](crate::statistics::UNANSWERED).
-    #[error(
-        "{pixels} pixels have no answer, the first at ({x}, {y}): the driver ended loops of the \
-         shader that traces their rays, which pass too many triangles; another adapter may answer"
-    )]
+    #[error("{pixels} pixels have no answer, the first at ({x}, {y})")]
     Unanswered {
         /// Number of pixels without an answer.
         pixels: usize,

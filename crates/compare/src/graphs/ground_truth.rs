@@ -18,7 +18,7 @@
 //! ```
 
 use crate::error::{CompareError, Result};
-use crate::graphs::preset::Preset;
+use crate::graphs::preset::{Preset, RAY_COUNT};
 use crate::graphs::shadow_method::Outputs;
 use skiagraph_gpu::Content;
 use skiagraph_reference::{Graded, GroundTruth, Image, Statistics};
@@ -111,9 +111,17 @@ fn compared(
     };
     let outputs = outputs.map_err(broken)?;
     let judgement = Judgement::new(&outputs, ground_truth).map_err(|error| match error {
-        // The driver's doing, not the method's.
+        // A bound on a frame's work, not a wrong answer.
         skiagraph_reference::Error::Unanswered { .. } => {
-            CompareError::InvalidOutputs(format!("`{}`: {error}", preset.name))
+            let cause = if preset.judged().contains(&RAY_COUNT) {
+                "the driver ended loops of the shader that traces their rays, which pass too many \
+                 triangles; another adapter may answer"
+            } else {
+                "their texels have no complete lists, and to test all casters for them is more \
+                 work than a frame may take; give a larger `map_size` or `max_entries`, or \
+                 `unlisted=rays`"
+            };
+            CompareError::InvalidOutputs(format!("`{}`: {error}: {cause}", preset.name))
         }
         error => broken(error.to_string()),
     })?;

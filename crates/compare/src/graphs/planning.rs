@@ -15,11 +15,11 @@ use crate::graphs::light_kinds;
 use glam::Vec3;
 use skiagraph_gpu::{
     Provider,
-    device::{Gpu, partial},
+    device::{Gpu, adapter_facts, partial},
 };
 use skiagraph_graph::{
-    Code, Diagnostic, Diagnostics, Graph, PartialBackend, Plan, PlanRequest, Registry, Sources,
-    Span,
+    AdapterFacts, Code, Diagnostic, Diagnostics, Graph, PartialBackend, Plan, PlanRequest,
+    Registry, Sources, Span,
 };
 use skiagraph_passes::{SceneProvider, registry};
 use skiagraph_scene::{Light, LightKind, Mesh, Scene, View};
@@ -32,6 +32,8 @@ pub struct Capabilities {
     pub limits: wgpu::Limits,
     /// Features of the device.
     pub features: wgpu::Features,
+    /// Facts about the adapter that documents ask for.
+    pub adapter: AdapterFacts,
     /// The graphics backend, if it lacks part of WebGPU, as OpenGL does; `None` otherwise.
     pub partial_backend: Option<PartialBackend>,
     /// Bytes that the textures and buffers of a graph may take; `None` for no limit.
@@ -44,6 +46,7 @@ impl Capabilities {
         Self {
             limits: gpu.device.limits(),
             features: gpu.device.features(),
+            adapter: adapter_facts(&gpu.device),
             partial_backend: partial(gpu.adapter.get_info().backend),
             memory: gpu.memory,
         }
@@ -61,6 +64,7 @@ impl Capabilities {
         Self {
             limits,
             features: wgpu::Features::all(),
+            adapter: AdapterFacts::default(),
             partial_backend: None,
             memory: None,
         }
@@ -72,6 +76,7 @@ impl Capabilities {
         let mut request = PlanRequest::new(viewport, provider);
         request.limits = self.limits;
         request.features = self.features;
+        request.adapter = self.adapter;
         request.partial_backend = self.partial_backend;
         request.memory_limit = self.memory;
         request

@@ -4,8 +4,8 @@ use crate::{
     diagnostics::{ErrorGuaranteed, Reports},
     errors::evaluation::EvaluationError,
     language::{
-        Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference, Scalar, Subject,
-        Unary, Value, Word,
+        AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference,
+        Scalar, Subject, Unary, Value, Word,
     },
     provided_kind::ProvidedKind,
     source::Span,
@@ -18,6 +18,8 @@ pub(crate) trait Environment {
     fn viewport(&self) -> [u32; 2];
 
     fn has(&self, feature: wgt::Features) -> bool;
+
+    fn adapter(&self, fact: AdapterFact) -> Value;
 
     /// Returns the number of items of a buffer that the scene provides, by its name; `None` if it
     /// is not known.
@@ -89,6 +91,7 @@ pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> 
         },
         ExprKind::Constant(name) => env.constant(name, &expr.span),
         ExprKind::Has(feature) => Ok(Value::Bool(env.has(*feature))),
+        ExprKind::Adapter(fact) => Ok(env.adapter(*fact)),
         ExprKind::Unary(Unary::Not, operand) => Ok(Value::Bool(!boolean(operand, env)?)),
         ExprKind::Unary(Unary::Minus, operand) => {
             let values = [value(operand, env)?, Value::whole(0)];

@@ -5,8 +5,8 @@ use super::lexer::{Token, tokens};
 use crate::{
     errors::language::SyntaxFault,
     language::{
-        Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference, Scalar, Segment,
-        Selection, Subject, Unary, Value, format_named,
+        AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference,
+        Scalar, Segment, Selection, Subject, Unary, Value, format_named,
     },
     source::{Located, SourceFile, Span},
 };
@@ -385,6 +385,12 @@ impl<'a> Parser<'a> {
         if let Some(part) = path.iter().find(|part| part.selection.is_some()) {
             let place = self.file.span(part.range.clone());
             return Err(SyntaxFault::Part(place, "number"));
+        }
+        if let [owner, fact] = path.as_slice()
+            && owner.word == "adapter"
+            && let Some(fact) = AdapterFact::named(fact.word)
+        {
+            return Ok(ExprKind::Adapter(fact));
         }
         let names = path.iter().map(|part| Ok(self.name(part)?.to_string()));
         let names = names.collect::<Parsed<Vec<_>>>()?;

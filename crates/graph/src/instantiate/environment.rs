@@ -5,7 +5,7 @@ use crate::{
     diagnostics::{Reported, Reports},
     errors::evaluation::EvaluationError,
     expressions::Environment,
-    language::{Attribute, Name, Reference, Value, least_common_multiple},
+    language::{AdapterFact, Attribute, Name, Reference, Value, least_common_multiple},
     provided_kind::ProvidedKind,
     resource::ResourceKind,
     source::Span,
@@ -18,6 +18,10 @@ impl Environment for At<'_, '_> {
 
     fn has(&self, feature: wgt::Features) -> bool {
         self.symbols.request.features.contains(feature)
+    }
+
+    fn adapter(&self, fact: AdapterFact) -> Value {
+        self.symbols.request.surroundings().fact(fact)
     }
 
     fn provided_items(&self, name: &str) -> Option<u64> {

@@ -6,8 +6,9 @@ use crate::{
     document::{ClaimEntry, Document},
     errors::{evaluation::EvaluationError, instantiate::ParamError},
     expressions::{Environment, eval},
-    language::{Attribute, Expr, Name, Reference, Value, wgsl_identifier},
+    language::{AdapterFact, Attribute, Expr, Name, Reference, Value, wgsl_identifier},
     param::{Param, ParamValue, find},
+    request::AdapterFacts,
     source::{Located, Span},
 };
 use std::collections::{BTreeMap, BTreeSet};
@@ -108,12 +109,37 @@ impl Params {
     }
 }
 
-/// Viewport (width and height in pixels) and device features, which expressions in defaults and
-/// claims can use besides params.
+/// Viewport (width and height in pixels), device features and facts about the adapter, which
+/// expressions in defaults and claims can use besides params.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surroundings {
     pub viewport: [u32; 2],
     pub features: wgt::Features,
+    pub adapter: AdapterFacts,
+    /// Bytes.
+    pub storage_binding: u64,
+}
+
+impl Surroundings {
+    /// Returns those of an adapter of which only the features are known.
+    pub fn of(viewport: [u32; 2], features: wgt::Features) -> Self {
+        Self {
+            viewport,
+            features,
+            adapter: AdapterFacts::default(),
+            storage_binding: wgt::Limits::default().max_storage_buffer_binding_size,
+        }
+    }
+
+    pub fn fact(&self, fact: AdapterFact) -> Value {
+        match fact {
+            AdapterFact::Software => Value::Bool(self.adapter.is_software),
+            AdapterFact::SubgroupSize => Value::whole(self.adapter.subgroup_size),
+            AdapterFact::StorageBinding => {
+                Value::whole(i64::try_from(self.storage_binding).unwrap_or(i64::MAX))
+            }
+        }
+    }
 }
 
 /// Environment for defaults and claims: only params, the viewport and features have values.
@@ -130,6 +156,10 @@ impl Environment for ParamsAlone<'_> {
 
     fn has(&self, feature: wgt::Features) -> bool {
         self.context.features.contains(feature)
+    }
+
+    fn adapter(&self, fact: AdapterFact) -> Value {
+        self.context.fact(fact)
     }
 
     fn param(&mut self, name: &str, span: &Span) -> Reported<Value> {

@@ -12,6 +12,7 @@ pub use syntax::{Expr, Reference};
 pub(crate) use formats::{FORMATS, format_named};
 pub(crate) use name::{NameFault, RESERVED};
 pub(crate) use syntax::{
-    Attribute, Binary, Component, ExprKind, Function, Leaf, Segment, Selection, Subject, Unary,
+    AdapterFact, Attribute, Binary, Component, ExprKind, Function, Leaf, Segment, Selection,
+    Subject, Unary,
 };
 pub(crate) use value::{Scalar, Value, Word, least_common_multiple};

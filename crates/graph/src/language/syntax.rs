@@ -25,6 +25,7 @@ pub(crate) enum ExprKind {
     /// Name of a scalar `const` of the pass's shader.
     Constant(String),
     Has(wgt::Features),
+    Adapter(AdapterFact),
     Unary(Unary, Box<Expr>),
     Binary(Binary, Box<[Expr; 2]>),
     Ternary(Box<[Expr; 3]>),
@@ -80,6 +81,25 @@ spelt! {
     Format = "format",
     Kind = "kind",
     Index = "index",
+}
+
+/// Fact about the adapter: `adapter.software`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AdapterFact {
+    Software,
+    SubgroupSize,
+    StorageBinding,
+}
+
+impl AdapterFact {
+    pub fn named(word: &str) -> Option<Self> {
+        match word {
+            "software" => Some(Self::Software),
+            "subgroup_size" => Some(Self::SubgroupSize),
+            "storage_binding" => Some(Self::StorageBinding),
+            _ => None,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -310,7 +330,7 @@ impl Expr {
             ExprKind::Constant(name) => each(Leaf::Constant(name)),
             ExprKind::Has(feature) => each(Leaf::Has(*feature)),
             ExprKind::Attribute(Subject::Material(material), _) => material.visit(each),
-            ExprKind::Literal(_) | ExprKind::Attribute(..) => {}
+            ExprKind::Literal(_) | ExprKind::Attribute(..) | ExprKind::Adapter(_) => {}
             ExprKind::Tuple(list) | ExprKind::Call(_, list) => {
                 list.iter().for_each(|expr| expr.visit(each));
             }

@@ -1,0 +1,108 @@
+// Stage to test each caster for the pending receivers in the texels that it overlaps. `bin_small`:
+// one thread per caster, for the first block of each texel's receivers; it leaves casters over many
+// tiles to `bin_large`, a workgroup for each part of one and block, and further blocks to
+// `bin_crowded`, a thread for each caster and block.
+
+#import "shared/numbered_casters.wgsl"
+#import "shared/pending_lists.wgsl" instead "shared/linked_lists.wgsl"
+#import "shared/groups.wgsl"
+#import "shared/bin_texels.wgsl"
+
+// Tiles under the box of a caster that one thread does alone.
+const ALONE: u32 = 4u;
+// Tiles of a part: four a thread.
+const PART: u32 = 256u;
+
+var<storage, read_write> pending_state: PendingState;
+// Parts from the front, two words each; from the back crowded casters, which always have room.
+var<storage, read_write> pending_casters: array<u32>;
+
+struct Thread {
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+}
+
+@compute @workgroup_size(GROUP_SIZE)
+fn bin_small(thread: Thread) {
+    let number = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
+    if number >= caster_count() {
+        return;
+    }
+    let last = arrayLength(&texels) - 1u;
+    var most = 0u;
+    if binned_layer == 0u {
+        most = atomicLoad(&texels[last].length);
+        test_placeless(number);
+    }
+    let caster = caster_of(number);
+    if all(caster.last >= caster.first) {
+        let tiles = tiles_of(caster);
+        let count = tiles.x * tiles.y;
+        if count > ALONE {
+            append_parts(number, count);
+        } else {
+            for (var tile = 0u; tile < count; tile++) {
+                let at = caster.first / TILE + vec2(tile % tiles.x, tile / tiles.x);
+                most = max(most, tiles_most(at));
+            }
+            bin(caster, 0u, count, 1u);
+        }
+    }
+    if most > BLOCK {
+        let slot = atomicAdd(&pending_state.crowded, 1u);
+        pending_casters[arrayLength(&pending_casters) - 1u - slot] = number;
+    }
+}
+
+@compute @workgroup_size(GROUP_SIZE)
+fn bin_large(thread: Thread) {
+    let number = group_number(thread.group);
+    if number >= min(pending_state.layer_parts, part_limit()) {
+        return;
+    }
+    block = thread.group.z;
+    let first_tile = pending_casters[2u * number + 1u];
+    let caster = caster_of(pending_casters[2u * number]);
+    let tiles = tiles_of(caster);
+    let end = min(tiles.x * tiles.y, first_tile + PART);
+    bin(caster, first_tile + thread.lane, end, GROUP_SIZE);
+}
+
+@compute @workgroup_size(GROUP_SIZE)
+fn bin_crowded(thread: Thread) {
+    let slot = thread_number(thread.group, thread.lane);
+    if slot >= pending_state.layer_crowded {
+        return;
+    }
+    block = thread.group.z + 1u;
+    let number = pending_casters[arrayLength(&pending_casters) - 1u - slot];
+    if binned_layer == 0u {
+        test_placeless(number);
+    }
+    let caster = caster_of(number);
+    let tiles = tiles_of(caster);
+    if all(caster.last >= caster.first) && tiles.x * tiles.y <= ALONE {
+        bin(caster, 0u, tiles.x * tiles.y, 1u);
+    }
+}
+
+// The most receivers of a texel in a tile.
+fn tiles_most(tile: vec2<u32>) -> u32 {
+    return tiles[tile_number(binned_layer, tile)].w;
+}
+
+// Behind them there is room for all casters.
+fn part_limit() -> u32 {
+    return (arrayLength(&pending_casters) - caster_count()) / 2u;
+}
+
+fn append_parts(number: u32, tiles: u32) {
+    let parts = (tiles + PART - 1u) / PART;
+    var slot = atomicAdd(&pending_state.parts, parts);
+    for (var part = 0u; part < parts && slot < part_limit(); part++) {
+        pending_casters[2u * slot] = number;
+        pending_casters[2u * slot + 1u] = PART * part;
+        slot += 1u;
+    }
+}

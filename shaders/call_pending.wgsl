@@ -1,0 +1,36 @@
+// Stage to turn the parts and casters that bin_pending.wgsl left into workgroups; a single thread.
+
+#import "shared/groups.wgsl"
+#import "shared/pending.wgsl"
+
+struct Params {
+    casters: u32,
+}
+
+var<uniform> params: Params;
+var<storage, read_write> pending_state: PendingState;
+var<storage, read> pending_casters: array<u32>;
+var<storage, read_write> layer_calls: array<Call>;
+
+@compute @workgroup_size(1)
+fn main() {
+    let blocks = atomicLoad(&pending_state.most_blocks);
+    pending_state.layer_parts = atomicExchange(&pending_state.parts, 0u);
+    pending_state.layer_crowded = atomicExchange(&pending_state.crowded, 0u);
+    let crowded = groups_for(pending_state.layer_crowded);
+    let parts = pending_state.layer_parts;
+    let words = params.casters + 2u * parts;
+    pending_state.needed_words = max(pending_state.needed_words, words);
+    if words > arrayLength(&pending_casters) {
+        pending_state.parts_lack = 1u;
+    }
+    let rows = parts / GROUPS_PER_ROW + select(0u, 1u, parts % GROUPS_PER_ROW != 0u);
+    call(CALL_LARGE, vec3(min(parts, GROUPS_PER_ROW), rows, blocks));
+    call(CALL_CROWDED, vec3(crowded[0], crowded[1], max(blocks, 1u) - 1u));
+}
+
+fn call(number: u32, groups: vec3<u32>) {
+    layer_calls[number].x = groups.x;
+    layer_calls[number].y = groups.y;
+    layer_calls[number].z = groups.z;
+}

@@ -1,0 +1,79 @@
+// Receivers that no list of casters answers, each in a list of its texel's, for which all casters
+// are binned once more and tested.
+
+#import "shared/light_buffer.wgsl"
+
+struct PendingState {
+    // Words that `pending_casters` would have needed.
+    needed_words: u32,
+    // Receivers that have a place.
+    count: atomic<u32>,
+    // Receivers that have none.
+    unplaced: atomic<u32>,
+    // Tests that they may take, in units of TESTS.
+    work: atomic<u32>,
+    // Blocks of the texel that has most.
+    most_blocks: atomic<u32>,
+    // Of the layer that is binned: parts of large casters, those included for which there is no
+    // room, and casters over texels with more than a block.
+    parts: atomic<u32>,
+    crowded: atomic<u32>,
+    // The same, once all are counted.
+    layer_parts: u32,
+    layer_crowded: u32,
+    // 1 if a part had no room.
+    parts_lack: u32,
+    // Receivers without an answer.
+    unanswered: atomic<u32>,
+}
+
+// A word for each receiver: the number of its pixel, and this.
+const IS_SHADED: u32 = 0x80000000u;
+// Receivers of one texel that one thread tests at most: 4 tiles of 64 texels then take it half of
+// the 65,535 rounds after which llvmpipe ends loops.
+const BLOCK: u32 = 128u;
+// As many as a dimension of a dispatch has workgroups.
+const MOST_BLOCKS: u32 = 65535u;
+const TESTS: f32 = 65536.0;
+// Units of work in a frame: 4.3e9 tests.
+const MOST_WORK: u32 = 65536u;
+
+// A texel while it lists receivers.
+struct PendingTexel {
+    // Bits of the depth of the farthest of them.
+    max_receiver_depth: atomic<u32>,
+    // How many there are.
+    length: atomic<u32>,
+    // The place of the first; NO_PLACE where they are too much work.
+    first: atomic<u32>,
+    // Casters of its list until places are claimed, then how many receivers have one.
+    filled: atomic<u32>,
+}
+
+const NO_PLACE: u32 = 0xffffffffu;
+
+// Arguments of an indirect dispatch, where a device can bind them alone.
+struct Call {
+    x: u32,
+    y: u32,
+    z: u32,
+    unused: u32,
+    padding: array<vec4<u32>, 15>,
+}
+
+// Dispatches where receivers are uncertain: a thread for each texel, pixel, tile, receiver and
+// caster, or fill_rays.wgsl's.
+const CALL_TEXELS: u32 = 0u;
+const CALL_PIXELS: u32 = 1u;
+const CALL_TILES: u32 = 2u;
+const CALL_RECEIVERS: u32 = 3u;
+const CALL_CASTERS: u32 = 4u;
+const CALL_RAYS: u32 = 5u;
+
+// Dispatches of a layer: bin_large, bin_crowded.
+const CALL_LARGE: u32 = 0u;
+const CALL_CROWDED: u32 = 1u;
+
+fn blocks_of(count: u32) -> u32 {
+    return (count + BLOCK - 1u) / BLOCK;
+}

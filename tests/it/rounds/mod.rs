@@ -1,0 +1,99 @@
+//! How many rounds binning takes, one after the other, on adapters that run 32 threads in step:
+//! counted by the shaders of `light_buffer` themselves, on any adapter. By these counts ten times of
+//! a GPU are told (docs/light_buffer.md).
+
+use crate::support::{
+    graphs::{open, provider, run_on, values},
+    scenes::sponza,
+};
+use skiagraph_graph::{AdapterFacts, Graph, MemorySources, PlanRequest, Sources as _};
+use skiagraph_passes::{EmbeddedSources, registry};
+
+/// Rounds of the slowest warp, and of all warps.
+type Rounds = [u32; 2];
+
+/// Counts the rounds of `bin` and `bin_large` in a frame of Sponza, 1920×1080, as an adapter with
+/// these facts runs them; `edit` changes the text of shared/binning.wgsl.
+fn counted(is_software: bool, edit: impl Fn(String) -> String) -> Option<([Rounds; 2], Vec<u32>)> {
+    let viewport = [1920, 1080];
+    let scene = sponza()?;
+    let mut provider = provider(&scene, &scene.views[0], viewport);
+    let binning = EmbeddedSources.read("shaders/shared/binning.wgsl");
+    let binning = edit(binning.unwrap().unwrap().to_string());
+    let files = MemorySources::new([
+        ("pipelines/rounds.ron", include_str!("rounds.ron")),
+        (
+            "shaders/counted_steps.wgsl",
+            include_str!("counted_steps.wgsl"),
+        ),
+        ("shaders/shared/binning.wgsl", &binning),
+    ])
+    .over(EmbeddedSources);
+    let graph = Graph::load("pipelines/rounds.ron", &registry(), &files);
+    let graph = graph.unwrap_or_else(|errors| panic!("{errors}"));
+    let gpu = open();
+    let mut request = PlanRequest::new(viewport, &provider)
+        .with_device(gpu.device.limits(), gpu.device.features());
+    request.adapter = AdapterFacts {
+        is_software,
+        ..AdapterFacts::default()
+    };
+    let plan = graph.plan(&request);
+    let plan = plan.unwrap_or_else(|errors| panic!("{errors}"));
+    let read = ["visibility", "small_rounds", "large_rounds"];
+    let report = run_on(&gpu, plan, &mut provider, &read);
+    let rounds = ["small_rounds", "large_rounds"].map(|name| {
+        let [slowest, sum, lost] = values(&report, name).try_into().unwrap();
+        assert_eq!(
+            lost, 0,
+            "{name}: more rounds of an outer loop than are counted"
+        );
+        [slowest, sum]
+    });
+    Some((rounds, values(&report, "visibility")))
+}
+
+#[test]
+fn wide_binning_takes_few_rounds_and_answers_the_same() {
+    let Some((narrow, expected)) = counted(true, |text| text) else {
+        return;
+    };
+    let (wide, visibility) = counted(false, |text| text).unwrap();
+    println!("slowest and all, of bin and bin_large: {narrow:?}, wide {wide:?}");
+    assert!(visibility == expected);
+    let sum = |rounds: [Rounds; 2], at: usize| rounds[0][at] + rounds[1][at];
+    assert!(sum(narrow, 0) > 3000 && sum(wide, 0) <= 125);
+    assert!(sum(wide, 1) <= 410_000);
+}
+
+/// Milliseconds of an H200 for a warp's round that waits for the one before, and for any round.
+const DEPENDENT: f64 = 0.51e-3;
+const ANY: f64 = 0.44e-6;
+
+/// docs/lab/light_buffer.md: `ALONE`, `PART`, and the milliseconds of `bin` and `bin_large`.
+const MEASURED: [(u32, u32, [f64; 2]); 5] = [
+    (32, 2048, [1.18, 0.811]),
+    (8, 512, [0.490, 0.535]),
+    (4, 256, [0.253, 0.352]),
+    (2, 128, [0.127, 0.237]),
+    (1, 64, [0.066, 0.288]),
+];
+
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn rounds_tell_the_times_of_a_gpu() {
+    for (alone, part, measured) in MEASURED {
+        let edit = |text: String| {
+            let with_alone = text.replace("ALONE: u32 = 32u", &format!("ALONE: u32 = {alone}u"));
+            with_alone.replace("PART: u32 = 2048u", &format!("PART: u32 = {part}u"))
+        };
+        let Some((rounds, _)) = counted(true, edit) else {
+            return;
+        };
+        for ([slowest, sum], measured) in rounds.into_iter().zip(measured) {
+            let told = DEPENDENT * f64::from(slowest) + ANY * f64::from(sum);
+            println!("{alone}, {part}: {slowest}, {sum}: {told:.3} ms, measured {measured} ms");
+            assert!((0.75..1.25).contains(&(told / measured)), "{alone}, {part}");
+        }
+    }
+}

@@ -2,11 +2,9 @@
 
 use crate::{
     case::HardCase,
-    shape::{Block, Shape, seen},
+    shape::{Block, LIGHT, Shape, seen},
 };
-use glam::DVec3;
 
-const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
 const FLOOR: Block = [[-2.5, -0.5, -2.5], [2.5, 0.0, 2.5]];
 
 /// Poles four thousandths apart on a floor of 6.4 units: a map of 1024 texels has texels of sixteen

@@ -19,23 +19,8 @@ const LAMP: DVec3 = DVec3::new(0.3, 2.5, 0.4);
 const WITHIN: DVec3 = DVec3::new(0.3, 2.5, 0.4);
 const LID: Block = [[0.2, 2.4, 0.3], [0.4, 2.6, 0.5]];
 const CEILING: Block = [[-2.0, 2.5, -2.0], [2.0, 2.75, 2.0]];
-/// Crosses the plane across the axis of a spot light that looks along x, before the light and
-/// behind it, beside the axis.
-const BEAM: [Block; 3] = [
-    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
-    [[-3.5, 0.5, -0.5], [0.5, 0.7, -0.2]],
-    [[0.5, 0.0, 0.6], [0.9, 0.6, 1.0]],
-];
 const BEHIND: DVec3 = DVec3::new(-2.5, 1.25, 0.2);
 const SEAM: DVec3 = DVec3::new(0.0, 1.0, 0.0);
-/// Across the edges of the cube's face that looks down, and over a corner of it.
-const ACROSS_SEAMS: [Block; 5] = [
-    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
-    [[0.5, 0.0, -0.25], [1.0, 0.5, 0.25]],
-    [[-0.25, 0.0, 0.5], [0.25, 0.75, 1.0]],
-    [[-1.25, 0.0, -1.25], [-0.75, 0.5, -0.75]],
-    [[-0.875, 0.125, 0.625], [-0.625, 0.375, 0.875]],
-];
 const NEAR_FLOOR: DVec3 = DVec3::new(0.4, 0.002, 0.6);
 const STAR: DVec3 = DVec3::new(4.0e6, 6.0e6, -3.0e6);
 
@@ -102,7 +87,14 @@ pub(crate) const CASES: &[HardCase] = &[
         "seam_of_faces",
         "casters and receivers where the faces of a point light's cube meet, three at a corner",
         seen_under([0.3, 3.4, 2.4], [0.0, 0.0, 0.1], point(SEAM)),
-        &ACROSS_SEAMS,
+        // Across the edges of the cube's face that looks down, and over a corner of it.
+        &[
+            [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+            [[0.5, 0.0, -0.25], [1.0, 0.5, 0.25]],
+            [[-0.25, 0.0, 0.5], [0.25, 0.75, 1.0]],
+            [[-1.25, 0.0, -1.25], [-0.75, 0.5, -0.75]],
+            [[-0.875, 0.125, 0.625], [-0.625, 0.375, 0.875]],
+        ],
     ),
     HardCase::boxes(
         "across_the_lights_plane",
@@ -112,7 +104,13 @@ pub(crate) const CASES: &[HardCase] = &[
             [0.0, 0.1, 0.0],
             spot(BEHIND, DVec3::new(1.0, 0.0, 0.0), 120.0),
         ),
-        &BEAM,
+        // Crosses the plane across the axis of a spot light that looks along x, before the light
+        // and behind it, beside the axis.
+        &[
+            [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+            [[-3.5, 0.5, -0.5], [0.5, 0.7, -0.2]],
+            [[0.5, 0.0, 0.6], [0.9, 0.6, 1.0]],
+        ],
     ),
     HardCase::boxes(
         "light_at_the_floor",

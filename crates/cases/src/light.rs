@@ -2,37 +2,14 @@
 
 use crate::{
     case::HardCase,
-    shape::{Block, Shape, seen},
+    shape::{Shape, seen},
 };
 use glam::DVec3;
 
 const GRAZING: DVec3 = DVec3::new(1.0, -0.02, 0.13);
-const LOW: [Block; 4] = [
-    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
-    [[-3.0, 0.0, -1.5], [-2.8, 0.03, -0.5]],
-    [[-2.5, 0.0, -0.1], [-2.3, 0.05, 0.5]],
-    [[-1.0, 0.0, 0.9], [-0.9, 0.02, 1.3]],
-];
-const TABLE: [Block; 5] = [
-    [[-2.0, -0.5, -2.0], [2.0, 0.0, 2.0]],
-    [[-0.75, 0.75, -0.75], [0.75, 0.875, 0.75]],
-    [[-0.5, 0.0, -0.5], [-0.375, 0.75, -0.375]],
-    [[0.5, 0.0, -0.5], [0.625, 0.75, -0.375]],
-    [[-0.125, 0.0, 0.5], [0.0, 0.75, 0.625]],
-];
 const WALL_LIGHT: DVec3 = DVec3::new(1.0, -1.0, 0.0);
-const WALL: [Block; 3] = [
-    [[-3.0, -0.5, -3.0], [3.0, 0.0, 3.0]],
-    [[-1.0, 0.0, -0.5], [1.0, 1.0, 0.0]],
-    [[-2.0, 0.0, 0.0], [-1.5, 0.75, 0.5]],
-];
 const SEAM_LIGHT: DVec3 = DVec3::new(0.0, -1.0, 0.13);
 const UP: DVec3 = DVec3::new(0.5, 1.0, 0.3);
-const CEILING: [Block; 3] = [
-    [[-3.0, 0.0, -3.0], [3.0, 0.5, 3.0]],
-    [[-0.6, -0.9, -0.5], [0.5, 0.0, 0.4]],
-    [[0.9, -1.6, -1.5], [1.7, -1.3, -0.6]],
-];
 
 /// Turn of the facets of `facing_by_an_ulp` out of the light, around x: the first three are within
 /// f32's rounding of it.
@@ -46,7 +23,12 @@ pub(crate) const CASES: &[HardCase] = &[
         "grazing_light",
         "light a degree above the floor: a hair of depth is a long shadow",
         seen([1.0, 2.6, 4.0], [-1.0, 0.0, 0.0], GRAZING),
-        &LOW,
+        &[
+            [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+            [[-3.0, 0.0, -1.5], [-2.8, 0.03, -0.5]],
+            [[-2.5, 0.0, -0.1], [-2.3, 0.05, 0.5]],
+            [[-1.0, 0.0, 0.9], [-0.9, 0.02, 1.3]],
+        ],
     ),
     HardCase::open(
         "facing_by_an_ulp",
@@ -70,13 +52,23 @@ pub(crate) const CASES: &[HardCase] = &[
         "light_along_an_axis",
         "light along -y: every upright face is a line in the map",
         seen([1.6, 2.1, 2.6], [0.1, 0.2, 0.1], DVec3::NEG_Y),
-        &TABLE,
+        &[
+            [[-2.0, -0.5, -2.0], [2.0, 0.0, 2.0]],
+            [[-0.75, 0.75, -0.75], [0.75, 0.875, 0.75]],
+            [[-0.5, 0.0, -0.5], [-0.375, 0.75, -0.375]],
+            [[0.5, 0.0, -0.5], [0.625, 0.75, -0.375]],
+            [[-0.125, 0.0, 0.5], [0.0, 0.75, 0.625]],
+        ],
     ),
     HardCase::boxes(
         "light_along_a_wall",
         "light in the plane of a wall, which ends in its own shadow's edge",
         seen([1.6, 2.0, 3.2], [0.3, 0.2, 0.0], WALL_LIGHT),
-        &WALL,
+        &[
+            [[-3.0, -0.5, -3.0], [3.0, 0.0, 3.0]],
+            [[-1.0, 0.0, -0.5], [1.0, 1.0, 0.0]],
+            [[-2.0, 0.0, 0.0], [-1.5, 0.75, 0.5]],
+        ],
     ),
     HardCase::closed(
         "light_nearly_along_a_wall",
@@ -95,7 +87,11 @@ pub(crate) const CASES: &[HardCase] = &[
         "light_travels_upwards",
         "a ceiling lit from below: nothing may take down for away from the light",
         seen([1.5, -3.0, 3.0], [0.1, 0.0, 0.0], UP),
-        &CEILING,
+        &[
+            [[-3.0, 0.0, -3.0], [3.0, 0.5, 3.0]],
+            [[-0.6, -0.9, -0.5], [0.5, 0.0, 0.4]],
+            [[0.9, -1.6, -1.5], [1.7, -1.3, -0.6]],
+        ],
     ),
     HardCase::open(
         "no_depth_at_all",

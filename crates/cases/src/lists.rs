@@ -3,13 +3,12 @@
 
 use crate::{
     case::HardCase,
-    shape::{Block, Shape, seen},
+    shape::{Block, LIGHT, Shape, seen},
 };
 use glam::DVec3;
 use skiagraph_scene::generate::numbers::Random;
 
 const STEEP: DVec3 = DVec3::new(0.07, -1.0, 0.05);
-const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
 
 type Corners = [[f32; 3]; 3];
 

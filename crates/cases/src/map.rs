@@ -2,7 +2,7 @@
 
 use crate::{
     case::HardCase,
-    shape::{Block, Shape, seen},
+    shape::{Shape, seen},
 };
 use glam::DVec3;
 
@@ -16,32 +16,7 @@ const fn texels(count: f32) -> f32 {
     -250.5 + count * TEXEL
 }
 
-/// Corners on corners and edges of texels (of 64; of 128 and 256 they are corners, too), on their
-/// centres, and on quarters.
-const TEXELS: [Block; 4] = [
-    [[-250.0, -50.0, -250.0], [250.0, 0.0, 250.0]],
-    [
-        [texels(26.0), 60.0, texels(27.0)],
-        [texels(32.0), 70.0, texels(33.0)],
-    ],
-    [
-        [texels(33.5), 60.0, texels(34.5)],
-        [texels(37.5), 70.0, texels(36.0)],
-    ],
-    [
-        [texels(32.25), 60.0, texels(29.75)],
-        [texels(35.0), 70.0, texels(32.25)],
-    ],
-];
-
 const CORNER_LIGHT: DVec3 = DVec3::new(0.5, -1.0, 0.3);
-const CORNER: [Block; 5] = [
-    [[-2.0, -0.5, -2.0], [2.0, 0.0, 2.0]],
-    [[1.5, 0.0, 1.75], [1.75, 0.75, 2.0]],
-    [[1.75, 0.0, 1.0], [2.0, 0.5, 1.25]],
-    [[0.5, 0.0, 1.5], [0.75, 1.0, 2.0]],
-    [[1.0, 0.875, 1.0], [1.5, 1.0, 2.0]],
-];
 
 /// A fifth of a texel of a map of 128 in `receivers_on_texel_corners`. Its floor of 2500 units is
 /// turned by the angle of a triangle of sides 3, 4, 5, so what is at whole texels is at whole
@@ -116,7 +91,23 @@ pub(crate) const CASES: &[HardCase] = &[
         "on_texel_corners",
         "vertices exactly on corners, edges and centres of texels of maps of 64, 128 and 256",
         seen([60.0, 52.0, 85.0], [8.0, 0.0, 6.0], DVec3::NEG_Y),
-        &TEXELS,
+        // Corners on corners and edges of texels (of 64; of 128 and 256 they are corners, too), on
+        // their centres, and on quarters.
+        &[
+            [[-250.0, -50.0, -250.0], [250.0, 0.0, 250.0]],
+            [
+                [texels(26.0), 60.0, texels(27.0)],
+                [texels(32.0), 70.0, texels(33.0)],
+            ],
+            [
+                [texels(33.5), 60.0, texels(34.5)],
+                [texels(37.5), 70.0, texels(36.0)],
+            ],
+            [
+                [texels(32.25), 60.0, texels(29.75)],
+                [texels(35.0), 70.0, texels(32.25)],
+            ],
+        ],
     ),
     HardCase::open(
         "receivers_on_texel_corners",
@@ -138,7 +129,13 @@ pub(crate) const CASES: &[HardCase] = &[
         "at_the_maps_border",
         "boxes flush with the scene's border: casters and receivers in the map's last texels",
         seen([2.9, 1.7, 3.2], [1.4, 0.1, 1.5], CORNER_LIGHT),
-        &CORNER,
+        &[
+            [[-2.0, -0.5, -2.0], [2.0, 0.0, 2.0]],
+            [[1.5, 0.0, 1.75], [1.75, 0.75, 2.0]],
+            [[1.75, 0.0, 1.0], [2.0, 0.5, 1.25]],
+            [[0.5, 0.0, 1.5], [0.75, 1.0, 2.0]],
+            [[1.0, 0.875, 1.0], [1.5, 1.0, 2.0]],
+        ],
     ),
 ];
 

@@ -10,18 +10,7 @@ const BOX: [Block; 2] = [
     [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
     [[-0.5, 0.0, -0.5], [0.5, 1.0, 0.5]],
 ];
-const ROOM: [Block; 3] = [
-    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
-    [[1.5, 0.0, 1.5], [3.5, 4.0, 3.5]],
-    [[-1.0, 0.0, -0.7], [0.0, 0.7, 0.3]],
-];
 const ROOM_LIGHT: DVec3 = DVec3::new(-1.0, -1.5, -0.9);
-const NEAR: [Block; 4] = [
-    [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
-    [[-0.4, 0.0, -0.6], [0.3, 0.8, 0.4]],
-    [[1.3, 2.4, 1.5], [2.3, 2.8, 2.4]],
-    [[3.0, 4.0, 3.0], [4.0, 5.0, 4.2]],
-];
 const NEAR_LIGHT: DVec3 = DVec3::new(-1.0, -1.6, -1.2);
 
 pub(crate) const CASES: &[HardCase] = &[
@@ -66,14 +55,23 @@ pub(crate) const CASES: &[HardCase] = &[
         "camera_inside",
         "the eye is inside a closed box, whose faces it does not see and whose shadow it does",
         seen([2.5, 1.9, 2.4], [-0.9, 0.0, -0.6], ROOM_LIGHT),
-        &ROOM,
+        &[
+            [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+            [[1.5, 0.0, 1.5], [3.5, 4.0, 3.5]],
+            [[-1.0, 0.0, -0.7], [0.0, 0.7, 0.3]],
+        ],
     ),
     HardCase::boxes(
         "before_the_near_plane",
         "casters between the eye and the near plane, and around the eye: not drawn, and still \
              in the light",
         seen([3.5, 4.5, 3.6], [-0.4, 0.0, -0.4], NEAR_LIGHT),
-        &NEAR,
+        &[
+            [[-4.0, -0.5, -4.0], [4.0, 0.0, 4.0]],
+            [[-0.4, 0.0, -0.6], [0.3, 0.8, 0.4]],
+            [[1.3, 2.4, 1.5], [2.3, 2.8, 2.4]],
+            [[3.0, 4.0, 3.0], [4.0, 5.0, 4.2]],
+        ],
     )
     .changed(|scene| scene.views[0].near = 5.0),
 ];

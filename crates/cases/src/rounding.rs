@@ -2,11 +2,8 @@
 
 use crate::{
     case::{Edges, HardCase},
-    shape::{Block, Seen, Shape, seen},
+    shape::{Block, LIGHT, Seen, Shape, seen},
 };
-use glam::DVec3;
-
-const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
 
 /// Four slabs, each smaller than the one below and `gap` above it; their tops are at multiples of a
 /// quarter.
@@ -50,21 +47,7 @@ const fn lid_seen(scale: f32) -> Seen {
 
 const SHEETS: [[f32; 2]; 2] = [[-0.8, -0.7], [0.7, 0.9]];
 
-const SMALL: [Block; 2] = [
-    [[-4e-4, -5e-5, -4e-4], [4e-4, 0.0, 4e-4]],
-    [[-5e-5, 0.0, -5e-5], [5e-5, 1e-4, 5e-5]],
-];
 const FAR_OFF: f32 = 1e7;
-const FAR: [Block; 2] = [
-    [
-        [FAR_OFF - 4000.0, FAR_OFF - 500.0, FAR_OFF - 4000.0],
-        [FAR_OFF + 4000.0, FAR_OFF, FAR_OFF + 4000.0],
-    ],
-    [
-        [FAR_OFF - 500.0, FAR_OFF, FAR_OFF - 700.0],
-        [FAR_OFF + 600.0, FAR_OFF + 1000.0, FAR_OFF + 500.0],
-    ],
-];
 /// On a plain of a million units.
 const DETAIL: [Block; 3] = [
     [[-0.01, 0.0, -0.01], [0.0, 0.01, 0.0]],
@@ -127,7 +110,10 @@ pub(crate) const CASES: &[HardCase] = &[
         "scale_1e_4",
         "the unit is a ten-thousandth: constants in scene units are too large",
         seen([2.2e-4, 2.6e-4, 3e-4], [4e-5, 2e-5, 2e-5], LIGHT),
-        &SMALL,
+        &[
+            [[-4e-4, -5e-5, -4e-4], [4e-4, 0.0, 4e-4]],
+            [[-5e-5, 0.0, -5e-5], [5e-5, 1e-4, 5e-5]],
+        ],
     ),
     HardCase::boxes(
         "origin_offset_1e7",
@@ -137,7 +123,16 @@ pub(crate) const CASES: &[HardCase] = &[
             [10_000_300.0, 10_000_200.0, 10_000_100.0],
             LIGHT,
         ),
-        &FAR,
+        &[
+            [
+                [FAR_OFF - 4000.0, FAR_OFF - 500.0, FAR_OFF - 4000.0],
+                [FAR_OFF + 4000.0, FAR_OFF, FAR_OFF + 4000.0],
+            ],
+            [
+                [FAR_OFF - 500.0, FAR_OFF, FAR_OFF - 700.0],
+                [FAR_OFF + 600.0, FAR_OFF + 1000.0, FAR_OFF + 500.0],
+            ],
+        ],
     )
     // A receiver is off by its position's five roundings of a distance of √3 offsets, and by those
     // of its weights, the more the flatter it is seen: by some 22 units, as pictures of 1024²

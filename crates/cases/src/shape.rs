@@ -3,6 +3,9 @@
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{DirectionalLight, Light, LightKind, Mesh, Scene, View, weld::Welder};
 
+/// Direction of the light of most cases: along no axis, and steep enough for short shadows.
+pub(crate) const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
+
 /// The lower and the upper corner of a box.
 pub(crate) type Block = [[f32; 3]; 2];
 

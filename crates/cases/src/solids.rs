@@ -2,29 +2,13 @@
 
 use crate::{
     case::HardCase,
-    shape::{Block, Seen, Shape, seen},
+    shape::{Block, LIGHT, Seen, Shape, seen},
 };
 use glam::DVec3;
 use skiagraph_scene::generate::numbers::{Random, turn};
 
-const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
 const FLOOR: Block = [[-3.0, -0.5, -3.0], [3.0, 0.0, 3.0]];
 
-const BY_FACE: [Block; 3] = [
-    FLOOR,
-    [[-0.75, 0.0, -0.5], [0.0, 0.75, 0.5]],
-    [[0.0, 0.0, -0.5], [0.75, 0.75, 0.5]],
-];
-const BY_EDGE: [Block; 3] = [
-    FLOOR,
-    [[-0.75, 0.0, -0.75], [0.0, 0.75, 0.0]],
-    [[0.0, 0.0, 0.0], [0.75, 0.75, 0.75]],
-];
-const BY_VERTEX: [Block; 3] = [
-    FLOOR,
-    [[-0.75, 0.5, -0.75], [0.0, 1.0, 0.0]],
-    [[0.0, 0.0, 0.0], [0.75, 0.5, 0.75]],
-];
 const CROSSING: [Block; 3] = [
     FLOOR,
     [[-0.9, 0.25, -0.3], [0.9, 0.65, 0.2]],
@@ -49,19 +33,31 @@ pub(crate) const CASES: &[HardCase] = &[
         "boxes_share_a_face",
         "two boxes with one face, wound both ways, hidden between them",
         BOXES,
-        &BY_FACE,
+        &[
+            FLOOR,
+            [[-0.75, 0.0, -0.5], [0.0, 0.75, 0.5]],
+            [[0.0, 0.0, -0.5], [0.75, 0.75, 0.5]],
+        ],
     ),
     HardCase::boxes(
         "boxes_share_an_edge",
         "two boxes with one edge: four triangles around it",
         BOXES,
-        &BY_EDGE,
+        &[
+            FLOOR,
+            [[-0.75, 0.0, -0.75], [0.0, 0.75, 0.0]],
+            [[0.0, 0.0, 0.0], [0.75, 0.75, 0.75]],
+        ],
     ),
     HardCase::boxes(
         "boxes_share_a_vertex",
         "two boxes with one corner: the surface pinches to a point",
         BOXES,
-        &BY_VERTEX,
+        &[
+            FLOOR,
+            [[-0.75, 0.5, -0.75], [0.0, 1.0, 0.0]],
+            [[0.0, 0.0, 0.0], [0.75, 0.5, 0.75]],
+        ],
     ),
     HardCase::open(
         "boxes_through_each_other",

@@ -2,12 +2,11 @@
 
 use crate::{
     case::HardCase,
-    shape::{Block, Shape, seen},
+    shape::{Block, LIGHT, Shape, seen},
 };
 use glam::{DVec3, Vec3};
 use skiagraph_scene::generate::numbers::Random;
 
-const LIGHT: DVec3 = DVec3::new(0.8, -1.0, 0.43);
 const FLOOR: Block = [[-2.5, -0.5, -2.5], [2.5, 0.0, 2.5]];
 
 /// Kept edges of `thin_neighbours`: x, the middle in z, and the width of what lies beyond.

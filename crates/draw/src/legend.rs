@@ -59,7 +59,7 @@ const LINE: f64 = 20.0;
 
 impl Item {
     /// The sign of a pass that reads and writes so.
-    fn new(reads: bool, writes: bool) -> Self {
+    pub fn new(reads: bool, writes: bool) -> Self {
         match (reads, writes) {
             (true, true) => Self::Both,
             (false, true) => Self::Write,

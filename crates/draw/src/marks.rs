@@ -3,6 +3,7 @@
 use crate::{
     chart::{Chart, Column, Group, Mark, numbers},
     drawing::Access,
+    legend::Item,
     text::{self, NOTE, SMALL},
     words::{self, MOST},
 };
@@ -26,9 +27,10 @@ pub(crate) fn mark(chart: &mut Chart<'_>, accesses: &[Access]) {
     }
     for ((row, column), accesses) in uses {
         let (pass, material) = (chart.rows[row].pass, chart.columns[column].material);
+        let verb = |access: &Access| Item::new(access.reads, access.writes).text();
         let clause = |access: &&Access| match &access.part {
-            Some(part) => format!("{} ({})", words::verb(access), words::part(part, material)),
-            None => words::verb(access).to_owned(),
+            Some(part) => format!("{} ({})", verb(access), words::part(part, material)),
+            None => verb(access).to_owned(),
         };
         let clauses: Vec<String> = accesses.iter().map(clause).collect();
         let note = words::note(&accesses, material);

@@ -266,7 +266,7 @@ fn mark(canvas: &mut Canvas, mark: &Mark, chart: &Chart<'_>) {
     let colour = if mark.runs { INK } else { FAINT };
     let [x, y] = [chart.columns[mark.column].x, chart.rows[mark.row].middle];
     canvas.group("", &mark.title, |canvas| {
-        dot(canvas, [x, y], (mark.reads, mark.writes), colour);
+        dot(canvas, [x, y], Item::new(mark.reads, mark.writes), colour);
         if !mark.note.is_empty() {
             canvas.text([x + BESIDE, y - 3.0], NOTE, RIM, &mark.note);
         }
@@ -274,12 +274,12 @@ fn mark(canvas: &mut Canvas, mark: &Mark, chart: &Chart<'_>) {
 }
 
 /// Full: writes; empty: reads; a ring around a point: both.
-fn dot(canvas: &mut Canvas, at: [f64; 2], (reads, writes): (bool, bool), colour: &str) {
+fn dot(canvas: &mut Canvas, at: [f64; 2], item: Item, colour: &str) {
     let full = format!(r#"fill="{colour}""#);
     let empty = format!(r##"fill="#ffffff" stroke="{colour}" stroke-width="1.8""##);
-    match (reads, writes) {
-        (false, true) => canvas.circle(at, 5.0, &full),
-        (true, true) => {
+    match item {
+        Item::Write => canvas.circle(at, 5.0, &full),
+        Item::Both => {
             canvas.circle(at, 5.0, &empty);
             canvas.circle(at, 2.4, &full);
         }
@@ -310,9 +310,7 @@ fn legend(canvas: &mut Canvas, [x, y]: [f64; 2], item: Item) {
     };
     let line = |canvas: &mut Canvas, style: &str| canvas.line([left, y], [right, y], style);
     match item {
-        Item::Write => dot(canvas, middle, (false, true), INK),
-        Item::Read => dot(canvas, middle, (true, false), INK),
-        Item::Both => dot(canvas, middle, (true, true), INK),
+        Item::Write | Item::Read | Item::Both => dot(canvas, middle, item, INK),
         Item::Bar(tint) => canvas.rect(&sign, &tinted(tint, 5.5)),
         Item::Shared => canvas.rect(&sign, &format!(r#"rx="4" {SHARED}"#)),
         Item::Output => arrow(canvas, middle),

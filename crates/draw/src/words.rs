@@ -127,17 +127,6 @@ impl Unit {
         }
     }
 }
-
-/// Returns the verb for an access: `reads`, `writes` or `reads and writes`.
-pub(crate) fn verb(access: &Access) -> &'static str {
-    match (access.reads, access.writes) {
-        (true, true) => "reads and writes",
-        (false, true) => "writes",
-        // A sampler is bound rather than read, but no other verb fits better.
-        _ => "reads",
-    }
-}
-
 /// Returns the later pass's part in a conflict with the earlier one, such as `reads what it wrote`.
 pub(crate) fn consequence(hazard: Hazard) -> &'static str {
     match hazard {

@@ -6,7 +6,7 @@ use crate::{
     error::Error,
     ground_truth::{Class, GroundTruth},
     oracle::{Oracle, OracleMode},
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+    pixels::{BACKGROUND, Progress, check_pixel_count, existing, per_pixel},
     receiver::Receiver,
     visible::Candidate,
 };
@@ -49,15 +49,7 @@ pub fn unattributable(
             if candidate.primitive == BACKGROUND {
                 return Ok(true);
             }
-            let primitive = candidate.primitive;
-            if u64::from(primitive) >= count {
-                return Err(Error::UnknownPrimitive {
-                    x,
-                    y,
-                    primitive,
-                    count,
-                });
-            }
+            let primitive = existing(candidate.primitive, [x, y], count)?;
             let receiver = Receiver::new(oracle.mesh, primitive, camera, [x, y], light);
             let (answer, other) = match &strata {
                 Some(strata) => {

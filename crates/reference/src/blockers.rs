@@ -8,13 +8,12 @@
 use crate::{
     error::Error,
     oracle::{Oracle, OracleMode},
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place},
     receiver::Receiver,
 };
-use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use skiagraph_scene::{Camera, LightKind, Parts, Towards};
+use skiagraph_scene::{Camera, LightKind, Parts};
 use std::ops::ControlFlow;
 
 /// Number of pixels by the connected parts of the mesh that block their light ([`Parts`] says which
@@ -50,22 +49,21 @@ pub fn blockers(
 ) -> Result<BlockerCounts, Error> {
     let parts = oracle.parts.get_or_init(|| Parts::new(oracle.mesh));
     let light = light.into();
-    let width = camera.viewport[0] as usize;
-    let blockers = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
-        let pixel = [(pixel % width) as u32, (pixel / width) as u32];
+    let counts = pixels.par_iter().map_init(Vec::new, |stack, &pixel| {
+        let pixel = place(pixel, camera.viewport);
         let receiver = Receiver::from_pixel(oracle.mesh, primitives, camera, pixel, &light)?;
         let receiver = receiver.filter(Receiver::may_be_shaded);
-        Ok(receiver.and_then(|receiver| {
-            let (origin, way, passed) = mode.ray(&receiver);
-            blocker(oracle, origin, way, passed, parts, stack)
+        let none = BlockerCounts {
+            none: 1,
+            ..BlockerCounts::default()
+        };
+        Ok(receiver.map_or(none, |receiver| {
+            blocker(oracle, &receiver, mode, parts, stack)
         }))
     });
-    let blockers: Vec<Option<Blocker>> = blockers.collect::<Result<_, Error>>()?;
-    let count = |kind| blockers.iter().filter(|it| **it == kind).count() as u64;
-    Ok(BlockerCounts {
-        open_part: count(Some(Blocker::OpenPart)),
-        closed_part: count(Some(Blocker::ClosedPart)),
-        none: count(None),
+    counts.try_reduce(BlockerCounts::default, |mut sum, one| {
+        sum += one;
+        Ok(sum)
     })
 }
 
@@ -108,34 +106,29 @@ pub fn nearest_blockers(
     })
 }
 
-/// Part of the mesh that stands in a ray's way.
-#[derive(Clone, Copy, PartialEq)]
-enum Blocker {
-    OpenPart,
-    ClosedPart,
-}
-
-/// The blocker of a ray: a closed part, if there is one.
+/// The blocker of a receiver's ray, counted: a closed part, if there is one.
 fn blocker(
     oracle: &Oracle<'_>,
-    origin: DVec3,
-    way: Towards,
-    passed: u32,
+    receiver: &Receiver,
+    mode: OracleMode,
     parts: &Parts,
     stack: &mut Vec<u32>,
-) -> Option<Blocker> {
+) -> BlockerCounts {
+    let (origin, way, passed) = mode.ray(receiver);
     let ray = oracle.tree.ray(origin, &way, 0.0);
-    let mut blocker = None;
-    oracle.tree.walk(&ray, stack, |caster, _| {
-        if !caster.may_shade(passed) || !caster.blocks(&ray) {
-            return ControlFlow::Continue(());
+    let mut meets_open = false;
+    let meets_closed = oracle.tree.walk(&ray, stack, |caster, _| {
+        if caster.may_shade(passed) && caster.blocks(&ray) {
+            if !parts.is_open(caster.primitive) {
+                return ControlFlow::Break(());
+            }
+            meets_open = true;
         }
-        if parts.is_open(caster.primitive) {
-            blocker = Some(Blocker::OpenPart);
-            return ControlFlow::Continue(());
-        }
-        blocker = Some(Blocker::ClosedPart);
-        ControlFlow::Break(())
+        ControlFlow::Continue(())
     });
-    blocker
+    BlockerCounts {
+        open_part: u64::from(meets_open && !meets_closed),
+        closed_part: u64::from(meets_closed),
+        none: u64::from(!meets_open && !meets_closed),
+    }
 }

@@ -101,11 +101,9 @@ impl<'a> FuzzyRay<'a> {
         let farthest = farthest[0].max(farthest[1]).max(farthest[2]).sqrt();
         let error = caster_error(farthest, &self.towards);
         let ball = self.uncertainty.radius + error;
-        let extent = self
-            .sheared_segments
-            .iter()
-            .fold(DVec3::ZERO, |sum, s| sum + s.abs())
-            + DVec3::splat(ball * 3f64.sqrt());
+        let segments = self.sheared_segments.iter();
+        let extent =
+            segments.fold(DVec3::ZERO, |sum, s| sum + s.abs()) + DVec3::splat(ball * 3f64.sqrt());
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         if low.x > extent.x
             || low.y > extent.y
@@ -126,11 +124,8 @@ impl<'a> FuzzyRay<'a> {
         let sides = [c - b, a - c, b - a];
         let thresholds: [f64; 3] = std::array::from_fn(|i| {
             let side = sides[i];
-            let segments: f64 = self
-                .sheared_segments
-                .iter()
-                .map(|s| (side.x * s.y - side.y * s.x).abs())
-                .sum();
+            let across = |s: &DVec3| (side.x * s.y - side.y * s.x).abs();
+            let segments: f64 = self.sheared_segments.iter().map(across).sum();
             segments
                 + ball
                     * (side.x * side.x + side.y * side.y + (side.y * sx - side.x * sy).powi(2))

@@ -6,7 +6,7 @@
 use crate::{
     error::Error,
     ground_truth::{Class, GroundTruthPixels},
-    pixels::{check_pixel_count, neighbours},
+    pixels::{check_pixel_count, neighbours, place},
     shimmer::Seen,
     statistics::{Verdict, for_each_verdict},
 };
@@ -161,7 +161,9 @@ impl<'a> Edges<'a> {
             class.faces_light() && nearby.any(|other| is_other(truth.classes[other]))
         };
         let edges: Vec<usize> = (0..truth.classes.len()).filter(is_edge).collect();
-        let screen = edges.iter().map(|&pixel| place(seen, pixel).map(f64::from));
+        let screen = edges
+            .iter()
+            .map(|&pixel| place(pixel, seen.camera.viewport).map(f64::from));
         let scene = edges.iter().filter_map(|&pixel| receiver(seen, pixel));
         Self {
             seen,
@@ -172,7 +174,7 @@ impl<'a> Edges<'a> {
 
     /// The distance of a pixel from the nearest edge, in pixels and in scene units.
     fn distance(&self, pixel: usize) -> Option<[f64; 2]> {
-        let on_screen = place(self.seen, pixel).map(f64::from);
+        let on_screen = place(pixel, self.seen.camera.viewport).map(f64::from);
         let in_scene = receiver(self.seen, pixel)?;
         let pixels = self.on_screen.nearest_neighbor(on_screen)?;
         let world = self.in_scene.nearest_neighbor(in_scene)?;
@@ -180,21 +182,13 @@ impl<'a> Edges<'a> {
     }
 }
 
-fn place(seen: Seen, pixel: usize) -> [u32; 2] {
-    let (pixel, width) = (pixel as u32, seen.camera.viewport[0]);
-    [pixel % width, pixel / width]
-}
-
-/// The place in the scene that a pixel shows, where it has one.
 fn receiver(seen: Seen, pixel: usize) -> Option<[f64; 3]> {
     Some(seen.surface(pixel)?.receiver.to_array())
 }
 
 fn apart<const N: usize>(one: &[f64; N], other: &[f64; N]) -> f64 {
-    let squares = one
-        .iter()
-        .zip(other)
-        .map(|(one, other)| (one - other).powi(2));
+    let pairs = one.iter().zip(other);
+    let squares = pairs.map(|(one, other)| (one - other).powi(2));
     squares.sum::<f64>().sqrt()
 }
 

@@ -35,19 +35,14 @@ impl Uncertainty {
     /// Returns how far the segments can displace the receiver along `normal` to either side, in
     /// scene units times the length of `normal`. The ball is left out.
     pub fn along(&self, normal: DVec3) -> f64 {
-        self.segments
-            .iter()
-            .map(|segment| segment.dot(normal).abs())
-            .sum()
+        let along = |segment: &DVec3| segment.dot(normal).abs();
+        self.segments.iter().map(along).sum()
     }
 
     /// The longest displacement of the receiver.
     pub(crate) fn reach(&self) -> f64 {
-        self.segments
-            .iter()
-            .map(|segment| segment.length())
-            .sum::<f64>()
-            + self.radius
+        let lengths = self.segments.iter().map(|segment| segment.length());
+        lengths.sum::<f64>() + self.radius
     }
 
     /// Radius of a ball that holds every displacement of receiver and casters within
@@ -73,11 +68,8 @@ impl Uncertainty {
         std::array::from_fn(|eighth| {
             let (sin, cos) = (eighth as f64 * std::f64::consts::FRAC_PI_4).sin_cos();
             let outwards = side * cos + other * sin;
-            let in_plane: DVec3 = self
-                .segments
-                .iter()
-                .map(|&s| if s.dot(outwards) < 0.0 { -s } else { s })
-                .sum();
+            let turned = |&s: &DVec3| if s.dot(outwards) < 0.0 { -s } else { s };
+            let in_plane: DVec3 = self.segments.iter().map(turned).sum();
             in_plane + (outwards + to_light) * (self.radius + caster)
         })
     }

@@ -166,10 +166,8 @@ fn kernel(radius: i32, value: impl Fn(f64) -> f64) -> Vec<f64> {
 /// Positive weights sum up to 1, negative ones to −1.
 fn balance(kernel: &mut [f64]) {
     let sum = |sign: f64| {
-        kernel
-            .iter()
-            .map(|weight| (sign * weight).max(0.0))
-            .sum::<f64>()
+        let weights = kernel.iter().map(|weight| (sign * weight).max(0.0));
+        weights.sum::<f64>()
     };
     let (positive, negative) = (sum(1.0), sum(-1.0));
     for weight in kernel {

@@ -2,7 +2,7 @@
 
 use crate::{
     error::Error,
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel},
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place},
     receiver::{self, Receiver},
     status,
 };
@@ -102,10 +102,8 @@ impl GroundTruthPixels {
     /// Returns the reference's visibility of each pixel, as a shadow method would output it: 1
     /// where lit, 0 elsewhere; row by row from the top left.
     pub fn visibility(&self) -> Vec<u8> {
-        self.classes
-            .iter()
-            .map(|class| u8::from(class.is_lit()))
-            .collect()
+        let visibility = |class: &Class| u8::from(class.is_lit());
+        self.classes.iter().map(visibility).collect()
     }
 
     /// Returns the reference's status of each pixel, a value of [`status`], as a shadow method
@@ -130,13 +128,12 @@ fn base_colors(mesh: &Mesh, camera: &Camera, primitives: &[u32]) -> Vec<[f32; 3]
     if surfaces.materials.is_empty() {
         return Vec::new();
     }
-    let width = camera.viewport[0];
     let colour = |(pixel, &primitive): (usize, &u32)| {
         if primitive == BACKGROUND {
             return [0.0; 3];
         }
-        let pixel = pixel as u32;
-        let direction = camera.pixel_direction(pixel % width, pixel / width);
+        let [x, y] = place(pixel, camera.viewport);
+        let direction = camera.pixel_direction(x, y);
         let weights = receiver::weights(mesh, primitive, camera.eye, direction);
         surfaces.base_color(primitive, weights)
     };

@@ -100,10 +100,10 @@ impl Image {
         status: &[impl Copy + Into<u32>],
         truth: &GroundTruthPixels,
     ) -> Result<Self, Error> {
-        let mut rgb = Vec::with_capacity(truth.classes.len() * 3);
+        let mut pixels = Vec::with_capacity(truth.classes.len());
         for_each_verdict(visibility, status, truth, |pixel| {
             let backdrop = |grey| tinted(grey, truth, pixel.place);
-            rgb.extend(match (pixel.verdict, pixel.indeterminate, pixel.class) {
+            pixels.push(match (pixel.verdict, pixel.indeterminate, pixel.class) {
                 (Verdict::WronglyLit, false, _) => WRONGLY_LIT,
                 (Verdict::WronglyLit, true, _) => WRONGLY_LIT_INDETERMINATE,
                 (Verdict::WronglyShadowed, false, _) => WRONGLY_SHADOWED,
@@ -114,10 +114,7 @@ impl Image {
                 (Verdict::Right, _, Class::Shadow) => backdrop(DIM_SHADOW),
             });
         })?;
-        Ok(Self {
-            size: truth.viewport,
-            rgb,
-        })
+        Ok(Self::painted(truth.viewport, pixels))
     }
 
     /// Draws where a method's shares of light (`visibility`) differ from the reference's `shares`:
@@ -152,10 +149,7 @@ impl Image {
             }
         };
         let pixels = truth.classes.iter().enumerate();
-        Ok(Self {
-            size: truth.viewport,
-            rgb: pixels.flat_map(colour).collect(),
-        })
+        Ok(Self::painted(truth.viewport, pixels.map(colour)))
     }
 
     /// Draws a value for each pixel on a heat scale, from dark red (1/64 and less) over pale yellow
@@ -175,10 +169,7 @@ impl Image {
             (None, _) => DIM_FACING_AWAY,
         };
         let pixels = texels.iter().zip(&truth.classes);
-        Ok(Self {
-            size: truth.viewport,
-            rgb: pixels.flat_map(colour).collect(),
-        })
+        Ok(Self::painted(truth.viewport, pixels.map(colour)))
     }
 
     /// Draws a method's output alone: white = lit, black = shadow, grey for shares in between,
@@ -201,13 +192,8 @@ impl Image {
             _ => [srgb(share); 3],
         };
         let pixels = visibility.iter().zip(status);
-        let rgb = pixels
-            .flat_map(|(visibility, &status)| colour(visibility.share(), status.into()))
-            .collect();
-        Ok(Self {
-            size: viewport,
-            rgb,
-        })
+        let pixels = pixels.map(|(visibility, &status)| colour(visibility.share(), status.into()));
+        Ok(Self::painted(viewport, pixels))
     }
 
     /// Draws the shaded scene, as [`shaded`](Self::shaded) does, with the pixels that the method
@@ -240,25 +226,28 @@ impl Image {
     /// [`Error::PixelCount`] if `visibility` does not have one value per pixel of `truth`.
     pub fn shaded(visibility: &[impl Shown], truth: &GroundTruthPixels) -> Result<Self, Error> {
         check_pixel_count("visibility", truth.viewport, visibility.len())?;
-        let mut rgb = Vec::with_capacity(truth.classes.len() * 3);
-        for (index, &class) in truth.classes.iter().enumerate() {
+        let colour = |(index, &class): (usize, &Class)| {
+            if class == Class::Background {
+                return BACKGROUND;
+            }
             let direct = visibility[index].share() * truth.n_dot_l[index].max(0.0);
             // A little of n · l in the ambient term keeps form readable where no light arrives.
             let ambient = AMBIENT * (0.75 + 0.25 * truth.n_dot_l[index].clamp(-1.0, 1.0));
-            rgb.extend(if class == Class::Background {
-                BACKGROUND
-            } else {
-                let light = ambient + (1.0 - AMBIENT) * direct;
-                match truth.base_colors.get(index) {
-                    Some(color) => color.map(|channel| srgb(channel * light)),
-                    None => [srgb(light); 3],
-                }
-            });
+            let light = ambient + (1.0 - AMBIENT) * direct;
+            match truth.base_colors.get(index) {
+                Some(color) => color.map(|channel| srgb(channel * light)),
+                None => [srgb(light); 3],
+            }
+        };
+        let pixels = truth.classes.iter().enumerate();
+        Ok(Self::painted(truth.viewport, pixels.map(colour)))
+    }
+
+    fn painted(size: [u32; 2], pixels: impl IntoIterator<Item = Colour>) -> Self {
+        Self {
+            size,
+            rgb: pixels.into_iter().flatten().collect(),
         }
-        Ok(Self {
-            size: truth.viewport,
-            rgb,
-        })
     }
 }
 

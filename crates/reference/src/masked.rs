@@ -55,16 +55,11 @@ impl<'a> Masked<'a> {
             };
         }
         let uv = self.uv(edges.map(|edge| edge / determinant));
-        let moved: DVec2 = self
-            .uvs
-            .iter()
-            .zip(errors)
-            .map(|(corner, error)| (*corner - uv).abs() * (error / least))
-            .sum();
-        let largest = self
-            .uvs
-            .iter()
-            .fold(DVec2::ZERO, |most, uv| most.max(uv.abs()));
+        let corners = self.uvs.iter().zip(errors);
+        let moved = corners.map(|(corner, error)| (*corner - uv).abs() * (error / least));
+        let moved: DVec2 = moved.sum();
+        let uvs = self.uvs.iter();
+        let largest = uvs.fold(DVec2::ZERO, |most, uv| most.max(uv.abs()));
         let rounded = largest * (UV_ROUNDINGS * F32_ROUNDING) + TEXEL_ROUNDINGS * F32_ROUNDING;
         self.mask.ask(uv, moved + rounded)
     }

@@ -45,6 +45,11 @@ pub fn neighbours(index: usize, [width, height]: [usize; 2]) -> impl Iterator<It
     beside.into_iter().flatten()
 }
 
+/// The column and the row of a pixel.
+pub(crate) fn place(pixel: usize, [width, _]: [u32; 2]) -> [u32; 2] {
+    [pixel as u32 % width, pixel as u32 / width]
+}
+
 /// Computes one value per pixel, rows in parallel, and returns the values row by row from the top
 /// left. `pixel` gets the column, the row, and a list for use as scratch memory: each thread has
 /// one list, which still holds the content of the thread's last call. An error of any pixel ends
@@ -87,14 +92,24 @@ pub(crate) fn shown(
 ) -> Result<Option<u32>, Error> {
     match primitives[x as usize + y as usize * viewport[0] as usize] {
         BACKGROUND => Ok(None),
-        primitive if u64::from(primitive) < count => Ok(Some(primitive)),
-        primitive => Err(Error::UnknownPrimitive {
-            x,
-            y,
-            primitive,
-            count,
-        }),
+        primitive => existing(primitive, [x, y], count).map(Some),
     }
+}
+
+/// A primitive that a pixel shows, if the mesh has so many.
+///
+/// # Errors
+/// [`Error::UnknownPrimitive`].
+pub(crate) fn existing(primitive: u32, [x, y]: [u32; 2], count: u64) -> Result<u32, Error> {
+    let unknown = Error::UnknownPrimitive {
+        x,
+        y,
+        primitive,
+        count,
+    };
+    (u64::from(primitive) < count)
+        .then_some(primitive)
+        .ok_or(unknown)
 }
 
 /// Checks that the buffer `name`, which has `actual` values, holds one value per pixel.

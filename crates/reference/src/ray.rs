@@ -46,13 +46,7 @@ impl Ray {
     /// every box on top of the rounding errors of box and triangle tests.
     pub(crate) fn new(origin: DVec3, direction: DVec3, max_distance: f64, grow: f64) -> Self {
         let d = direction.to_array();
-        let longest = (0..3).fold(0, |best, axis| {
-            if d[axis].abs() > d[best].abs() {
-                axis
-            } else {
-                best
-            }
-        });
+        let longest = direction.abs().max_position();
         let (mut first, mut second) = ((longest + 1) % 3, (longest + 2) % 3);
         if d[longest] < 0.0 {
             // Keeps the winding of the sheared triangle, and with it `Hit::front`.

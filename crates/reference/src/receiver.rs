@@ -224,9 +224,6 @@ fn mean(weights: [f64; 3], lengths: [f64; 3]) -> f64 {
 }
 
 fn weighted(weights: [f64; 3], points: [DVec3; 3]) -> DVec3 {
-    weights
-        .iter()
-        .zip(points)
-        .map(|(&weight, point)| point * weight)
-        .sum()
+    let pairs = weights.iter().zip(points);
+    pairs.map(|(&weight, point)| point * weight).sum()
 }

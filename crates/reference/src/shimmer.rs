@@ -4,7 +4,7 @@
 use crate::{
     error::Error,
     ground_truth::GroundTruth,
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, shown},
+    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place, shown},
 };
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -57,8 +57,7 @@ impl Seen<'_> {
     /// is seen edge-on.
     pub(crate) fn surface(&self, pixel: usize) -> Option<Surface> {
         let primitive = self.primitives[pixel];
-        let width = self.camera.viewport[0];
-        let place = [pixel as u32 % width, pixel as u32 / width];
+        let place = place(pixel, self.camera.viewport);
         let is_known = (primitive as usize) < self.mesh.triangles.len();
         let receiver = is_known.then(|| hit(self.mesh, primitive, self.camera, place))??;
         let [a, b, c] = self.mesh.corners(primitive);

@@ -80,19 +80,16 @@ impl<'a> Tree<'a> {
     pub(crate) fn new(mesh: &'a Mesh) -> Self {
         let bvh = Bvh::build(mesh);
         let open = open_edges(mesh);
-        let casters = bvh
-            .primitives
-            .par_iter()
-            .map(|&primitive| Caster {
-                primitive,
-                corners: mesh.triangles[primitive as usize]
-                    .map(|index| mesh.positions[index as usize].to_array()),
-                open: open[primitive as usize],
-                masked: Masked::new(mesh, primitive),
-                double_sided: mesh.surfaces.is_double_sided(primitive),
-                casts: mesh.casts(primitive),
-            })
-            .collect();
+        let corner = |index: u32| mesh.positions[index as usize].to_array();
+        let caster = |&primitive: &u32| Caster {
+            primitive,
+            corners: mesh.triangles[primitive as usize].map(corner),
+            open: open[primitive as usize],
+            masked: Masked::new(mesh, primitive),
+            double_sided: mesh.surfaces.is_double_sided(primitive),
+            casts: mesh.casts(primitive),
+        };
+        let casters = bvh.primitives.par_iter().map(caster).collect();
         let bounds = mesh
             .bounds()
             .map(|(min, max)| (min.as_dvec3(), max.as_dvec3()));
@@ -211,8 +208,8 @@ fn open_edges(mesh: &Mesh) -> Vec<[bool; 3]> {
         let first = edges.partition_point(|other| *other < key);
         edges.get(first + 1) != Some(&key)
     };
-    mesh.triangles
-        .par_iter()
+    let triangles = mesh.triangles.par_iter();
+    triangles
         .map(|triangle| keys(triangle).map(alone))
         .collect()
 }

@@ -119,14 +119,12 @@ fn is_wrong(oracle: &Oracle<'_>, sample: &Sample, shown: u32, stack: &mut Vec<u3
     let end = match shown {
         BACKGROUND => sample.camera.far * (1.0 - 16.0 * F32_ROUNDING),
         _ => {
-            let corners = oracle
-                .mesh
-                .corners(shown)
-                .map(|corner| corner.as_vec3().into());
+            let corners = oracle.mesh.corners(shown);
+            let corners = corners.map(|corner| corner.as_vec3().into());
             if !sample.may_touch(&corners) {
                 return true;
             }
-            sample.least_distance(&corners)
+            sample.distances(&corners)[0]
         }
     };
     oracle.tree.walk(&sample.rays[0], stack, |caster, t_max| {
@@ -218,12 +216,6 @@ impl<'a> Sample<'a> {
             let room = F32_ROUNDING * (least.abs() + greatest.abs());
             least - room > square[1] || greatest + room < square[0]
         })
-    }
-
-    /// The least distance along the view at which a rasteriser may put a triangle's plane; minus
-    /// infinity for one that is all but edge-on.
-    fn least_distance(&self, corners: &Corners) -> f64 {
-        self.distances(corners)[0]
     }
 
     /// The least and the greatest distance along the view at which a rasteriser may put a
@@ -328,16 +320,14 @@ impl<'a> Sample<'a> {
     /// frustum, cut as Sutherland and Hodgman do it, *Reentrant Polygon Clipping*, 1974.
     fn nearest_in_picture(&self, relative: &[DVec3; 3]) -> f64 {
         let camera = self.camera;
-        let mut part: Vec<DVec3> = relative
-            .iter()
-            .map(|corner| {
-                DVec3::new(
-                    camera.right.dot(*corner) / camera.half_width,
-                    camera.up.dot(*corner) / camera.half_height,
-                    camera.forward.dot(*corner),
-                )
-            })
-            .collect();
+        let seen = |corner: DVec3| {
+            DVec3::new(
+                camera.right.dot(corner) / camera.half_width,
+                camera.up.dot(corner) / camera.half_height,
+                camera.forward.dot(corner),
+            )
+        };
+        let mut part = relative.map(seen).to_vec();
         let planes: [&dyn Fn(DVec3) -> f64; 5] = [
             &|at| at.z - camera.near,
             &|at| at.z - at.x,

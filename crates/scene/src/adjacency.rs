@@ -22,11 +22,11 @@ pub struct Adjacency {
     pub opposite: Vec<u32>,
 }
 
-/// The triangles met so far at an edge.
+/// The triangles met so far at an edge, by their entries.
 #[derive(Clone, Copy)]
 enum Edge {
-    One { entry: u32 },
-    Two,
+    One(u32),
+    Two([u32; 2]),
     More,
 }
 
@@ -45,22 +45,21 @@ impl Adjacency {
                 let entry = (3 * primitive + side) as u32;
                 let edge = edges.entry((from.min(to), from.max(to)));
                 edge.and_modify(|edge| match *edge {
-                    Edge::One { entry: other } => {
+                    Edge::One(other) => {
                         opposite[entry as usize] = opposite_corner(other);
                         opposite[other as usize] = opposite_corner(entry);
-                        *edge = Edge::Two;
+                        *edge = Edge::Two([other, entry]);
                     }
-                    Edge::Two | Edge::More => *edge = Edge::More,
+                    // The first two had been joined before the third came.
+                    Edge::Two(joined) => {
+                        for entry in joined {
+                            opposite[entry as usize] = NO_NEIGHBOUR;
+                        }
+                        *edge = Edge::More;
+                    }
+                    Edge::More => {}
                 })
-                .or_insert(Edge::One { entry });
-            }
-        }
-        // An edge with more than two triangles had joined its first two before the third came.
-        for (primitive, &[a, b, c]) in mesh.triangles.iter().enumerate() {
-            for (side, (from, to)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
-                if let Some(Edge::More) = edges.get(&(from.min(to), from.max(to))) {
-                    opposite[3 * primitive + side] = NO_NEIGHBOUR;
-                }
+                .or_insert(Edge::One(entry));
             }
         }
         leave_out_masked(mesh, &mut opposite);

@@ -185,6 +185,15 @@ pub enum SceneError {
     },
 }
 
+impl SceneError {
+    /// The error of a file that cannot be read.
+    #[cfg(feature = "files")]
+    pub(crate) fn unread(path: &std::path::Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        |reason| Self::Read { path, reason }
+    }
+}
+
 /// Place of a face in a mesh file.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("face {number} of group {:?}{}", beginning(group), in_line(*line))]
@@ -301,11 +310,8 @@ fn list_groups(names: &[String]) -> String {
     if names.is_empty() {
         return "the file has no groups".to_owned();
     }
-    let shown: Vec<_> = names
-        .iter()
-        .take(SHOWN)
-        .map(|name| beginning(name))
-        .collect();
+    let shown = names.iter().take(SHOWN).map(|name| beginning(name));
+    let shown: Vec<_> = shown.collect();
     let mut text = format!("the file's groups are {}", shown.join(", "));
     if names.len() > SHOWN {
         text += &format!(", … ({} in all)", names.len());
@@ -329,8 +335,6 @@ fn list_places(places: &[PathBuf]) -> String {
         return "  no folder at all (the environment variable SKIAGRAPH_ASSETS is not set)\n"
             .to_owned();
     }
-    places
-        .iter()
-        .map(|place| format!("  {}\n", place.display()))
-        .collect()
+    let line = |place: &PathBuf| format!("  {}\n", place.display());
+    places.iter().map(line).collect()
 }

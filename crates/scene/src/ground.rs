@@ -106,15 +106,10 @@ pub fn add_ground(mesh: &mut Mesh, up: DVec3) -> Option<Ground> {
     let middle = (extent.min + extent.max) * 0.5;
     let height = extent.min.y - GAP * diagonal;
     let half = EDGE * 0.5 * diagonal;
-    let slab = slab(
-        &extent,
-        [
-            middle.x - half,
-            height - THICKNESS * diagonal,
-            middle.z - half,
-        ],
-        [middle.x + half, height, middle.z + half],
-    );
+    let depth = height - THICKNESS * diagonal;
+    let low = DVec3::new(middle.x - half, depth, middle.z - half);
+    let high = DVec3::new(middle.x + half, height, middle.z + half);
+    let slab = slab(&extent, low, high);
     let [position, normal, first] = [
         mesh.positions.len(),
         mesh.normals.len(),
@@ -142,7 +137,7 @@ pub fn add_ground(mesh: &mut Mesh, up: DVec3) -> Option<Ground> {
 }
 
 /// A closed box between two corners along the axes of an extent.
-fn slab(extent: &Extent, low: [f64; 3], high: [f64; 3]) -> Mesh {
+fn slab(extent: &Extent, low: DVec3, high: DVec3) -> Mesh {
     const FACES: [[u32; 4]; 6] = [
         [0, 4, 6, 2],
         [1, 3, 7, 5],
@@ -152,14 +147,8 @@ fn slab(extent: &Extent, low: [f64; 3], high: [f64; 3]) -> Mesh {
         [4, 5, 7, 6],
     ];
     let corner = |at: u32| {
-        let pick = |axis: usize| {
-            if at >> axis & 1 == 0 {
-                low[axis]
-            } else {
-                high[axis]
-            }
-        };
-        extent.place([pick(0), pick(1), pick(2)])
+        let pick = |axis: usize| [low, high][(at >> axis & 1) as usize][axis];
+        extent.place([0, 1, 2].map(pick))
     };
     let [right, up, back] = extent.axes;
     let normals = [-right, right, -up, up, -back, back];
@@ -191,7 +180,7 @@ mod tests {
             min: DVec3::ZERO,
             max: DVec3::ONE,
         };
-        slab(&extent, [2.0, 1.0, 3.0], [6.0, 3.0, 7.0])
+        slab(&extent, [2.0, 1.0, 3.0].into(), [6.0, 3.0, 7.0].into())
     }
 
     #[test]

@@ -73,11 +73,8 @@ impl Indexed<'_> {
     pub fn mesh(&self) -> Result<Mesh, IndexedError> {
         check(self)?;
         let (mut positions, mut normals) = <(Welder, Welder)>::default();
-        let at: Vec<u32> = self
-            .positions
-            .iter()
-            .map(|&p| positions.index(p.into()))
-            .collect();
+        let welded = self.positions.iter().map(|&p| positions.index(p.into()));
+        let at: Vec<u32> = welded.collect();
         let mut mesh = Mesh::default();
         for corners in self.indices.as_chunks::<3>().0 {
             let triangle = corners.map(|corner| at[corner as usize]);

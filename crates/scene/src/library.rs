@@ -122,15 +122,7 @@ impl SceneLibrary {
             });
         }
         let (file, mut scene) = self.parse_sized(argument)?;
-        let path = match &scene.mesh {
-            MeshSource::Obj {
-                file: mesh, source, ..
-            }
-            | MeshSource::Gltf {
-                file: mesh, source, ..
-            } => Some(self.mesh_file(&scene, mesh, source, file.as_deref())?),
-            MeshSource::Generated(_) => None,
-        };
+        let path = self.mesh_file(&scene, file.as_deref())?;
         if let (Some(path), MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. }) =
             (path, &mut scene.mesh)
         {
@@ -213,13 +205,10 @@ impl SceneLibrary {
                 let views = scene.views.iter().map(|view| view.name.clone());
                 let paths = scene.paths.iter().map(|path| path.view.name.clone());
                 (listing.views, listing.paths) = (views.collect(), paths.collect());
-                listing.mesh_found = match &scene.mesh {
-                    MeshSource::Generated(_) => true,
-                    MeshSource::Obj { file, .. } | MeshSource::Gltf { file, .. } => {
-                        let places = self.mesh_places(file, listing.file.as_deref());
-                        places.iter().any(|place| place.is_file())
-                    }
-                };
+                listing.mesh_found = scene.mesh.file().is_none_or(|(mesh, _)| {
+                    let places = self.mesh_places(mesh, listing.file.as_deref());
+                    places.iter().any(|place| place.is_file())
+                });
                 listing.description = scene.description;
             }
             Err(SceneError::SceneFile(diagnostics)) => {
@@ -247,12 +236,8 @@ impl SceneLibrary {
             None
         };
         if let Some(file) = file {
-            let text = SCENE_FILE
-                .read_text(file)
-                .map_err(|reason| SceneError::Read {
-                    path: file.to_owned(),
-                    reason,
-                })?;
+            let text = SCENE_FILE.read_text(file);
+            let text = text.map_err(SceneError::unread(file))?;
             return Ok((Some(file.to_owned()), text));
         }
         match BUILT_IN.iter().find(|(name, _)| *name == argument) {
@@ -286,21 +271,19 @@ impl SceneLibrary {
 
     fn mesh_places(&self, mesh: &str, scene_file: Option<&Path>) -> Vec<PathBuf> {
         let beside = scene_file.map(|file| file.parent().unwrap_or(Path::new("")).to_owned());
-        beside
-            .iter()
-            .chain(&self.assets)
-            .map(|folder| folder.join(mesh))
-            .collect()
+        let folders = beside.iter().chain(&self.assets);
+        folders.map(|folder| folder.join(mesh)).collect()
     }
 
     /// Where the mesh of a scene file is.
     fn mesh_file(
         &self,
         scene: &SceneFile,
-        mesh: &str,
-        source: &Option<String>,
         file: Option<&Path>,
-    ) -> Result<PathBuf, SceneError> {
+    ) -> Result<Option<PathBuf>, SceneError> {
+        let Some((mesh, source)) = scene.mesh.file() else {
+            return Ok(None);
+        };
         let places = self.mesh_places(mesh, file);
         // A path that is neither file nor folder is there as well; reading it tells the error.
         let place = places.iter().find(|place| place.is_file()).or_else(|| {
@@ -309,7 +292,7 @@ impl SceneLibrary {
                 .find(|place| place.exists() && !place.is_dir())
         });
         if let Some(place) = place {
-            return Ok(place.clone());
+            return Ok(Some(place.clone()));
         }
         if let Some(folder) = places.iter().find(|place| place.is_dir()) {
             return Err(SceneError::MeshIsFolder {
@@ -321,7 +304,7 @@ impl SceneLibrary {
             scene: scene.name.clone(),
             file: mesh.to_owned(),
             searched: places,
-            source_text: source.clone(),
+            source_text: source.map(str::to_owned),
         })
     }
 
@@ -330,15 +313,15 @@ impl SceneLibrary {
         scene: SceneFile,
         file: Option<&Path>,
     ) -> Result<(Scene, ImportReport), SceneError> {
+        let path = self.mesh_file(&scene, file)?.unwrap_or_default();
         let (mut mesh, mut report) = match &scene.mesh {
             MeshSource::Generated(generator) => (generator.build(), ImportReport::default()),
             MeshSource::Obj {
-                file: mesh,
                 leave_out,
                 quads,
                 concave,
                 materials,
-                source,
+                ..
             } => {
                 let options = ObjOptions {
                     leave_out: leave_out.clone(),
@@ -346,13 +329,9 @@ impl SceneLibrary {
                     concave: *concave,
                     materials: materials.clone(),
                 };
-                load_obj(&self.mesh_file(&scene, mesh, source, file)?, &options)?
+                load_obj(&path, &options)?
             }
-            MeshSource::Gltf {
-                file: mesh,
-                materials,
-                source,
-            } => load_gltf(&self.mesh_file(&scene, mesh, source, file)?, *materials)?,
+            MeshSource::Gltf { materials, .. } => load_gltf(&path, *materials)?,
         };
         if let Some(up) = scene.ground {
             add_ground(&mut mesh, up);
@@ -401,22 +380,15 @@ fn load_bare(path: &Path) -> Result<(Scene, ImportReport), SceneError> {
     if has_extension(path, "obj") {
         return Err(needs_view());
     }
-    let MeshFile {
-        name,
-        mesh,
-        views,
-        lights,
-        report,
-        ..
-    } = MeshFile::load(path, &MeshFileOptions::default())?;
-    if views.is_empty() || lights.is_empty() {
+    let file = MeshFile::load(path, &MeshFileOptions::default())?;
+    if file.views.is_empty() || file.lights.is_empty() {
         return Err(needs_view());
     }
     let scene = Scene {
-        name,
-        mesh,
-        views,
-        lights,
+        name: file.name,
+        mesh: file.mesh,
+        views: file.views,
+        lights: file.lights,
     };
-    Ok((scene, report))
+    Ok((scene, file.report))
 }

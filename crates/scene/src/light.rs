@@ -112,19 +112,14 @@ impl DirectionalLight {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);
         let point = Outline::of_the_origin();
-        let Outline {
-            hull,
-            nearest,
-            farthest,
-        } = if outline.hull.is_empty() {
+        let outline = if outline.hull.is_empty() {
             &point
         } else {
             outline
         };
-        let (nearest, farthest) = (*nearest, *farthest);
-        let (turn, low, high) = least_rectangle(hull);
+        let (turn, low, high) = least_rectangle(&outline.hull);
         let (right, up) = (right * turn.x + up * turn.y, up * turn.x - right * turn.y);
-        let (low, high) = (low.extend(nearest), high.extend(farthest));
+        let (low, high) = (low.extend(outline.nearest), high.extend(outline.farthest));
         let centre = (low + high) * 0.5;
         // A flat scene still needs a box of some volume, and one large enough to be told from its
         // place.

@@ -71,65 +71,38 @@ pub(crate) enum NamedLightText {
     },
 }
 
-impl From<Light> for NamedLightText {
-    fn from(Light { name, kind }: Light) -> Self {
-        match kind {
-            LightKind::Directional(light) => Self::Directional {
-                name,
-                direction: light.direction,
-                angle_degrees: light.angle_degrees,
-            },
-            LightKind::Spot(light) => Self::Spot {
-                name,
-                position: light.position,
-                direction: light.direction,
-                cone_degrees: light.cone_degrees,
-                radius: light.radius,
-            },
-            LightKind::Point(light) => Self::Point {
-                name,
-                position: light.position,
-                radius: light.radius,
-            },
+/// Writes and reads the lights of a scene file: each kind has the fields that are listed for it.
+macro_rules! texts {
+    ($($kind:ident($light:ident): $($field:ident),+;)+) => {
+        impl From<Light> for NamedLightText {
+            fn from(Light { name, kind }: Light) -> Self {
+                match kind {
+                    $(LightKind::$kind($light { $($field),+ }) => {
+                        Self::$kind { name, $($field),+ }
+                    })+
+                }
+            }
         }
-    }
+
+        fn named_kind(text: NamedLightText) -> (String, LightKind) {
+            match text {
+                $(NamedLightText::$kind { name, $($field),+ } => {
+                    (name, $light { $($field),+ }.into())
+                })+
+            }
+        }
+    };
+}
+
+texts! {
+    Directional(DirectionalLight): direction, angle_degrees;
+    Spot(SpotLight): position, direction, cone_degrees, radius;
+    Point(PointLight): position, radius;
 }
 
 impl From<NamedLightText> for Light {
     fn from(text: NamedLightText) -> Self {
-        let (name, kind): (_, LightKind) = match text {
-            NamedLightText::Directional {
-                name,
-                direction,
-                angle_degrees,
-            } => {
-                let light = DirectionalLight {
-                    direction,
-                    angle_degrees,
-                };
-                (name, light.into())
-            }
-            NamedLightText::Spot {
-                name,
-                position,
-                direction,
-                cone_degrees,
-                radius,
-            } => {
-                let spot = SpotLight {
-                    position,
-                    direction,
-                    cone_degrees,
-                    radius,
-                };
-                (name, spot.into())
-            }
-            NamedLightText::Point {
-                name,
-                position,
-                radius,
-            } => (name, PointLight { position, radius }.into()),
-        };
+        let (name, kind) = named_kind(text);
         Self { name, kind }
     }
 }

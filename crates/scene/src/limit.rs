@@ -28,13 +28,12 @@ impl Limit {
     /// that alone can block; a file beyond the limit. The message does not name the file.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let most = self.mib * MIB;
+        let check = |length: u64| {
+            let exceeded = || self.exceeded(&format!("{} MiB", length.div_ceil(MIB)));
+            (length <= most).then_some(()).ok_or_else(exceeded)
+        };
         if let Some(bytes) = handed(path) {
-            return match bytes.len() as u64 {
-                length if length > most => {
-                    Err(self.exceeded(&format!("{} MiB", length.div_ceil(MIB))))
-                }
-                _ => Ok(bytes.to_vec()),
-            };
+            return check(bytes.len() as u64).map(|()| bytes.to_vec());
         }
         let metadata = std::fs::metadata(path)?;
         if metadata.is_dir() {
@@ -46,9 +45,7 @@ impl Limit {
                  into a file, and name that",
             ));
         }
-        if metadata.len() > most {
-            return Err(self.exceeded(&format!("{} MiB", metadata.len().div_ceil(MIB))));
-        }
+        check(metadata.len())?;
         let mut bytes = Vec::new();
         bytes.try_reserve_exact(metadata.len() as usize + 1)?;
         // Files of the kernel's have length 0 whatever they hold, and others may grow meanwhile.

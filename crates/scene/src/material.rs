@@ -231,12 +231,8 @@ impl Surfaces {
         let Some((texels, wrap)) = texels else {
             return material.base_color;
         };
-        let at: DVec2 = self
-            .corner_uvs(primitive)
-            .iter()
-            .zip(weights)
-            .map(|(uv, weight)| uv.as_dvec2() * weight)
-            .sum();
+        let uvs = self.corner_uvs(primitive).into_iter().zip(weights);
+        let at: DVec2 = uvs.map(|(uv, weight)| uv.as_dvec2() * weight).sum();
         let [width, height] = texels.size;
         let [x, y] = [wrap[0].texel(at.x, width), wrap[1].texel(at.y, height)];
         let [red, green, blue, _] = texels.rgba[y as usize * width as usize + x as usize];

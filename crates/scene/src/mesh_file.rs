@@ -3,7 +3,7 @@
 use crate::{
     camera::View,
     error::SceneError,
-    gltf::{Clip, load_gltf_scene},
+    gltf::{Clip, GltfScene, load_gltf_scene},
     light_kind::Light,
     material_use::MaterialUse,
     mesh::Mesh,
@@ -76,7 +76,7 @@ impl MeshFile {
     pub fn load(path: &Path, options: &MeshFileOptions) -> Result<Self, SceneError> {
         let stem = path.file_stem();
         let name = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        if has_extension(path, "obj") {
+        let (mesh, scene, mut report) = if has_extension(path, "obj") {
             let options = ObjOptions {
                 quads: options.quads,
                 concave: options.concave,
@@ -84,16 +84,10 @@ impl MeshFile {
                 ..ObjOptions::default()
             };
             let (mesh, report) = load_obj(path, &options)?;
-            return Ok(Self {
-                name,
-                mesh,
-                views: Vec::new(),
-                lights: Vec::new(),
-                clips: Vec::new(),
-                report,
-            });
-        }
-        let (mesh, scene, mut report) = load_gltf_scene(path, options.materials)?;
+            (mesh, GltfScene::default(), report)
+        } else {
+            load_gltf_scene(path, options.materials)?
+        };
         let nothing = nothing_casts(&mesh).map(str::to_owned);
         for remark in scene.remarks.into_iter().chain(nothing) {
             report.remark(remark);

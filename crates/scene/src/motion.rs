@@ -113,6 +113,20 @@ fn posed(keys: &[PoseKey], at: f64) -> DAffine3 {
     )
 }
 
+/// Finds the mistake in keys: there are none, their times do not grow, or they are not valid
+/// otherwise.
+fn wrong_keys<K>(
+    keys: &[K],
+    time: fn(&K) -> f64,
+    are_valid: bool,
+    otherwise: &str,
+) -> Option<String> {
+    if keys.is_empty() {
+        return Some("it has none of the keys, of which it needs one at least".to_owned());
+    }
+    not_later(keys, time).or_else(|| (!are_valid).then(|| otherwise.to_owned()))
+}
+
 impl Motion {
     /// Returns the name of the part that moves.
     pub fn part(&self) -> &str {
@@ -127,29 +141,22 @@ impl Motion {
     /// # Errors
     /// Sentence with the first mistake, which names the part.
     pub fn check(&self) -> Result<(), String> {
-        let wrong = |what: String| Err(format!("moves: {:?}: {what}", self.part()));
         let is_axis = |axis: DVec3| axis.is_finite() && axis.length_squared() > 0.0;
-        match self {
+        let wrong = match self {
             Self::Rigid { axis, .. } if !is_axis(*axis) => {
-                wrong(format!("axis {axis} must be finite and longer than 0"))
-            }
-            Self::Rigid { keys, .. } if keys.is_empty() => {
-                wrong("it has none of the keys, of which it needs one at least".into())
+                Some(format!("axis {axis} must be finite and longer than 0"))
             }
             Self::Rigid { pivot, keys, .. } => {
                 let is_finite = |key: &RigidKey| {
                     key.at.is_finite() && key.translation.is_finite() && key.degrees.is_finite()
                 };
-                match not_later(keys, |key| key.at) {
-                    Some(late) => wrong(late),
-                    None if !pivot.is_finite() || !keys.iter().all(is_finite) => {
-                        wrong("pivot and keys must be finite".into())
-                    }
-                    None => Ok(()),
-                }
-            }
-            Self::Posed { keys, .. } if keys.is_empty() => {
-                wrong("it has none of the keys, of which it needs one at least".into())
+                let are_finite = pivot.is_finite() && keys.iter().all(is_finite);
+                wrong_keys(
+                    keys,
+                    |key| key.at,
+                    are_finite,
+                    "pivot and keys must be finite",
+                )
             }
             Self::Posed { keys, .. } => {
                 let is_pose = |key: &PoseKey| {
@@ -157,35 +164,32 @@ impl Motion {
                         && key.translation.is_finite()
                         && key.rotation.is_normalized()
                 };
-                match not_later(keys, |key| key.at) {
-                    Some(late) => wrong(late),
-                    None if !keys.iter().all(is_pose) => {
-                        wrong("keys must be finite, and each rotation a unit quaternion".into())
-                    }
-                    None => Ok(()),
-                }
+                let otherwise = "keys must be finite, and each rotation a unit quaternion";
+                wrong_keys(keys, |key| key.at, keys.iter().all(is_pose), otherwise)
             }
             Self::Sway { axis, up, .. }
                 if !is_axis(*axis) || axis.cross(*up).length_squared() == 0.0 =>
             {
-                wrong(format!(
+                Some(format!(
                     "axis {axis} must be finite, longer than 0 and not along {up}, which is up"
                 ))
             }
             Self::Sway { degrees, .. } if degrees.is_nan() || degrees.abs() >= 90.0 => {
-                wrong(format!("degrees are {degrees}, expected less than 90"))
+                Some(format!("degrees are {degrees}, expected less than 90"))
             }
             Self::Sway {
                 axis, up, degrees, ..
-            } if folds(*axis, *up, *degrees) => wrong(format!(
+            } if folds(*axis, *up, *degrees) => Some(format!(
                 "leaning by {degrees} degrees along {axis}, which is partly up or down, it is \
                  turned inside out: lean less, or across {up}"
             )),
             Self::Sway { seconds, .. } if !(seconds.is_finite() && *seconds > 0.0) => {
-                wrong(format!("seconds are {seconds}, expected more than 0"))
+                Some(format!("seconds are {seconds}, expected more than 0"))
             }
-            Self::Sway { .. } => Ok(()),
-        }
+            Self::Sway { .. } => None,
+        };
+        let named = |what| Err(format!("moves: {:?}: {what}", self.part()));
+        wrong.map_or(Ok(()), named)
     }
 
     /// The map of its part, which lies between two heights, at a time: of a place at rest, the

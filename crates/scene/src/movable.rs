@@ -304,9 +304,7 @@ impl Movable {
         if !map.is_finite() {
             return Err(MoveError::NotFinite { part, map: *map });
         }
-        let Part {
-            positions, normals, ..
-        } = &self.parts[part];
+        let positions = &self.parts[part].positions;
         let determinant = map.matrix3.determinant();
         let is_singular = determinant == 0.0 || determinant.is_nan();
         if is_singular && !positions.is_empty() {
@@ -318,23 +316,24 @@ impl Movable {
         };
         let positions = positions.iter().map(place).collect::<Result<_, _>>()?;
         let across = map.matrix3.inverse().transpose();
-        let normal = |&(normal, _): &(u32, u32)| self.normal(part, normal, across);
-        let normals = normals.iter().map(normal).collect::<Result<_, _>>()?;
         Ok(MovedPart {
             positions,
-            normals,
+            normals: self.normals(part, |_| across)?,
             is_mirrored: determinant < 0.0,
         })
     }
 
-    /// A normal of a part, moved by a matrix.
-    fn normal(&self, part: usize, normal: u32, across: DMat3) -> Result<Vec3, MoveError> {
-        let normal = across * self.rest.normals[normal as usize].as_dvec3();
-        let normal = normal.normalize_or_zero().as_vec3();
-        let is_finite = normal.is_finite();
-        is_finite
-            .then_some(normal)
-            .ok_or(MoveError::Singular { part })
+    /// The normals of a part, each moved by the matrix at its position.
+    fn normals(&self, part: usize, across: impl Fn(u32) -> DMat3) -> Result<Vec<Vec3>, MoveError> {
+        let moved = |&(normal, position): &(u32, u32)| {
+            let normal = across(position) * self.rest.normals[normal as usize].as_dvec3();
+            let normal = normal.normalize_or_zero().as_vec3();
+            let is_finite = normal.is_finite();
+            is_finite
+                .then_some(normal)
+                .ok_or(MoveError::Singular { part })
+        };
+        self.parts[part].normals.iter().map(moved).collect()
     }
 
     fn bent_part(
@@ -342,9 +341,7 @@ impl Movable {
         part: usize,
         map: impl Fn(DVec3) -> (DVec3, DMat3),
     ) -> Result<MovedPart, MoveError> {
-        let Part {
-            positions, normals, ..
-        } = &self.parts[part];
+        let positions = &self.parts[part].positions;
         let at_rest = |position: u32| self.rest.positions[position as usize];
         let mut mirrored_at = None;
         let mut is_upright = false;
@@ -363,14 +360,13 @@ impl Movable {
         if let Some(at) = mirrored_at.filter(|_| is_upright) {
             return Err(MoveError::Folded { part, at });
         }
-        let normal = |&(normal, position): &(u32, u32)| {
+        let across = |position: u32| {
             let (_, derivative) = map(at_rest(position).as_dvec3());
-            self.normal(part, normal, derivative.inverse().transpose())
+            derivative.inverse().transpose()
         };
-        let normals = normals.iter().map(normal).collect::<Result<_, _>>()?;
         Ok(MovedPart {
             positions,
-            normals,
+            normals: self.normals(part, across)?,
             is_mirrored: mirrored_at.is_some(),
         })
     }

@@ -36,10 +36,8 @@ impl Outline {
         mut loose: impl FnMut(usize) -> Self,
         mut exact: impl FnMut(usize) -> Self,
     ) -> Self {
-        let unknown = outlines
-            .iter()
-            .enumerate()
-            .filter(|(_, outline)| outline.is_none());
+        let unknown = outlines.iter().enumerate();
+        let unknown = unknown.filter(|(_, outline)| outline.is_none());
         let open: Vec<(usize, Self)> = unknown.map(|(part, _)| (part, loose(part))).collect();
         for part in farthest_of(outlines, &open) {
             outlines[part] = Some(exact(part));
@@ -123,11 +121,8 @@ pub fn border(points: &[Vec3]) -> Vec<Vec3> {
             weights.min_element() >= 0.0 && weights.element_sum() < 1.0 - MARGIN
         })
     };
-    points
-        .iter()
-        .filter(|point| !is_inside(point))
-        .copied()
-        .collect()
+    let border = points.iter().filter(|point| !is_inside(point));
+    border.copied().collect()
 }
 
 /// Directions across the light, counter-clockwise.

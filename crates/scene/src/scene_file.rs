@@ -159,6 +159,19 @@ pub enum MeshSource {
     ),
 }
 
+impl MeshSource {
+    /// The path of the mesh file as the scene file gives it, and where the mesh can be downloaded;
+    /// `None` for a mesh that is generated.
+    pub(crate) fn file(&self) -> Option<(&str, Option<&str>)> {
+        match self {
+            Self::Obj { file, source, .. } | Self::Gltf { file, source, .. } => {
+                Some((file, source.as_deref()))
+            }
+            Self::Generated(_) => None,
+        }
+    }
+}
+
 impl SceneFile {
     /// Creates a scene that is a mesh alone, without lights and views.
     pub fn new(name: impl Into<String>, mesh: MeshSource) -> Self {

@@ -71,10 +71,8 @@ fn with_view(text: &str, view: &View) -> Option<String> {
         let (before, behind) = text.split_at(at);
         let text = format!("{before}\n        {},{behind}", view_text(view));
         let read = SceneFile::parse(&text, "").ok()?;
-        read.views
-            .iter()
-            .any(|read| read.name == view.name)
-            .then_some(text)
+        let is_read = read.views.iter().any(|read| read.name == view.name);
+        is_read.then_some(text)
     })
 }
 

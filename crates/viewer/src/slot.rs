@@ -189,13 +189,8 @@ impl Slot {
             return Ok(self.last.clone());
         };
         frame::grow(session, executor, provider).await?;
-        let names: Vec<String> = executor
-            .plan()
-            .outputs()
-            .into_iter()
-            .map(|it| it.name)
-            .collect();
-        let read: Vec<&str> = names.iter().map(String::as_str).collect();
+        let outputs = executor.plan().outputs();
+        let read: Vec<&str> = outputs.iter().map(|it| it.name.as_str()).collect();
         let desired = Frame::new()
             .with_timing(how.timing)
             .with_statistics(true)

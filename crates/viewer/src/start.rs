@@ -77,12 +77,8 @@ pub fn start(
         wake();
     });
     let again = worker.commands().clone();
-    let folders = watch::folders(
-        opening
-            .methods
-            .iter()
-            .map(|it| it.split('@').next().unwrap_or(it)),
-    );
+    let named = opening.methods.iter();
+    let folders = watch::folders(named.map(|it| it.split('@').next().unwrap_or(it)));
     let watch = Watch::start(&folders, move || {
         let _ = again.send(Command::Reload);
     });
@@ -146,10 +142,8 @@ fn desired_methods(opening: &Opening, sink: &dyn Sink) -> Result<Vec<DesiredMeth
 
 fn choices(opening: &Opening, gpu: &skiagraph_gpu::device::Gpu, sink: &dyn Sink) -> Choices {
     let presets = preset::names(&preset::sources(sink));
-    let named = opening
-        .methods
-        .iter()
-        .map(|it| MethodArgument::new(it).preset);
+    let named = opening.methods.iter();
+    let named = named.map(|it| MethodArgument::new(it).preset);
     let methods: BTreeSet<String> = presets.into_iter().chain(named).collect();
     let listed = SceneLibrary::from_environment().list();
     let listed = listed.into_iter().filter(|scene| scene.mesh_found);

@@ -361,10 +361,8 @@ impl Viewer {
         match drag {
             Drag::Look => flight::look(&mut moved, -x, -y),
             Drag::Orbit => {
-                let distance = moved
-                    .eye
-                    .distance(centre)
-                    .clamp(radius * 0.05, radius * 4.0);
+                let distance = moved.eye.distance(centre);
+                let distance = distance.clamp(radius * 0.05, radius * 4.0);
                 flight::orbit(&mut moved, -x, -y, distance);
             }
             Drag::Pan => flight::fly(&mut moved, DVec3::new(-x, y, 0.0), self.bounds()),

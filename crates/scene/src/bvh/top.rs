@@ -142,3 +142,17 @@ fn by_area(ids: &mut [u32], boxes: &[BvhNode], centres: &[DVec3]) -> Option<usiz
     ids.sort_by_key(|&id| bin_of(id, axis) >= bin);
     Some(ids.partition_point(|&id| bin_of(id, axis) < bin))
 }
+
+/// The depth of a top level together with the trees that are its leaves.
+pub(super) fn deepest((top, order): &(Vec<BvhNode>, Vec<u32>), depths: &[u32]) -> u32 {
+    let mut deepest = 0;
+    let mut open = vec![(0u32, 0u32)];
+    while let Some((index, above)) = open.pop() {
+        let node = top[index as usize];
+        match node.count {
+            0 => open.extend([(node.first, above + 1), (node.first + 1, above + 1)]),
+            _ => deepest = deepest.max(above + depths[order[node.first as usize] as usize]),
+        }
+    }
+    deepest
+}

@@ -4,7 +4,7 @@
 use super::{
     levels::levels,
     node::{BvhNode, MAX_DEPTH, area},
-    top::{Split, over_boxes},
+    top::{Split, deepest, over_boxes},
     tree::{Bvh, cost_of, fitted_box},
 };
 use crate::{free::Free, mesh::Mesh};
@@ -115,32 +115,13 @@ impl TwoLevelBvh {
         });
         let trees: BTreeMap<usize, Bvh> = trees.collect();
         let mut trees = merged(trees, pieces, most);
-        if let [only] = pieces
+        let mut built = if let [only] = pieces
             && let Some(tree) = trees.remove(&0)
         {
-            return Self::single((mesh, at_rest), tree, only.triangles);
-        }
-        let orders = trees
-            .iter()
-            .map(|(&piece, tree)| (piece, tree.order().into()));
-        let orders: BTreeMap<usize, Arc<[u32]>> = orders.collect();
-        let mut built = Self {
-            top: 1..(2 * count).max(2) - 1,
-            ..Self::default()
+            Self::single(tree, only.triangles)
+        } else {
+            Self::several(trees, pieces, count)
         };
-        if count > 0 {
-            built.nodes.resize(built.top.end, BvhNode::default());
-        }
-        for piece in pieces {
-            let first = piece.copy_of;
-            let (tree, order) = match (trees.get(&first), orders.get(&first)) {
-                (Some(tree), Some(order)) if !piece.triangles.is_empty() => {
-                    (tree, Arc::clone(order))
-                }
-                _ => (&Bvh::default(), Arc::default()),
-            };
-            built.append(tree, order, piece.triangles);
-        }
         // Those of triangles that are in no piece yet.
         let total = built.primitives.len().max(mesh.triangles.len());
         built.primitives.resize(total, 0);
@@ -158,19 +139,17 @@ impl TwoLevelBvh {
     }
 
     /// The tree of a single piece, in its own memory: it is the hierarchy.
-    fn single((mesh, at_rest): (&Mesh, &Mesh), tree: Bvh, triangles: &[u32]) -> Self {
+    fn single(tree: Bvh, triangles: &[u32]) -> Self {
         let order: Arc<[u32]> = tree.order().into();
         let mut primitives = tree.primitives;
         for primitive in &mut primitives {
             *primitive = triangles[*primitive as usize];
         }
-        let slots = 0..primitives.len();
-        primitives.resize(slots.end.max(mesh.triangles.len()), 0);
-        let mut built = Self {
+        Self {
             pieces: vec![Subtree {
                 root: tree.nodes[0],
                 nodes: 1..tree.nodes.len(),
-                slots,
+                slots: 0..primitives.len(),
                 order,
                 depth: tree.depth,
                 ..Subtree::default()
@@ -179,13 +158,32 @@ impl TwoLevelBvh {
             primitives,
             top: 1..1,
             ..Self::default()
+        }
+    }
+
+    /// The trees of pieces one behind the other, `count` of which are not empty, behind room for
+    /// the top level.
+    fn several(trees: BTreeMap<usize, Bvh>, pieces: &[Piece<'_>], count: usize) -> Self {
+        let trees = trees.into_iter().map(|(piece, tree)| {
+            let order = tree.order().into();
+            (piece, (tree, order))
+        });
+        let trees: BTreeMap<usize, (Bvh, Arc<[u32]>)> = trees.collect();
+        let mut built = Self {
+            top: 1..(2 * count).max(2) - 1,
+            ..Self::default()
         };
-        built.pieces[0].cost = if std::ptr::eq(mesh, at_rest) {
-            built.cost(0)
-        } else {
-            built.fit(mesh, 0)
-        };
-        built.build_top();
+        if count > 0 {
+            built.nodes.resize(built.top.end, BvhNode::default());
+        }
+        let empty = (Bvh::default(), Arc::default());
+        for piece in pieces {
+            let tree = trees.get(&piece.copy_of);
+            let (tree, order) = tree
+                .filter(|_| !piece.triangles.is_empty())
+                .unwrap_or(&empty);
+            built.append(tree, Arc::clone(order), piece.triangles);
+        }
         built
     }
 
@@ -386,10 +384,7 @@ impl TwoLevelBvh {
             ..*node
         });
         for (index, node) in placed.enumerate() {
-            match index {
-                0 => at.root = node,
-                _ => self.nodes[first_node + index - 1] = node,
-            }
+            *at.node(&mut self.nodes, index) = node;
         }
         self.pieces[piece].take_stated();
         for (slot, &local) in (first_slot..).zip(&tree.primitives) {
@@ -495,17 +490,12 @@ impl TwoLevelBvh {
     fn fit(&mut self, mesh: &Mesh, piece: usize) -> f64 {
         let at = &mut self.pieces[piece];
         let mut cost = 0.0;
-        for &index in at.order.iter().rev() {
+        let order = Arc::clone(&at.order);
+        for &index in order.iter().rev() {
             let index = index as usize;
-            let node = match index {
-                0 => &at.root,
-                _ => &self.nodes[at.nodes.start + index - 1],
-            };
-            let (min, max) = fitted_box(node, &self.nodes, &self.primitives, mesh);
-            let node = match index {
-                0 => &mut at.root,
-                _ => &mut self.nodes[at.nodes.start + index - 1],
-            };
+            let node = *at.node(&mut self.nodes, index);
+            let (min, max) = fitted_box(&node, &self.nodes, &self.primitives, mesh);
+            let node = at.node(&mut self.nodes, index);
             (node.min, node.max) = (min.into(), max.into());
             cost += cost_of(node);
         }
@@ -562,6 +552,14 @@ impl TwoLevelBvh {
 }
 
 impl Subtree {
+    /// The node of an index in its tree: the root, or one of the hierarchy's nodes.
+    fn node<'n>(&'n mut self, nodes: &'n mut [BvhNode], index: usize) -> &'n mut BvhNode {
+        match index {
+            0 => &mut self.root,
+            _ => &mut nodes[self.nodes.start + index - 1],
+        }
+    }
+
     /// Gives the root the box that was stated for it.
     fn take_stated(&mut self) {
         if let Some([min, max]) = self.stated {
@@ -594,18 +592,4 @@ fn merged(trees: BTreeMap<usize, Bvh>, pieces: &[Piece<'_>], most: usize) -> BTr
 fn depth_left(pieces: usize) -> u32 {
     let above = usize::BITS - pieces.saturating_sub(1).leading_zeros();
     MAX_DEPTH.saturating_sub(above).max(1)
-}
-
-/// The depth of a top level together with the trees that are its leaves.
-fn deepest((top, order): &(Vec<BvhNode>, Vec<u32>), depths: &[u32]) -> u32 {
-    let mut deepest = 0;
-    let mut open = vec![(0u32, 0u32)];
-    while let Some((index, above)) = open.pop() {
-        let node = top[index as usize];
-        match node.count {
-            0 => open.extend([(node.first, above + 1), (node.first + 1, above + 1)]),
-            _ => deepest = deepest.max(above + depths[order[node.first as usize] as usize]),
-        }
-    }
-    deepest
 }

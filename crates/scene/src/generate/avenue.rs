@@ -34,15 +34,10 @@ pub(super) fn build() -> Mesh {
             fence(&mut builder, side * FENCE, begin, bay);
             let along = begin + bay * random.range(0.3, 0.7);
             let aside = side * random.range(FENCE + 5.0, FENCE + 16.0);
-            tree(
-                &mut builder,
-                DVec3::new(aside, GAP, along),
-                random.range(2.0, 4.0),
-            );
-            lamp(
-                &mut builder,
-                DVec3::new(side * (FENCE - 2.0), GAP, begin + 0.5 * bay),
-            );
+            let foot = DVec3::new(aside, GAP, along);
+            tree(&mut builder, foot, random.range(2.0, 4.0));
+            let foot = DVec3::new(side * (FENCE - 2.0), GAP, begin + 0.5 * bay);
+            lamp(&mut builder, foot);
         }
     }
     builder.finish()
@@ -55,11 +50,8 @@ fn fence(builder: &mut Builder, x: f64, begin: f64, length: f64) {
         let z = begin + length * (f64::from(post) + 0.5) / f64::from(POSTS);
         builder.cuboid(place(GAP + 0.5, z), DVec3::new(0.08, 0.5, 0.08));
     }
-    let half = 0.5 * length - GAP;
-    builder.cuboid(
-        place(1.1 + 2.0 * GAP, begin + 0.5 * length),
-        DVec3::new(0.06, 0.05, half),
-    );
+    let rail = place(1.1 + 2.0 * GAP, begin + 0.5 * length);
+    builder.cuboid(rail, DVec3::new(0.06, 0.05, 0.5 * length - GAP));
 }
 
 /// A trunk, and a crown above it.
@@ -70,11 +62,8 @@ fn tree(builder: &mut Builder, foot: DVec3, radius: f64) {
     let low = 4.0 + GAP;
     let crown = [(0.4, 0.8), (1.0, 1.0), (1.6, 0.7)]
         .map(|(up, wide)| frame.ring(low + up * radius, wide * radius, wide * radius, 8));
-    builder.loft(
-        foot + DVec3::Y * low,
-        &crown,
-        foot + DVec3::Y * (low + 2.0 * radius),
-    );
+    let [bottom, top] = [low, low + 2.0 * radius].map(|y| foot + DVec3::Y * y);
+    builder.loft(bottom, &crown, top);
 }
 
 /// A thin pole with an arm over the way, and a shade at its end.

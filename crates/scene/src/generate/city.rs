@@ -163,11 +163,8 @@ fn block(builder: &mut Builder, middle: [f64; 3], half: [f64; 3]) {
 fn balcony(builder: &mut Builder) {
     block(builder, [0.0, -1.0, 0.68], [1.2, 0.08, 0.64]);
     block(builder, [0.0, -0.48, 1.26], [1.2, 0.4, 0.05]);
-    let tilted = Frame::along(
-        DVec3::new(0.0, 1.0, 0.55),
-        DVec3::new(0.0, 0.8, 0.6),
-        DVec3::X,
-    );
+    let [middle, axis] = [[0.0, 1.0, 0.55], [0.0, 0.8, 0.6]].map(DVec3::from);
+    let tilted = Frame::along(middle, axis, DVec3::X);
     builder.cuboid(tilted, DVec3::new(1.15, 0.04, 0.5));
 }
 

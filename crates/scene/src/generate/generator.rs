@@ -64,11 +64,9 @@ impl Generator {
                 format!("{text:?} is not a number of triangles from {least} to {most}")
             })?;
         match self {
-            Self::Park | Self::Avenue | Self::Level => {
-                Err(format!("the mesh \"{self}\" has but one size"))
-            }
             Self::City { .. } => Ok(Self::City { triangles }),
             Self::Forest { .. } => Ok(Self::Forest { triangles }),
+            _ => Err(format!("the mesh \"{self}\" has but one size")),
         }
     }
 }

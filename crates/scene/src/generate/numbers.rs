@@ -31,11 +31,7 @@ impl Random {
     /// Returns a uniformly distributed point inside the unit ball.
     pub fn in_ball(&mut self) -> DVec3 {
         loop {
-            let point = DVec3::new(
-                self.range(-1.0, 1.0),
-                self.range(-1.0, 1.0),
-                self.range(-1.0, 1.0),
-            );
+            let point = DVec3::from([(); 3].map(|()| self.range(-1.0, 1.0)));
             if point.length_squared() < 1.0 {
                 return point;
             }

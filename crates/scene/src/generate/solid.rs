@@ -5,7 +5,7 @@ use crate::{
     mesh::{Group, Mesh},
     weld::Welder,
 };
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// Faces around a vertex share a smooth normal where they meet at less than 50° (this is the
 /// cosine).
@@ -164,10 +164,8 @@ impl Builder {
             .chain((0..cells).map(|i| cells - i))
             .collect();
         let below = points.len() as u32;
-        let lowered: Vec<DVec3> = rim
-            .iter()
-            .map(|&corner| points[corner as usize].with_y(low.y))
-            .collect();
+        let lowered = |&corner: &u32| points[corner as usize].with_y(low.y);
+        let lowered: Vec<DVec3> = rim.iter().map(lowered).collect();
         points.extend(lowered);
         let centre = points.len() as u32;
         points.push(((low + high) * 0.5).with_y(low.y));
@@ -210,30 +208,20 @@ impl Builder {
     ) {
         let centre = frame.moved_to(frame.at(length * 0.5, 0.0, 0.0));
         let ring = centre.ring(0.0, length * 0.5, half_width, sides);
-        self.loft(
-            centre.at(0.0, -half_thickness, 0.0),
-            &[ring],
-            centre.at(0.0, half_thickness, 0.0),
-        );
+        let [low, high] = [-half_thickness, half_thickness].map(|y| centre.at(0.0, y, 0.0));
+        self.loft(low, &[ring], high);
     }
 
     fn add(&mut self, points: &[DVec3], faces: &[[u32; 3]]) {
         let base = self.mesh.positions.len() as u32;
-        self.mesh
-            .positions
-            .extend(points.iter().map(|point| point.as_vec3()));
-        let rounded: Vec<DVec3> = points
-            .iter()
-            .map(|point| point.as_vec3().as_dvec3())
-            .collect();
+        let rounded: Vec<Vec3> = points.iter().map(|point| point.as_vec3()).collect();
+        self.mesh.positions.extend(&rounded);
         // Twice the area times the unit normal.
-        let areas: Vec<DVec3> = faces
-            .iter()
-            .map(|face| {
-                let [a, b, c] = face.map(|index| rounded[index as usize]);
-                (b - a).cross(c - a)
-            })
-            .collect();
+        let area = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|index| rounded[index as usize].as_dvec3());
+            (b - a).cross(c - a)
+        };
+        let areas: Vec<DVec3> = faces.iter().map(area).collect();
         let mut around = vec![Vec::new(); points.len()];
         for (face, corners) in faces.iter().enumerate() {
             for &corner in corners {
@@ -247,13 +235,8 @@ impl Builder {
                     .iter()
                     .map(|&other| areas[other])
                     .filter(|area| area.normalize_or_zero().dot(own) > CREASE_COS);
-                self.normals.index(
-                    smooth
-                        .sum::<DVec3>()
-                        .try_normalize()
-                        .unwrap_or(own)
-                        .as_vec3(),
-                )
+                let smooth = smooth.sum::<DVec3>().try_normalize();
+                self.normals.index(smooth.unwrap_or(own).as_vec3())
             });
             self.mesh
                 .triangles

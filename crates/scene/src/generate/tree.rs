@@ -50,27 +50,19 @@ impl Tree {
             if leaves.len() == self.leaves {
                 break;
             }
-            let (position, radius) = (
-                centre + random.in_ball() * half,
-                random.range(self.leaf.0, self.leaf.1),
-            );
-            let free = leaves
-                .iter()
-                .all(|(other, r)| position.distance(*other) > radius + r + GAP)
-                && limbs
-                    .iter()
-                    .all(|limb| limb.distance(position) > radius + GAP);
-            if free {
+            let position = centre + random.in_ball() * half;
+            let radius = random.range(self.leaf.0, self.leaf.1);
+            let is_apart = |(other, r): &(DVec3, f64)| position.distance(*other) > radius + r + GAP;
+            let is_beside = |limb: &Limb| limb.distance(position) > radius + GAP;
+            if leaves.iter().all(is_apart) && limbs.iter().all(is_beside) {
                 leaves.push((position, radius));
             }
         }
         for (position, radius) in leaves {
             // Leaves lie rather than stand.
-            let up = (random.direction() + DVec3::Y)
-                .try_normalize()
-                .unwrap_or(DVec3::Y);
+            let up = (random.direction() + DVec3::Y).try_normalize();
             let along = random.direction();
-            let frame = Frame::along(position, up, along);
+            let frame = Frame::along(position, up.unwrap_or(DVec3::Y), along);
             let frame = frame.moved_to(frame.at(-radius, 0.0, 0.0));
             builder.leaf(frame, 2.0 * radius, 0.8 * radius, 0.08 * radius, 6);
         }

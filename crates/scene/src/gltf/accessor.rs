@@ -118,12 +118,8 @@ fn raw<'b>(
         .stride()
         .or(buffers.strides.get(&view.index()).copied());
     let stride = own.unwrap_or(size).max(1);
-    let needed = count.checked_sub(1).map_or(Some(0), |last| {
-        last.checked_mul(stride)?
-            .checked_add(size)?
-            .checked_add(offset)
-    });
-    if needed.is_none_or(|needed| needed > bytes.len()) {
+    let end = end_of(count, stride, size, offset);
+    if count > 0 && end.is_none_or(|end| end > bytes.len()) {
         return Err(format!(
             "{count} items of {size} bytes reach beyond buffer view {}, which has {} bytes",
             view.index(),
@@ -132,6 +128,16 @@ fn raw<'b>(
     }
     let first = bytes.get(offset..).unwrap_or_default();
     Ok((0..count).map(move |item| &first[item * stride..item * stride + size]))
+}
+
+/// Where so many items end of which the first begins at an offset; `None` if that overflows.
+pub(super) fn end_of(count: usize, stride: usize, size: usize, offset: usize) -> Option<usize> {
+    let Some(last) = count.checked_sub(1) else {
+        return Some(offset);
+    };
+    last.checked_mul(stride)?
+        .checked_add(size)?
+        .checked_add(offset)
 }
 
 fn whole(bytes: &[u8], ty: DataType) -> u32 {

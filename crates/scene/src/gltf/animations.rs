@@ -4,8 +4,8 @@
 use super::{
     accessor,
     beside::{index, items},
-    buffers::{Buffers, GLTF_FILE, data_uri, path_of},
-    extensions::{self, Kind},
+    buffers::{Buffers, load},
+    extensions,
     nodes::unit,
 };
 use crate::error::{beginning, plural};
@@ -213,14 +213,11 @@ impl Animations {
             _ => return Err("its numbers are of a kind that keys do not have".to_owned()),
         };
         let view = index(accessor.get("bufferView")).ok_or("it has no buffer view")?;
-        let view = self
-            .views
-            .get(&view)
-            .ok_or("its buffer view is not there")?;
+        let view = self.views.get(&view);
+        let view = view.ok_or("its buffer view is not there")?;
         let packed = view.get("extensions").and_then(Value::as_object);
-        let mut packed = packed.into_iter().flat_map(|extensions| extensions.keys());
-        if let Some(name) = packed.find(|name| extensions::kind(name) == Kind::Packed) {
-            return Err(extensions::packed(name));
+        if let Some(why) = packed.and_then(extensions::packed) {
+            return Err(why);
         }
         let buffer = index(view.get("buffer")).ok_or("its buffer view has no buffer")?;
         let data = self.bytes(buffer, bytes)?;
@@ -230,11 +227,7 @@ impl Animations {
         let stride = stride.unwrap_or(item);
         let offset = field(view, "byteOffset").saturating_add(field(accessor, "byteOffset"));
         let count = field(accessor, "count");
-        let end = count.checked_sub(1).map_or(Some(offset), |last| {
-            last.checked_mul(stride)?
-                .checked_add(item)?
-                .checked_add(offset)
-        });
+        let end = accessor::end_of(count, stride, item, offset);
         if end.is_none_or(|end| end > data.len()) {
             return Err(format!("it reaches beyond buffer {buffer}"));
         }
@@ -254,13 +247,7 @@ impl Animations {
         let uri = self.buffers.get(&buffer).and_then(|entry| entry.get("uri"));
         let uri = uri.and_then(Value::as_str);
         let uri = uri.ok_or_else(|| format!("buffer {buffer} holds no bytes"))?;
-        if let Some(decoded) = data_uri(uri) {
-            return Ok(decoded?.into());
-        }
-        let path = path_of(bytes.folder, uri);
-        let read = GLTF_FILE.read(&path);
-        let read = read.map_err(|why| format!("cannot read {}: {why}", path.display()))?;
-        Ok(read.into())
+        load(bytes.folder, uri).map(Arc::from)
     }
 }
 

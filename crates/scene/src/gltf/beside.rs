@@ -43,11 +43,8 @@ pub(super) fn each(root: &mut Value, list: &str, mut with: impl FnMut(usize, &mu
 
 /// The items of a list, if it is there.
 pub(super) fn items<'v>(owner: &'v Value, list: &str) -> impl Iterator<Item = &'v Value> + use<'v> {
-    owner
-        .get(list)
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten()
+    let items = owner.get(list).and_then(Value::as_array);
+    items.into_iter().flatten()
 }
 
 pub(super) fn index(value: Option<&Value>) -> Option<usize> {

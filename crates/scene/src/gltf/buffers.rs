@@ -45,6 +45,19 @@ pub(super) fn path_of(folder: &Path, uri: &str) -> PathBuf {
     file_in(folder, &line_text(&decoded))
 }
 
+/// The bytes that a URI holds, or those of the file that it names.
+///
+/// # Errors
+/// It holds no base64, or the file cannot be read.
+pub(super) fn load(folder: &Path, uri: &str) -> Result<Vec<u8>, String> {
+    if let Some(decoded) = data_uri(uri) {
+        return decoded;
+    }
+    let path = path_of(folder, uri);
+    let read = GLTF_FILE.read(&path);
+    read.map_err(|why| format!("cannot read {}: {why}", path.display()))
+}
+
 /// The bytes of a document's buffers.
 pub(super) struct Buffers {
     /// By their numbers; those that are not needed have none.
@@ -85,15 +98,7 @@ pub(super) fn read(
                 gltf::buffer::Source::Bin => blob.take().ok_or_else(|| {
                     fail("it names no file, and the file holds no binary chunk".to_owned())
                 })?,
-                gltf::buffer::Source::Uri(uri) => match data_uri(uri) {
-                    Some(decoded) => decoded.map_err(fail)?,
-                    None => {
-                        let path = path_of(folder, uri);
-                        GLTF_FILE
-                            .read(&path)
-                            .map_err(|why| fail(format!("cannot read {}: {why}", path.display())))?
-                    }
-                },
+                gltf::buffer::Source::Uri(uri) => load(folder, uri).map_err(fail)?,
             };
             if bytes.len() < buffer.length() {
                 return Err(fail(format!(

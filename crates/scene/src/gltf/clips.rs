@@ -2,13 +2,12 @@
 
 use super::{
     animations::{Bytes, Track, Values},
-    names::Names,
+    names::{Names, titled},
     nodes::{Nodes, local, part, parts},
     placements::Placements,
 };
 use crate::{
     camera::View,
-    error::beginning,
     light_kind::{Light, LightKind},
     mesh::Mesh,
     motion::{Motion, PoseKey},
@@ -63,16 +62,12 @@ impl Clip {
             eye: standing.eye,
             direction: standing.direction,
         };
-        let mut cameras: Vec<(View, Vec<CameraKey>)> = Vec::new();
-        for (view, up, keys) in &self.cameras {
-            if let Some(view) = views.get(*view) {
-                let view = View {
-                    up: *up,
-                    ..view.clone()
-                };
-                cameras.push((view, keys.clone()));
-            }
-        }
+        let cameras = self.cameras.iter().filter_map(|(view, up, keys)| {
+            let mut view = views.get(*view)?.clone();
+            view.up = *up;
+            Some((view, keys.clone()))
+        });
+        let mut cameras: Vec<(View, Vec<CameraKey>)> = cameras.collect();
         if cameras.is_empty() {
             cameras.push((standing.clone(), vec![stand(0.0), stand(last)]));
         }
@@ -125,10 +120,7 @@ impl Source<'_> {
     /// A node, for messages.
     fn place(&self, node: usize) -> String {
         let named = self.document.nodes().nth(node);
-        match named.as_ref().and_then(Node::name) {
-            Some(name) => format!("node {node} {:?}", beginning(name)),
-            None => format!("node {node}"),
-        }
+        titled("node", node, named.as_ref().and_then(Node::name))
     }
 }
 
@@ -146,10 +138,7 @@ pub(super) fn clips(source: &Source<'_>, placed: &Placed<'_>) -> (Vec<Clip>, Vec
     let animations = &source.placements.animations;
     for (number, animation) in animations.list.iter().enumerate() {
         let name = animation.get("name").and_then(Value::as_str);
-        let place = match name {
-            Some(name) => format!("animation {number} {:?}", beginning(name)),
-            None => format!("animation {number}"),
-        };
+        let place = titled("animation", number, name);
         let fallback = format!("animation_{number}");
         let plain = Names::plain(name.unwrap_or_default(), &fallback);
         let mut notes = Vec::new();
@@ -183,30 +172,23 @@ struct Poses<'a> {
     end: f64,
     /// Nodes from the root to each node that is moved, itself or by one above it.
     ways: HashMap<usize, Vec<usize>>,
-    /// The transform of a node at rest, apart and as a whole.
-    parts: HashMap<usize, (DVec3, DQuat, DVec3)>,
-    locals: HashMap<usize, DMat4>,
+    nodes: Vec<Node<'a>>,
 }
 
 impl<'a> Poses<'a> {
-    fn new(source: &Source<'_>, tracks: &'a [Track]) -> Self {
+    fn new(source: &Source<'a>, tracks: &'a [Track]) -> Self {
         let mut poses = Self {
             tracks: HashMap::new(),
             end: tracks.iter().map(Track::end).fold(0.0, f64::max),
             ways: HashMap::new(),
-            parts: HashMap::new(),
-            locals: HashMap::new(),
+            nodes: source.document.nodes().collect(),
         };
         for track in tracks {
             poses.tracks.entry(track.node).or_default().push(track);
         }
         let mut parents = HashMap::new();
-        for node in source.document.nodes() {
-            for child in node.children() {
-                parents.insert(child.index(), node.index());
-            }
-            poses.locals.insert(node.index(), local(&node));
-            poses.parts.insert(node.index(), parts(&node));
+        for node in &poses.nodes {
+            parents.extend(node.children().map(|child| (child.index(), node.index())));
         }
         // Nodes that stand somewhere have one parent each, and no circles.
         for &node in source.nodes.worlds.keys() {
@@ -222,11 +204,9 @@ impl<'a> Poses<'a> {
 
     fn local(&self, node: usize, at: f64) -> DMat4 {
         let Some(tracks) = self.tracks.get(&node) else {
-            return self.locals.get(&node).copied().unwrap_or_default();
+            return local(&self.nodes[node]);
         };
-        let parts = self.parts.get(&node).copied();
-        let (mut shift, mut turn, mut scale) =
-            parts.unwrap_or((DVec3::ZERO, DQuat::IDENTITY, DVec3::ONE));
+        let (mut shift, mut turn, mut scale) = parts(&self.nodes[node]);
         for track in tracks {
             let (from, to, share) = track.around(at);
             match &track.values {
@@ -347,10 +327,8 @@ impl<'a> Poses<'a> {
 fn pose_key((frame, map): (usize, DMat4)) -> Option<PoseKey> {
     let linear = DMat3::from_mat4(map);
     let error = linear.transpose() * linear - DMat3::IDENTITY;
-    let error = error
-        .to_cols_array()
-        .into_iter()
-        .fold(0.0, |most: f64, entry| most.max(entry.abs()));
+    let entries = error.to_cols_array().into_iter();
+    let error = entries.fold(0.0, |most: f64, entry| most.max(entry.abs()));
     (error < NEARLY_RIGID && linear.determinant() > 0.0).then(|| PoseKey {
         at: at(frame),
         translation: map.w_axis.truncate(),

@@ -1,7 +1,7 @@
 //! Extensions of glTF: which are followed, which concern looks only, which pack what a mesh is made
 //! of.
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// Treatment of an extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,12 +33,11 @@ const PACKED: [&str; 3] = [
 ];
 
 /// Words of names that only concern looks, sound, light sources, or data beside the mesh.
-const LOOKS: [&str; 25] = [
+const LOOKS: [&str; 23] = [
     "_animation_pointer",
     "_articulations",
     "_audio",
     "_environment",
-    "_geometry_metadata",
     "_hoverability",
     "_instance_features",
     "_interactivity",
@@ -54,7 +53,6 @@ const LOOKS: [&str; 25] = [
     "_selectability",
     "_stk_",
     "_techniques_",
-    "_texture_",
     "_xmp",
     "BIM_data",
     "VRM",
@@ -77,12 +75,14 @@ pub(super) fn kind(name: &str) -> Kind {
     }
 }
 
-/// Why a mesh that is packed cannot be read, and the way out.
-pub(super) fn packed(name: &str) -> String {
-    format!(
+/// Why what has these extensions cannot be read, if one of them packs it.
+pub(super) fn packed(extensions: &Map<String, Value>) -> Option<String> {
+    let mut names = extensions.keys();
+    let name = names.find(|name| kind(name) == Kind::Packed)?;
+    Some(format!(
         "it is compressed ({name}), which this program does not unpack: export it without \
          compression, or import it into Blender, say, and export it again without"
-    )
+    ))
 }
 
 /// True if data of an extension stand in materials, textures, cameras or animations, and nowhere

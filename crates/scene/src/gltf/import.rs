@@ -55,10 +55,7 @@ pub fn load_gltf_scene(
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
-    GLTF_FILE.read(path).map_err(|reason| SceneError::Read {
-        path: path.to_owned(),
-        reason,
-    })
+    GLTF_FILE.read(path).map_err(SceneError::unread(path))
 }
 
 /// Reads the bytes of a `.gltf` or `.glb` file into a mesh as [`load_gltf`] does. `path` names the
@@ -354,11 +351,9 @@ impl<'a> Import<'a> {
         // A flattened one leaves no normal; the triangle's own stands in.
         let of_normals = of_normals(linear);
         for (number, triangle) in (1..).zip(triangles) {
-            let mut corners = Vec::with_capacity(3);
-            for &index in triangle {
-                corners.push(self.corner(arrays, index, material, transform, of_normals)?);
-            }
-            let mut corners = [corners[0], corners[1], corners[2]];
+            let mut corner =
+                |at: usize| self.corner(arrays, triangle[at], material, transform, of_normals);
+            let mut corners = [corner(0)?, corner(1)?, corner(2)?];
             let (material, uvs) = self.chosen(arrays, triangle, material)?;
             if let Some(uvs) = uvs {
                 for (corner, uv) in corners.iter_mut().zip(uvs) {
@@ -441,26 +436,20 @@ impl<'a> Import<'a> {
         let positions = primitive
             .get(&Semantic::Positions)
             .ok_or_else(|| "it has no POSITION, so nothing can be drawn of it".to_owned())?;
-        let positions = vectors(&positions, self.buffers)?;
-        let normals = primitive.get(&Semantic::Normals);
-        let normals = normals
-            .map(|accessor| vectors(&accessor, self.buffers))
-            .transpose()?;
+        let read = |accessor: gltf::Accessor<'_>| vectors(&accessor, self.buffers);
+        let positions = read(positions)?;
+        let normals = primitive.get(&Semantic::Normals).map(read).transpose()?;
         let uvs = primitive.get(&Semantic::TexCoords(material.uv_set));
-        let uvs = uvs
-            .map(|accessor| accessor::floats::<2>(&accessor, self.buffers))
-            .transpose()?;
+        let uvs = uvs.map(|accessor| accessor::floats::<2>(&accessor, self.buffers));
+        let uvs = uvs.transpose()?;
         let colours = primitive
             .get(&Semantic::Colors(0))
             .filter(|_| material.cut.is_some());
         let colours = colours.filter(|accessor| accessor.dimensions().multiplicity() == 4);
-        let alphas = match colours {
-            Some(accessor) => {
-                let colours = accessor::floats::<4>(&accessor, self.buffers)?;
-                Some(colours.into_iter().map(|[.., alpha]| alpha).collect())
-            }
-            None => None,
-        };
+        let colours = colours.map(|accessor| accessor::floats::<4>(&accessor, self.buffers));
+        let alphas = colours
+            .transpose()?
+            .map(|colours| colours.into_iter().map(|[.., alpha]| alpha).collect());
         let indices = match primitive.indices() {
             Some(accessor) => accessor::indices(&accessor, self.buffers)
                 .map_err(|why| accessor::named(&accessor, why))?,

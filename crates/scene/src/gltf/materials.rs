@@ -144,10 +144,8 @@ impl Reader<'_> {
         let place = format!("image {}", image.index());
         let (name, source) = match image.source() {
             gltf::image::Source::View { view, .. } => {
-                let bytes = self
-                    .buffers
-                    .view(&view)
-                    .ok_or_else(|| format!("{place} reaches beyond its buffer"))?;
+                let bytes = self.buffers.view(&view);
+                let bytes = bytes.ok_or_else(|| format!("{place} reaches beyond its buffer"))?;
                 (place, Source::Bytes(bytes.into()))
             }
             gltf::image::Source::Uri { uri: "", .. } => {

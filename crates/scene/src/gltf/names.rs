@@ -1,5 +1,6 @@
 //! Names of views and lights, made of those of a file.
 
+use crate::error::beginning;
 use std::collections::HashSet;
 
 /// Most letters that are kept of a name.
@@ -43,6 +44,14 @@ impl Names {
         let mut names = std::iter::once(name.to_owned()).chain(numbered);
         let free = names.find(|name| self.taken.insert(name.clone()));
         free.unwrap_or_else(|| name.to_owned())
+    }
+}
+
+/// Names an item of a file for messages: by its number, and by its name if it has one.
+pub(super) fn titled(what: &str, number: usize, name: Option<&str>) -> String {
+    match name {
+        Some(name) => format!("{what} {number} {:?}", beginning(name)),
+        None => format!("{what} {number}"),
     }
 }
 

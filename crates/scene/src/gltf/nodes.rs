@@ -84,12 +84,8 @@ impl<'a> Nodes<'a> {
             if self.moved.contains(&node.index()) {
                 self.moved.extend(children.iter().map(Node::index));
             }
-            open.extend(
-                children
-                    .into_iter()
-                    .rev()
-                    .map(|child| (child, transform, seen)),
-            );
+            let children = children.into_iter().rev();
+            open.extend(children.map(|child| (child, transform, seen)));
             if seen && node.mesh().is_some() {
                 self.seen.push(node);
             }

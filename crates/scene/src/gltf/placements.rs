@@ -5,7 +5,6 @@ use super::{
     animations::Animations,
     beside::{index, items},
 };
-use crate::error::beginning;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -27,16 +26,6 @@ pub(super) struct Placement {
     pub name: Option<String>,
     pub camera: Option<usize>,
     pub light: Option<usize>,
-}
-
-impl Placement {
-    /// The node of that number, for messages.
-    pub fn place(&self, node: usize) -> String {
-        match &self.name {
-            Some(name) => format!("node {node} {:?}", beginning(name)),
-            None => format!("node {node}"),
-        }
-    }
 }
 
 impl Placements {

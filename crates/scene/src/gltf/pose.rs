@@ -22,10 +22,8 @@ pub(super) struct Vertices {
 /// Three numbers for each item.
 pub(super) fn vectors(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<DVec3>, String> {
     let read = accessor::floats::<3>(accessor, buffers)?;
-    Ok(read
-        .into_iter()
-        .map(|vector| Vec3::from(vector).as_dvec3())
-        .collect())
+    let wide = |vector| Vec3::from(vector).as_dvec3();
+    Ok(read.into_iter().map(wide).collect())
 }
 
 impl Vertices {
@@ -122,11 +120,8 @@ fn blend(vertex: usize, sets: &[JointSet], joints: &[DMat4]) -> Result<DMat4, St
         let short = || format!("vertex {vertex} has no joints");
         let names = names.get(vertex).ok_or_else(short)?;
         let weights = weights.get(vertex).ok_or_else(short)?;
-        for (&named, &weight) in names
-            .iter()
-            .zip(weights)
-            .filter(|(_, weight)| **weight != 0.0)
-        {
+        let pairs = names.iter().zip(weights);
+        for (&named, &weight) in pairs.filter(|(_, weight)| **weight != 0.0) {
             sum += joint(named)? * f64::from(weight);
             total += f64::from(weight);
         }

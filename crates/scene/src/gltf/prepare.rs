@@ -6,6 +6,7 @@ use super::{
     beside::{Beside, Instances, each, index, items, role, taken},
     extensions::{self, Kind},
     fault::Fault,
+    names::titled,
     nodes::NO_TURN,
     prepare_looks, prepare_storage,
 };
@@ -83,11 +84,8 @@ fn nodes(root: &mut Value, beside: &mut Beside) {
         let is_none = |turn: &Vec<Value>| turn.iter().all(|part| part.as_f64() == Some(0.0));
         let turn = node.get("rotation").and_then(Value::as_array);
         if turn.is_some_and(is_none) {
-            let name = node.get("name").and_then(Value::as_str).map(beginning);
-            let name = name.map_or_else(String::new, |name| format!(" {name:?}"));
-            beside
-                .remarks
-                .insert(format!("node {number}{name}: its {NO_TURN}"));
+            let place = titled("node", number, node.get("name").and_then(Value::as_str));
+            beside.remarks.insert(format!("{place}: its {NO_TURN}"));
         }
         if let Some(role) = role(node, &format!("node {number}"), beside) {
             beside.roles.insert(number, role);
@@ -169,12 +167,10 @@ fn meshes(root: &mut Value, beside: &mut Beside, materials: MaterialUse) -> Resu
             let attributes = primitive.get("attributes").and_then(Value::as_object);
             let attributes = attributes.into_iter().flat_map(|fields| fields.values());
             let mut accessors = attributes.chain(primitive.get("indices"));
-            for name in extensions.keys() {
-                let is_packed = extensions::kind(name) == Kind::Packed;
-                if is_packed && accessors.any(is_away) && fault.is_none() {
-                    let place = format!("mesh {number}, primitive {which}");
-                    fault = Some((place, extensions::packed(name)));
-                }
+            if let Some(why) = extensions::packed(&extensions)
+                && accessors.any(is_away)
+            {
+                fault.get_or_insert((format!("mesh {number}, primitive {which}"), why));
             }
         }
     });

@@ -2,7 +2,7 @@
 
 use super::{
     beside::{Beside, each, index, items, taken},
-    extensions::{self, Kind},
+    extensions,
     fault::Fault,
 };
 use serde_json::{Value, json};
@@ -121,12 +121,9 @@ fn buffer_views(root: &mut Value, beside: &mut Beside, used: &HashSet<usize>) ->
         let Some(buffer) = index(view.get("buffer")).filter(|_| used.contains(&number)) else {
             return;
         };
-        let mut names = extensions.keys();
-        let packed = names.find(|name| extensions::kind(name) == Kind::Packed);
-        match packed {
-            Some(name) if empty.get(&buffer) == Some(&true) => {
-                let place = format!("buffer view {number}");
-                fault.get_or_insert((place, extensions::packed(name)));
+        match extensions::packed(&extensions) {
+            Some(why) if empty.get(&buffer) == Some(&true) => {
+                fault.get_or_insert((format!("buffer view {number}"), why));
             }
             _ => {
                 beside.buffers.insert(buffer);

@@ -3,13 +3,13 @@
 
 use super::{
     clips::{self, Clip},
-    names::Names,
+    names::{Names, titled},
     nodes::Nodes,
     placements::Placements,
 };
 use crate::{
     camera::View,
-    error::{beginning, plural},
+    error::plural,
     light::DirectionalLight,
     light_kind::{Light, LightKind, PointLight, SpotLight},
 };
@@ -74,7 +74,7 @@ impl GltfScene {
             };
             let world = nodes.and_then(|nodes| nodes.worlds.get(node));
             let placed = Placed {
-                place: placement.place(*node),
+                place: titled("node", *node, placement.name.as_deref()),
                 node: *node,
                 world: world.copied().unwrap_or_default(),
                 name: placement.name.as_deref(),
@@ -152,10 +152,9 @@ impl Reader<'_> {
     fn tell_unplaced(&mut self, what: &str, entries: &[Value], placed: &[usize]) {
         for (number, entry) in entries.iter().enumerate() {
             if !placed.contains(&number) {
-                let name = entry.get("name").and_then(Value::as_str);
-                let name = name.map_or_else(String::new, |name| format!(" {:?}", beginning(name)));
+                let entry = titled(what, number, entry.get("name").and_then(Value::as_str));
                 self.remark(format!(
-                    "{what} {number}{name} is left out: no node of the scene places it"
+                    "{entry} is left out: no node of the scene places it"
                 ));
             }
         }
@@ -183,9 +182,7 @@ impl Reader<'_> {
 
     /// The view of a camera, with what was chosen.
     fn view(&self, index: usize, placed: &Placed<'_>) -> Result<(View, Vec<String>), String> {
-        let count = self.placements.cameras.len();
-        let camera = self.placements.cameras.get(index);
-        let camera = camera.ok_or_else(|| named_wrongly(index, count, "camera", "cameras"))?;
+        let camera = entry(&self.placements.cameras, index, ["camera", "cameras"])?;
         match camera.get("type").and_then(Value::as_str) {
             Some("perspective") => {}
             Some("orthographic") => {
@@ -193,10 +190,7 @@ impl Reader<'_> {
                             perspective, or give --eye and --look)"
                     .to_owned());
             }
-            other => {
-                let ty = other.map_or_else(|| "no type".to_owned(), |ty| format!("type {ty:?}"));
-                return Err(format!("it has {ty}, expected perspective"));
-            }
+            other => return Err(of_type(other, "perspective")),
         }
         let lens = camera.get("perspective").unwrap_or(&Value::Null);
         let needed = |field| number(lens, field).ok_or_else(|| format!("it has no {field}"));
@@ -267,9 +261,7 @@ impl Reader<'_> {
 
     /// The light, with what was chosen.
     fn light(&self, index: usize, placed: &Placed<'_>) -> Result<(Light, Vec<String>), String> {
-        let count = self.placements.lights.len();
-        let light = self.placements.lights.get(index);
-        let light = light.ok_or_else(|| named_wrongly(index, count, "light", "lights"))?;
+        let light = entry(&self.placements.lights, index, ["light", "lights"])?;
         check_power(light)?;
         let (position, direction) = (placed.position(), placed.direction());
         let mut remarks = Vec::new();
@@ -308,10 +300,7 @@ impl Reader<'_> {
                 radius: 0.0,
             }
             .into(),
-            other => {
-                let ty = other.map_or_else(|| "no type".to_owned(), |ty| format!("type {ty:?}"));
-                return Err(format!("it has {ty}, expected directional, spot or point"));
-            }
+            other => return Err(of_type(other, "directional, spot or point")),
         };
         let mend = |why| format!("{why} (mend light {index})");
         kind.check().map_err(mend)?;
@@ -320,13 +309,22 @@ impl Reader<'_> {
     }
 }
 
-fn named_wrongly(index: usize, count: usize, one: &str, many: &str) -> String {
-    let there = plural(count, one, many);
-    if index == usize::MAX {
-        format!("its number is none, and the file has {there}")
-    } else {
-        format!("the node names {one} {index}, and the file has {there}, numbered from 0")
-    }
+/// The camera or light of a number that a node names.
+///
+/// # Errors
+/// There is none of that number.
+fn entry<'v>(list: &'v [Value], index: usize, [one, many]: [&str; 2]) -> Result<&'v Value, String> {
+    let there = plural(list.len(), one, many);
+    list.get(index).ok_or_else(|| match index {
+        usize::MAX => format!("its number is none, and the file has {there}"),
+        _ => format!("the node names {one} {index}, and the file has {there}, numbered from 0"),
+    })
+}
+
+/// Why a camera or light of a type is not taken.
+fn of_type(ty: Option<&str>, expected: &str) -> String {
+    let ty = ty.map_or_else(|| "no type".to_owned(), |ty| format!("type {ty:?}"));
+    format!("it has {ty}, expected {expected}")
 }
 
 /// That a light lights anything.

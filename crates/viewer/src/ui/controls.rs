@@ -1,9 +1,9 @@
 //! The panel at the left: scene, view, light, reference and methods.
 
-use super::{fault, light, params};
+use super::{light, params};
 use crate::saving;
 use crate::state::{Drag, Viewer};
-use egui::{ComboBox, RichText, Ui};
+use egui::{ComboBox, RichText, ScrollArea, Ui};
 use skiagraph_compare::wording::size;
 use skiagraph_scene::{SceneLibrary, View, view_text};
 
@@ -55,6 +55,11 @@ pub fn names(ui: &mut Ui, label: &str, now: &str, choices: &[String]) -> Option<
     (chosen != now).then_some(chosen)
 }
 
+/// A button with a hint; true when it is pressed.
+pub fn button(ui: &mut Ui, text: &str, hint: &str) -> bool {
+    ui.button(text).on_hover_text(hint).clicked()
+}
+
 fn scene(ui: &mut Ui, viewer: &mut Viewer) {
     let scene = viewer.desired.scene.clone();
     if let Some(name) = names(ui, "scene", &scene, &viewer.choices.scenes) {
@@ -70,24 +75,14 @@ fn scene(ui: &mut Ui, viewer: &mut Viewer) {
         return;
     };
     ui.horizontal(|ui| {
-        let again = ui
-            .button("Back")
-            .on_hover_text("to where the view is in the file");
-        if again.clicked() {
+        if button(ui, "Back", "to where the view is in the file") {
             viewer.choose_view(&view.name);
         }
-        if ui
-            .button("Copy")
-            .on_hover_text("as an entry of a scene file's `views`")
-            .clicked()
-        {
+        if button(ui, "Copy", "as an entry of a scene file's `views`") {
             ui.copy_text(view_text(&view));
             viewer.notice = Some(("the view is on the clipboard".into(), false));
         }
-        let save = ui
-            .button("Save")
-            .on_hover_text("the scene file once more, with this view");
-        if save.clicked() {
+        if button(ui, "Save", "the scene file once more, with this view") {
             viewer.notice = Some(saved(&viewer.desired.scene, &view));
         }
     });
@@ -168,7 +163,7 @@ fn method(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
             return;
         };
         if let Some(text) = shown.error.clone() {
-            fault::show(ui, &text);
+            fault(ui, &text);
             ui.label(RichText::new("shown is the last graph that ran").italics());
         }
         if let Some(shown) = viewer.method(index) {
@@ -176,4 +171,16 @@ fn method(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
         }
         params::show(ui, viewer, index);
     });
+}
+
+/// Draws an error text in a scrolling area.
+fn fault(ui: &mut Ui, text: &str) {
+    let colour = ui.visuals().error_fg_color;
+    ScrollArea::both()
+        .id_salt(("error", ui.scope_id()))
+        .max_height(220.0)
+        .show(ui, |ui| {
+            let text = RichText::new(text).monospace().color(colour);
+            ui.add(egui::Label::new(text).extend());
+        });
 }

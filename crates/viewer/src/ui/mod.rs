@@ -1,7 +1,6 @@
 //! Draws the window's state with egui: panels, plots and pictures.
 
 mod controls;
-mod fault;
 mod light;
 mod params;
 mod passes;
@@ -11,10 +10,7 @@ use crate::state::Viewer;
 use egui::{CentralPanel, Panel, RichText, ScrollArea, Ui};
 
 /// Textures of the two pictures on the window's GPU.
-#[derive(Default)]
-pub struct Surface {
-    pictures: [picture::Held; 2],
-}
+pub type Surface = [picture::Held; 2];
 
 /// Draws the window in `ui`, and applies the user's input to `viewer`, the state.
 pub fn show(ui: &mut Ui, viewer: &mut Viewer, surface: &mut Surface) {
@@ -31,7 +27,7 @@ pub fn show(ui: &mut Ui, viewer: &mut Viewer, surface: &mut Surface) {
         let count = viewer.desired.methods.len();
         ui.columns(count, |columns| {
             for (index, column) in columns.iter_mut().enumerate() {
-                picture::show(column, viewer, index, &mut surface.pictures[index]);
+                picture::show(column, viewer, index, &mut surface[index]);
             }
         });
     });

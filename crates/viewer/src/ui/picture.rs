@@ -1,5 +1,6 @@
 //! Draws a picture with its choices, legend and numbers, and handles the pointer in it.
 
+use super::controls::button;
 use crate::drawn::{Reading, Show, of_pixels};
 use crate::flight::SPEED;
 use crate::heat;
@@ -76,7 +77,7 @@ fn choice(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
             ("<", false, "the pass before"),
             (">", true, "the next pass"),
         ] {
-            if ui.button(text).on_hover_text(hint).clicked() {
+            if button(ui, text, hint) {
                 viewer.step(index, forward);
                 chosen = viewer.panes[index].show.clone();
             }
@@ -117,11 +118,8 @@ fn reading(ui: &mut Ui, viewer: &mut Viewer, index: usize) {
             .response
             .labelled_by(label.id);
     }
-    let channels = pane
-        .drawn
-        .texels
-        .as_ref()
-        .map_or(0, |texels| texels.channels);
+    let texels = pane.drawn.texels.as_ref();
+    let channels = texels.map_or(0, |texels| texels.channels);
     if channels > 1 {
         ui.add(egui::Slider::new(&mut reading.channel, 0..=channels - 1).text("channel"));
     }
@@ -139,12 +137,8 @@ fn upload(ui: &Ui, viewer: &Viewer, index: usize, held: &mut Held) {
         return;
     }
     held.version = pane.version;
-    let Some(image) = pane
-        .drawn
-        .image
-        .as_ref()
-        .filter(|image| !image.rgb.is_empty())
-    else {
+    let image = pane.drawn.image.as_ref();
+    let Some(image) = image.filter(|image| !image.rgb.is_empty()) else {
         held.texture = None;
         return;
     };

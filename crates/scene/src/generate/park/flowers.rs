@@ -1,9 +1,9 @@
 //! The flower box: a planter and some fifty flowers of very small triangles.
 
-use super::placing::{ACROSS_THE_LIGHT, GAP};
+use super::furniture::ACROSS_THE_LIGHT;
 use crate::generate::{
     numbers::{Random, turn},
-    solid::{Builder, Frame},
+    solid::{Builder, Frame, GAP},
 };
 use glam::DVec3;
 
@@ -26,11 +26,8 @@ pub(super) fn flower_box(builder: &mut Builder) {
         planter.rectangle(2.6, INSIDE.0, INSIDE.1),
         planter.rectangle(SOIL, INSIDE.0 - 0.1, INSIDE.1 - 0.1),
     ];
-    builder.loft(
-        planter.at(0.0, GAP, 0.0),
-        &rings,
-        planter.at(0.0, SOIL, 0.0),
-    );
+    let [low, high] = [GAP, SOIL].map(|y| planter.at(0.0, y, 0.0));
+    builder.loft(low, &rings, high);
     builder.group("flowers");
     let mut random = Random::new(2014);
     for row in 0..4 {

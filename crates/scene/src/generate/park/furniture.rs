@@ -1,11 +1,15 @@
 //! The bench and the lamp.
 
-use super::placing::{ACROSS_THE_LIGHT, GAP};
 use crate::generate::{
     numbers::turn,
-    solid::{Builder, Frame},
+    solid::{Builder, Frame, GAP},
 };
 use glam::DVec3;
+
+/// How bench and planter are turned, as a fraction of a full turn: their long sides lie across the
+/// light, but 10° off, so that no side face lies along it. There n · l and the shadows of
+/// neighbours would hang on the last bits.
+pub(super) const ACROSS_THE_LIGHT: f64 = 0.18;
 
 /// A bench of slats on two frames, with a leaning back.
 pub(super) fn bench(builder: &mut Builder) {
@@ -51,10 +55,8 @@ pub(super) fn lamp(builder: &mut Builder) {
     const SIDES: u32 = 24;
     let foot = Frame::upright(DVec3::new(11.0, 0.0, -7.5), 0.0);
     let turned = |builder: &mut Builder, profile: &[(f64, f64)]| {
-        let rings: Vec<_> = profile
-            .iter()
-            .map(|&(y, radius)| foot.ring(y, radius, radius, SIDES))
-            .collect();
+        let ring = |&(y, radius): &(f64, f64)| foot.ring(y, radius, radius, SIDES);
+        let rings: Vec<_> = profile.iter().map(ring).collect();
         let (first, last) = (profile[0].0, profile[profile.len() - 1].0);
         builder.loft(foot.at(0.0, first, 0.0), &rings, foot.at(0.0, last, 0.0));
     };

@@ -2,9 +2,9 @@
 //! `source` on through `ping` and `pong` and back, pass by pass; every pass has a pipeline, a
 //! layout and a bind group of its own, as the passes of a frame do, and its name as label.
 
-use crate::Generated;
+use crate::{Generated, STORE, planned};
 use skiagraph_gpu::{ExecuteError, Executor, device::Gpu};
-use skiagraph_graph::{Graph, Import, NoProvider, Plan, PlanRequest, Registry};
+use skiagraph_graph::{Import, NoProvider, Plan, PlanRequest, Registry};
 
 /// Width and height of the textures: encoding does not depend on it.
 const EDGE: u32 = 16;
@@ -17,24 +17,9 @@ const USAGE: wgpu::TextureUsages = wgpu::TextureUsages::COPY_SRC
 /// Invocations per side of a workgroup.
 const GROUP: u32 = 8;
 
-const DISPATCH: &str = "var a: texture_2d<f32>;
-var made: texture_storage_2d<rgba16float, write>;
-@compute @workgroup_size(8, 8) fn store(@builtin(global_invocation_id) at: vec3<u32>) {
-    textureStore(made, at.xy, textureLoad(a, at.xy, 0) * 0.5);
-}
-";
+const DRAW: &str = include_str!("shaders/half.wgsl");
 
-const DRAW: &str = "var a: texture_2d<f32>;
-@fragment fn half(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
-    return textureLoad(a, vec2<u32>(centre.xy), 0) * 0.5;
-}
-";
-
-const TRIANGLE: &str = "
-@vertex fn triangle(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-";
+const TRIANGLE: &str = include_str!("shaders/triangle.wgsl");
 
 /// Kind of a chain's passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +103,7 @@ fn document(kind: Kind, passes: usize) -> Generated {
     );
     let files = [
         ("graph.ron", document.as_str()),
-        ("store.wgsl", DISPATCH),
+        ("store.wgsl", STORE),
         ("half.wgsl", DRAW),
     ];
     Generated {
@@ -130,14 +115,13 @@ fn document(kind: Kind, passes: usize) -> Generated {
 }
 
 fn texture(gpu: &Gpu, label: &str) -> wgpu::Texture {
-    let size = wgpu::Extent3d {
-        width: EDGE,
-        height: EDGE,
-        depth_or_array_layers: 1,
-    };
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
-        size,
+        size: wgpu::Extent3d {
+            width: EDGE,
+            height: EDGE,
+            depth_or_array_layers: 1,
+        },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -155,9 +139,8 @@ pub fn plan(kind: Kind, passes: usize) -> Plan {
     let mut request = PlanRequest::new([EDGE, EDGE], &NoProvider);
     let source = Import::plain_texture(FORMAT, [EDGE, EDGE], USAGE);
     request.imports.insert("source".to_owned(), source);
-    Graph::load("graph.ron", &Registry::standard(), &document(kind, passes))
-        .and_then(|graph| graph.plan(&request))
-        .unwrap_or_else(|faults| panic!("{faults}"))
+    let sources = (&Registry::standard(), &document(kind, passes) as _);
+    planned("graph.ron", sources, &request)
 }
 
 /// The chain as an executor.
@@ -172,9 +155,7 @@ pub fn executor(gpu: &Gpu, kind: Kind, passes: usize) -> Result<Executor, Execut
 }
 
 /// The chain by hand.
-pub struct ByHand {
-    passes: Vec<Pass>,
-}
+pub struct ByHand(Vec<Pass>);
 
 struct Pass {
     label: String,
@@ -191,10 +172,7 @@ enum Work {
         group: wgpu::BindGroup,
         target: wgpu::TextureView,
     },
-    Copy {
-        from: wgpu::Texture,
-        to: wgpu::Texture,
-    },
+    Copy([wgpu::Texture; 2]),
 }
 
 impl ByHand {
@@ -207,21 +185,16 @@ impl ByHand {
             let work = match kind {
                 Kind::Dispatch => dispatch(gpu, &label, from, to),
                 Kind::Draw => draw(gpu, &label, from, to),
-                Kind::Copy => Work::Copy {
-                    from: from.clone(),
-                    to: to.clone(),
-                },
+                Kind::Copy => Work::Copy([from, to].map(Clone::clone)),
             };
             Pass { label, work }
         };
-        Self {
-            passes: (0..passes).map(pass).collect(),
-        }
+        Self((0..passes).map(pass).collect())
     }
 
     /// Encodes the frame; with a debug group around every pass if `grouped`.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, grouped: bool) {
-        for Pass { label, work } in &self.passes {
+        for Pass { label, work } in &self.0 {
             if grouped {
                 encoder.push_debug_group(label);
             }
@@ -257,11 +230,10 @@ impl ByHand {
                     pass.set_bind_group(0, group, &[]);
                     pass.draw(0..3, 0..1);
                 }
-                Work::Copy { from, to } => encoder.copy_texture_to_texture(
-                    from.as_image_copy(),
-                    to.as_image_copy(),
-                    from.size(),
-                ),
+                Work::Copy(ends) => {
+                    let [from, to] = ends.each_ref().map(wgpu::Texture::as_image_copy);
+                    encoder.copy_texture_to_texture(from, to, ends[0].size());
+                }
             }
             if grouped {
                 encoder.pop_debug_group();
@@ -279,11 +251,11 @@ fn module(gpu: &Gpu, text: &str) -> wgpu::ShaderModule {
     let text = text
         .replacen("var a:", "@group(0) @binding(0) var a:", 1)
         .replacen("var made:", "@group(0) @binding(1) var made:", 1);
-    gpu.device
-        .create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Wgsl(text.into()),
-        })
+    let device = &gpu.device;
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(text.into()),
+    })
 }
 
 fn group(
@@ -293,13 +265,13 @@ fn group(
     textures: &[&wgpu::Texture],
 ) -> wgpu::BindGroup {
     let views: Vec<wgpu::TextureView> = textures.iter().map(|texture| view(texture)).collect();
-    let entries: Vec<_> = (0..)
+    let entries = (0..)
         .zip(&views)
         .map(|(binding, view)| wgpu::BindGroupEntry {
             binding,
             resource: wgpu::BindingResource::TextureView(view),
-        })
-        .collect();
+        });
+    let entries: Vec<_> = entries.collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some(label),
         layout,
@@ -308,45 +280,43 @@ fn group(
 }
 
 fn dispatch(gpu: &Gpu, label: &str, from: &wgpu::Texture, to: &wgpu::Texture) -> Work {
-    let pipeline = gpu
-        .device
-        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(label),
-            layout: None,
-            module: &module(gpu, DISPATCH),
-            entry_point: None,
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            cache: None,
-        });
+    let device = &gpu.device;
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: None,
+        module: &module(gpu, STORE),
+        entry_point: None,
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
     let group = group(gpu, label, &pipeline.get_bind_group_layout(0), &[from, to]);
     Work::Dispatch { pipeline, group }
 }
 
 fn draw(gpu: &Gpu, label: &str, from: &wgpu::Texture, to: &wgpu::Texture) -> Work {
     let module = module(gpu, &[DRAW, TRIANGLE].concat());
-    let pipeline = gpu
-        .device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(label),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: None,
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: None,
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(FORMAT.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+    let device = &gpu.device;
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(label),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    });
     let group = group(gpu, label, &pipeline.get_bind_group_layout(0), &[from]);
     Work::Draw {
         pipeline,

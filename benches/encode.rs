@@ -6,13 +6,13 @@ use criterion::{BenchmarkGroup, BenchmarkId, Criterion, measurement::WallTime};
 use skiagraph_benches::{
     Shaders, VIEWPORT,
     chain::{ByHand, Kind, executor},
-    graph, open,
+    graph, median, open,
 };
 use skiagraph_gpu::{
     Executor, Frame,
     device::{Gpu, Wanted},
 };
-use skiagraph_graph::{Graph, NoProvider, ParamValue, Plan, PlanRequest, Registry};
+use skiagraph_graph::{NoProvider, ParamValue, Plan, PlanRequest, Registry};
 use std::time::{Duration, Instant};
 
 const SIZES: [usize; 3] = [10, 100, 1000];
@@ -37,9 +37,7 @@ fn main() {
 
 /// Encodes and finishes one frame; how long that took.
 fn frame(gpu: &Gpu, encode: impl FnOnce(&mut wgpu::CommandEncoder)) -> Duration {
-    let mut encoder = gpu
-        .device
-        .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let start = Instant::now();
     encode(&mut encoder);
     let commands = encoder.finish();
@@ -68,11 +66,7 @@ fn compare(gpu: &Gpu) {
                 // The first way finds other caches.
                 for way in (0..3).map(|way| (first + way) % 3) {
                     let time = frame(gpu, |encoder| match way {
-                        0 => drop(
-                            executor
-                                .encode(encoder, &Frame::new().with_all(true))
-                                .expect("the chain was encoded before"),
-                        ),
+                        0 => encode(&mut executor, encoder),
                         1 => by_hand.encode(encoder, false),
                         _ => by_hand.encode(encoder, true),
                     });
@@ -102,77 +96,69 @@ fn compare(gpu: &Gpu) {
     }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
+/// Encodes all passes of a graph that was encoded before.
+fn encode(executor: &mut Executor, encoder: &mut wgpu::CommandEncoder) {
+    let encoded = executor.encode(encoder, &Frame::new().with_all(true));
+    encoded.expect("the graph was encoded before");
 }
 
 fn planned(passes: usize) -> Plan {
-    let generated = graph(passes, Shaders::Few, 1);
-    Graph::load("graph.ron", &Registry::standard(), &generated)
-        .and_then(|graph| graph.plan(&PlanRequest::new(VIEWPORT, &NoProvider)))
-        .unwrap_or_else(|faults| panic!("{faults}"))
+    let sources = (&Registry::standard(), &graph(passes, Shaders::Few, 1) as _);
+    let request = PlanRequest::new(VIEWPORT, &NoProvider);
+    skiagraph_benches::planned("graph.ron", sources, &request)
 }
 
 /// Frames of generated graphs, and what an executor's making, another size and another value of a
 /// param cost.
 fn changes(criterion: &mut Criterion, gpu: &Gpu) {
     let make = |plan| {
-        Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)
-            .expect("the generated graphs suit every device")
-    };
-    // wgpu frees what was dropped when it next submits; a program does that in every frame.
-    let settle = || {
-        gpu.queue.submit([]);
-        let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        let made = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider);
+        made.expect("the generated graphs suit every device")
     };
     for passes in SIZES {
         let mut group = criterion.benchmark_group(format!("executor, {passes} passes"));
         each(&mut group, "new", || {
             let plan = planned(passes);
-            let start = Instant::now();
-            let executor = make(plan);
-            let time = start.elapsed();
-            drop(executor);
-            settle();
-            time
+            settled(gpu, || make(plan))
         });
         let mut executor = make(planned(passes));
         each(&mut group, "encode", || {
-            frame(gpu, |encoder| {
-                executor
-                    .encode(encoder, &Frame::new().with_all(true))
-                    .expect("the graph was encoded before");
-            })
+            frame(gpu, |encoder| encode(&mut executor, encoder))
         });
         let mut wide = false;
         each(&mut group, "resize", || {
             wide = !wide;
             let viewport = [VIEWPORT[0] * if wide { 2 } else { 1 }, VIEWPORT[1]];
-            let start = Instant::now();
-            executor
-                .resize(viewport, &mut NoProvider)
-                .expect("both sizes suit every device");
-            let time = start.elapsed();
-            settle();
-            time
+            settled(gpu, || {
+                let resized = executor.resize(viewport, &mut NoProvider);
+                resized.expect("both sizes suit every device")
+            })
         });
         let mut strength = 0.0;
         each(&mut group, "set_param, upload", || {
             strength += 1.0;
-            let start = Instant::now();
-            let renewed = executor
-                .set_param("strength", ParamValue::F32(strength), &mut NoProvider)
-                .expect("every value suits");
-            let time = start.elapsed();
-            assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
-            assert!(!renewed.uploads.is_empty());
-            settle();
-            time
+            settled(gpu, || {
+                let value = ParamValue::F32(strength);
+                let renewed = executor.set_param("strength", value, &mut NoProvider);
+                let renewed = renewed.expect("every value suits");
+                assert!(renewed.pipelines.is_empty() && renewed.resources.is_empty());
+                assert!(!renewed.uploads.is_empty());
+            })
         });
         group.finish();
     }
+}
+
+/// Measures an operation. What it has made and dropped is freed behind that: wgpu does so when it
+/// next submits, as a program does in every frame.
+fn settled<T>(gpu: &Gpu, act: impl FnOnce() -> T) -> Duration {
+    let start = Instant::now();
+    let made = act();
+    let time = start.elapsed();
+    drop(made);
+    gpu.queue.submit([]);
+    let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    time
 }
 
 /// Measures an operation that times itself.

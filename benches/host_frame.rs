@@ -6,12 +6,12 @@
 //! than where everything is.
 
 use glam::{DAffine3, DVec3};
-use skiagraph_benches::open;
+use skiagraph_benches::{open, planned};
 use skiagraph_gpu::{
     Executor, Frame,
     device::{self, Gpu},
 };
-use skiagraph_graph::{Graph, ParamValue, PlanRequest};
+use skiagraph_graph::{ParamValue, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, Work, registry};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};
 use std::time::{Duration, Instant};
@@ -209,11 +209,8 @@ fn print_work(works: &[Work]) {
     let both = |counter: fn(&Work) -> u64| {
         let mut values: Vec<u64> = works.iter().map(counter).collect();
         values.sort_unstable();
-        format!(
-            "{} ({})",
-            values[values.len() / 2],
-            values[values.len() - 1]
-        )
+        let [median, most] = [values.len() / 2, values.len() - 1].map(|at| values[at]);
+        format!("{median} ({most})")
     };
     println!(
         "  bytes uploaded {}, copied on the GPU {}; nodes {}, triangles {}; positions moved {}, \
@@ -249,28 +246,21 @@ impl<'a> Host<'a> {
             .expect("the mesh has parts, and the device room for them");
         provider.set_camera(&view(0).camera(VIEWPORT));
         let places: Vec<DAffine3> = (0..MESHES).map(|index| place(index, 0)).collect();
-        provider
-            .set_transforms(&places)
-            .expect("the maps are plain shifts");
+        let placed = provider.set_transforms(&places);
+        placed.expect("the maps are plain shifts");
         let path = format!("pipelines/{preset}.ron");
-        let graph = Graph::load(&path, &registry(), &EmbeddedSources)
-            .unwrap_or_else(|faults| panic!("{faults}"));
-        let mut request = PlanRequest::new(VIEWPORT, &provider);
-        request.limits = gpu.device.limits();
-        request.features = gpu.device.features();
+        let request = PlanRequest::new(VIEWPORT, &provider);
+        let mut request = request.with_device(gpu.device.limits(), gpu.device.features());
         if let Some(engine) = engine {
             let engine = ParamValue::Choice(engine.to_owned());
             request.params.insert("engine".to_owned(), engine);
         }
-        let plan = graph
-            .plan(&request)
-            .unwrap_or_else(|faults| panic!("{faults}"));
-        let executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)
-            .expect("the preset suits every device");
+        let plan = planned(&path, (&registry(), &EmbeddedSources), &request);
+        let executor = Executor::on(gpu, plan, &mut provider);
         Self {
             gpu,
             provider,
-            executor,
+            executor: executor.expect("the preset suits every device"),
             places,
         }
     }
@@ -286,27 +276,23 @@ impl<'a> Host<'a> {
         if kind.camera {
             self.provider.set_camera(&view(turn).camera(VIEWPORT));
         }
-        self.provider
-            .set_transforms(&self.places)
-            .expect("the maps are turns and shifts");
+        let placed = self.provider.set_transforms(&self.places);
+        placed.expect("the maps are turns and shifts");
         let set = since(start);
         let start = Instant::now();
-        self.executor
-            .refresh(&mut self.provider)
-            .expect("the same resources are built again");
+        let refreshed = self.executor.refresh(&mut self.provider);
+        refreshed.expect("the same resources are built again");
         let refresh = since(start);
         let start = Instant::now();
-        self.executor
-            .encode(&mut encoder, &Frame::new().with_all(kind.all))
-            .expect("the frame was encoded before");
+        let frame = Frame::new().with_all(kind.all);
+        let encoded = self.executor.encode(&mut encoder, &frame);
+        encoded.expect("the frame was encoded before");
         let commands = encoder.finish();
         let encode = since(start);
         let start = Instant::now();
         self.gpu.queue.submit([commands]);
-        self.gpu
-            .device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .expect("the GPU is there");
+        let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        waited.expect("the GPU is there");
         Times {
             set,
             refresh,
@@ -334,12 +320,10 @@ impl<'a> Host<'a> {
         let map = place(self.places.len(), 0);
         let start = Instant::now();
         self.places.push(map);
-        self.provider
-            .add_part(stone, &map)
-            .expect("the map is a shift");
-        self.executor
-            .refresh(&mut self.provider)
-            .expect("there is room for it");
+        let added = self.provider.add_part(stone, &map);
+        added.expect("the map is a shift");
+        let refreshed = self.executor.refresh(&mut self.provider);
+        refreshed.expect("there is room for it");
         let time = since(start);
         self.frame(0, NOTHING);
         time

@@ -4,8 +4,8 @@
 pub mod chain;
 
 use skiagraph_gpu::device::{self, Gpu, Wanted};
-use skiagraph_graph::Sources;
-use std::{collections::BTreeMap, fmt::Write as _, sync::Arc};
+use skiagraph_graph::{Graph, Plan, PlanRequest, Registry, Sources};
+use std::{collections::BTreeMap, sync::Arc};
 
 /// Width and height of the generated graphs' textures: planning and encoding do not depend on it.
 pub const VIEWPORT: [u32; 2] = [16, 16];
@@ -13,16 +13,41 @@ pub const VIEWPORT: [u32; 2] = [16, 16];
 /// Opens an adapter and prints its name, with the text of `unit` behind; without one, prints that
 /// nothing was measured.
 pub fn open(wanted: &Wanted, unit: &str) -> Option<Gpu> {
-    let opened = device::open_with(wanted);
-    let gpu = opened
-        .inspect_err(|error| println!("NOTHING WAS MEASURED: {error}"))
-        .ok()?;
+    let gpu = open_quietly(wanted)?;
     let info = gpu.adapter.get_info();
     println!(
         "adapter: {} ({:?}, {} {}){unit}",
         info.name, info.backend, info.driver, info.driver_info
     );
     Some(gpu)
+}
+
+/// Opens an adapter; without one, prints that nothing was measured.
+pub fn open_quietly(wanted: &Wanted) -> Option<Gpu> {
+    let opened = device::open_with(wanted);
+    let opened = opened.inspect_err(|error| println!("NOTHING WAS MEASURED: {error}"));
+    opened.ok()
+}
+
+/// Returns the plan of a document.
+///
+/// # Panics
+/// If the document has mistakes, or cannot be planned.
+pub fn planned(
+    path: &str,
+    (registry, sources): (&Registry, &dyn Sources),
+    request: &PlanRequest<'_>,
+) -> Plan {
+    Graph::load(path, registry, sources)
+        .and_then(|graph| graph.plan(request))
+        .unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// Returns the value in the middle of some.
+pub fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }
 
 /// How many shaders a generated graph has.
@@ -53,39 +78,15 @@ impl Sources for Generated {
     }
 }
 
-const FILL: &str = "@fragment fn fill() -> @location(0) vec4<f32> { return vec4<f32>(1.0); }\n";
+const FILL: &str = include_str!("shaders/fill.wgsl");
 
-const ONE: &str = "var a: texture_2d<f32>;
-struct Params { strength: f32 }
-var<uniform> params: Params;
-@fragment fn one(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
-    return textureLoad(a, vec2<u32>(centre.xy), 0) * params.strength;
-}
-";
+const ONE: &str = include_str!("shaders/one.wgsl");
 
-const TWO: &str = "var a: texture_2d<f32>;
-var b: texture_2d<f32>;
-@fragment fn two(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<u32>(centre.xy);
-    return textureLoad(a, pixel, 0) + textureLoad(b, pixel, 0);
-}
-";
+const TWO: &str = include_str!("shaders/two.wgsl");
 
-const DRAW: &str = "var a: texture_2d<f32>;
-@vertex fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    return vec4<f32>(f32(index & 1u), f32(index >> 1u), 0.5, 1.0);
-}
-@fragment fn colour(@builtin(position) centre: vec4<f32>) -> @location(0) vec4<f32> {
-    return textureLoad(a, vec2<u32>(centre.xy), 0);
-}
-";
+const DRAW: &str = include_str!("shaders/draw.wgsl");
 
-const STORE: &str = "var a: texture_2d<f32>;
-var made: texture_storage_2d<rgba16float, write>;
-@compute @workgroup_size(8, 8) fn store(@builtin(global_invocation_id) at: vec3<u32>) {
-    textureStore(made, at.xy, textureLoad(a, at.xy, 0) * 0.5);
-}
-";
+const STORE: &str = include_str!("shaders/store.wgsl");
 
 /// A graph of exactly `passes` passes (1 at least), the same for the same `seed`.
 ///
@@ -176,9 +177,7 @@ struct Writer {
 
 impl Writer {
     fn material(&mut self, name: &str, format: &str) {
-        let line = format!("        Texture(name: \"{name}\", format: {format}),");
-        self.materials.push_str(&line);
-        self.materials.push('\n');
+        self.materials += &format!("        Texture(name: \"{name}\", format: {format}),\n");
     }
 
     /// The name of a texture that the next pass writes.
@@ -190,12 +189,8 @@ impl Writer {
 
     fn pass(&mut self, kind: &'static str, fields: &str) {
         *self.generated.kinds.entry(kind).or_default() += 1;
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            self.body,
-            "        {kind}(name: \"pass_{}\", {fields}),",
-            self.passes
-        );
+        let number = self.passes;
+        self.body += &format!("        {kind}(name: \"pass_{number}\", {fields}),\n");
         self.passes += 1;
     }
 
@@ -298,10 +293,7 @@ impl Writer {
     fn mips(&mut self, from: &str) -> String {
         let chain = format!("chain_{}", self.passes);
         let level = |mip: usize| format!("{chain}.mip[{mip}]");
-        let _ = writeln!(
-            self.materials,
-            "        Texture(name: \"{chain}\", format: Rgba16Float, mips: 3),",
-        );
+        self.material(&chain, "Rgba16Float, mips: 3");
         self.fullscreen_onto(from, &level(0));
         self.fullscreen_onto(&level(0), &level(1));
         self.fullscreen_onto(&level(1), &level(2));
@@ -309,15 +301,10 @@ impl Writer {
     }
 
     fn document(mut self, open: &[String]) -> Generated {
-        let outputs: Vec<String> = (0..)
-            .zip(open)
-            .map(|(index, name)| format!("(name: \"output_{index}\", material: \"{name}\")"))
-            .collect();
-        let params = if self.has_param {
-            "F32(name: \"strength\", default: 0.5)"
-        } else {
-            ""
-        };
+        let output = |(index, name)| format!("(name: \"output_{index}\", material: \"{name}\")");
+        let outputs: Vec<String> = open.iter().enumerate().map(output).collect();
+        let param = "F32(name: \"strength\", default: 0.5)";
+        let params = self.has_param.then_some(param).unwrap_or_default();
         let text = format!(
             "(\n    format: 3,\n    params: [{params}],\n    \
              materials: [\n{}    ],\n    passes: [\n{}    ],\n    outputs: [{}],\n)\n",

@@ -5,11 +5,12 @@
 //!
 //! A start ends when the first frame is done, since some drivers compile when they first draw.
 
+use skiagraph_benches::{median, open_quietly, planned};
 use skiagraph_gpu::{
     Executor, Frame, Pipelines,
-    device::{self, Gpu, Wanted},
+    device::{Gpu, Wanted},
 };
-use skiagraph_graph::{Graph, Plan, PlanRequest};
+use skiagraph_graph::{Plan, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Indexed};
 use std::time::Instant;
@@ -35,7 +36,7 @@ fn main() {
             turns.push(turn);
         }
         let cell = |way: usize| {
-            let time = |part: usize| median(turns.iter().map(|turn| turn[way][part]).collect());
+            let time = |part: usize| median(turns.iter().map(|turn| turn[way][part]));
             format!("{:.0} + {:.0}", time(0), time(1))
         };
         let cells: Vec<String> = (0..4).map(cell).collect();
@@ -67,23 +68,19 @@ fn turn(preset: &str) -> Option<([Times; 4], Vec<u8>)> {
 }
 
 fn open() -> Option<Gpu> {
-    let wanted = Wanted::default().with_features(wgpu::Features::PIPELINE_CACHE);
-    let opened = device::open_with(&wanted);
-    opened
-        .inspect_err(|error| println!("NOTHING WAS MEASURED: {error}"))
-        .ok()
+    open_quietly(&Wanted::default().with_features(wgpu::Features::PIPELINE_CACHE))
 }
 
 fn cache_of(gpu: &Gpu, data: Option<&[u8]>) -> wgpu::PipelineCache {
     #[expect(unsafe_code, reason = "wgpu has the host vouch for the data")]
     // SAFETY: the data are those that `get_data` has just given.
     unsafe {
-        gpu.device
-            .create_pipeline_cache(&wgpu::PipelineCacheDescriptor {
-                label: None,
-                data,
-                fallback: true,
-            })
+        let device = &gpu.device;
+        device.create_pipeline_cache(&wgpu::PipelineCacheDescriptor {
+            label: None,
+            data,
+            fallback: true,
+        })
     }
 }
 
@@ -108,13 +105,10 @@ fn scene(gpu: &Gpu, preset: &str) -> (SceneProvider, Plan) {
         ..skiagraph_scene::View::default()
     };
     provider.set_camera(&view.camera(VIEWPORT));
-    let mut request = PlanRequest::new(VIEWPORT, &provider);
-    request.limits = gpu.device.limits();
-    request.features = gpu.device.features();
+    let request = PlanRequest::new(VIEWPORT, &provider);
+    let request = request.with_device(gpu.device.limits(), gpu.device.features());
     let path = format!("pipelines/{preset}.ron");
-    let plan = Graph::load(&path, &registry(), &EmbeddedSources)
-        .and_then(|graph| graph.plan(&request))
-        .unwrap_or_else(|faults| panic!("{faults}"));
+    let plan = planned(&path, (&registry(), &EmbeddedSources), &request);
     (provider, plan)
 }
 
@@ -129,9 +123,4 @@ fn start(gpu: &Gpu, pipelines: &Pipelines, plan: Plan, provider: &mut SceneProvi
     gpu.queue.submit([encoder.finish()]);
     executor.finish().unwrap_or_else(|error| panic!("{error}"));
     [made, begin.elapsed() - made].map(|time| time.as_secs_f64() * 1e3)
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }

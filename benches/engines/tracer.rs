@@ -1,8 +1,9 @@
 //! Traces given rays by one engine of `Trace`, without a method around it.
 
 use glam::Vec3;
+use skiagraph_benches::planned;
 use skiagraph_gpu::{Content, Executor, Frame, Provider, device::Gpu};
-use skiagraph_graph::{Capture, Describe, Graph, MemorySources, Plan, PlanRequest, Sources};
+use skiagraph_graph::{Capture, Describe, MemorySources, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, Engine, SceneProvider, registry};
 use skiagraph_scene::{Scene, generate::numbers::Random};
 use skiagraph_tests::extended::Extended;
@@ -74,14 +75,9 @@ impl Tracer {
         let built = began.elapsed();
         let document = document(set, engine);
         let files = MemorySources::new([("any_hits.ron", document.as_str())]);
-        let plan = plan(
-            gpu,
-            "any_hits.ron",
-            &files.over(EmbeddedSources),
-            1,
-            provider,
-            &[],
-        );
+        let request = request(gpu, 1, provider);
+        let sources = (&registry(), &files.over(EmbeddedSources) as _);
+        let plan = planned("any_hits.ron", sources, &request);
         let executor = Executor::on(gpu, plan, provider);
         Self {
             executor: executor.unwrap_or_else(|why| panic!("{why}")),
@@ -122,14 +118,10 @@ pub fn shadow_rays(gpu: &Gpu, name: &str, scene: &Arc<Scene>, edge: u32) -> RayS
     let mut provider = SceneProvider::new(Arc::clone(scene));
     provider.set_view(&scene.views[0], [edge; 2]);
     let names = ["rays", "ray_primitives", "ray_count"];
-    let plan = plan(
-        gpu,
-        "pipelines/rt.ron",
-        &EmbeddedSources,
-        edge,
-        &provider,
-        &names,
-    );
+    let mut request = request(gpu, edge, &provider);
+    request.captures = names.map(Capture::new).into();
+    let sources = (&registry(), &EmbeddedSources as _);
+    let plan = planned("pipelines/rt.ron", sources, &request);
     let executor = Executor::on(gpu, plan, &mut provider);
     let mut executor = executor.unwrap_or_else(|why| panic!("{why}"));
     let mut contents = read(gpu, &mut executor, &names);
@@ -168,20 +160,9 @@ pub fn random_rays(name: &str, scene: &Scene, count: usize) -> RaySet {
     }
 }
 
-fn plan(
-    gpu: &Gpu,
-    path: &str,
-    sources: &dyn Sources,
-    edge: u32,
-    provider: &dyn Describe,
-    captures: &[&str],
-) -> Plan {
-    let graph = Graph::load(path, &registry(), sources).unwrap_or_else(|why| panic!("{why}"));
-    let mut request = PlanRequest::new([edge; 2], provider);
-    request.limits = gpu.device.limits();
-    request.features = gpu.device.features();
-    request.captures = captures.iter().map(|name| Capture::new(*name)).collect();
-    graph.plan(&request).unwrap_or_else(|why| panic!("{why}"))
+fn request<'a>(gpu: &Gpu, edge: u32, provider: &'a dyn Describe) -> PlanRequest<'a> {
+    let request = PlanRequest::new([edge; 2], provider);
+    request.with_device(gpu.device.limits(), gpu.device.features())
 }
 
 /// Returns a provider of a scene with the rays of a set.
@@ -195,16 +176,9 @@ pub fn with_rays(scene: &Arc<Scene>, set: &RaySet) -> Extended {
 
 /// A graph of one pass, which traces.
 fn document(set: &RaySet, engine: Engine) -> String {
-    let direction = if set.to_light {
-        ", direction: Light"
-    } else {
-        ""
-    };
-    let skip = if set.skip.is_empty() {
-        ""
-    } else {
-        r#", skip: "given.skip""#
-    };
+    let direction = set.to_light.then_some(", direction: Light");
+    let skip = (!set.skip.is_empty()).then_some(r#", skip: "given.skip""#);
+    let [direction, skip] = [direction, skip].map(Option::unwrap_or_default);
     format!(
         r#"(
             format: 3,

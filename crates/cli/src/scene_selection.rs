@@ -75,9 +75,8 @@ impl SceneSelection {
         };
         notes.print_report(args, &own.report);
         if args.eye.is_some() && args.view.as_deref() == Some("all") && own.scene.views.len() > 1 {
-            return Err(CliError::Usage(
-                "--eye is one view of your own: leave out --view all, or --eye".into(),
-            ));
+            let text = "--eye is one view of your own: leave out --view all, or --eye";
+            return Err(CliError::Usage(text.into()));
         }
         let views = own.views(args.view.as_deref(), &options.camera, options.sun)?;
         let mut further = Vec::new();

@@ -261,30 +261,23 @@ pub async fn request(wanted: &Wanted<'_>) -> Result<Gpu, GpuError> {
             (Some(backends), ..) => no_such_backend(names_of(backends), &infos),
         });
     }
-    let name = wanted
-        .adapter
-        .map(str::to_owned)
-        .or_else(|| std::env::var("WGPU_ADAPTER_NAME").ok())
-        .filter(|name| !name.is_empty());
+    let name = wanted.adapter.map(str::to_owned);
+    let name = name.or_else(|| std::env::var("WGPU_ADAPTER_NAME").ok());
+    let name = name.filter(|name| !name.is_empty());
     let wanted_name = name.as_deref().unwrap_or_default().to_lowercase();
-    let by_name = |adapter: &&wgpu::Adapter| {
-        let of_adapter = adapter.get_info().name.to_lowercase();
-        of_adapter.contains(&wanted_name)
+    let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
+    let find = |text: fn(&wgpu::AdapterInfo) -> String| {
+        let mut texts = infos.iter().map(text);
+        texts.position(|text| text.to_lowercase().contains(&wanted_name))
     };
-    let by_driver = |adapter: &&wgpu::Adapter| {
-        let info = adapter.get_info();
-        let driver = format!("{} {}", info.driver, info.driver_info).to_lowercase();
-        driver.contains(&wanted_name)
-    };
-    let named = adapters.iter().find(by_name);
-    let Some(adapter) = named.or_else(|| adapters.iter().find(by_driver)) else {
-        let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
+    let named = find(|info| info.name.clone());
+    let Some(at) = named.or_else(|| find(driver)) else {
         return Err(GpuError::NoSuchAdapter {
             name: name.unwrap_or_default(),
             seen: list(&infos),
         });
     };
-    device_of(instance, adapter.clone(), wanted.features).await
+    device_of(instance, adapters[at].clone(), wanted.features).await
 }
 
 /// The device of an adapter, with those of these features that it offers.
@@ -302,21 +295,19 @@ async fn device_of(
         required_limits: adapter.limits(),
         ..wgpu::DeviceDescriptor::default()
     });
-    match request.await {
-        Ok((device, queue)) => Ok(Gpu {
-            instance,
-            adapter,
-            pipelines: Pipelines::new(&device),
-            device,
-            queue,
-            memory: None,
-            timeout: None,
-        }),
-        Err(error) => Err(GpuError::Device {
-            adapter: adapter.get_info().name,
-            why: error.to_string(),
-        }),
-    }
+    let (device, queue) = request.await.map_err(|error| GpuError::Device {
+        adapter: adapter.get_info().name,
+        why: error.to_string(),
+    })?;
+    Ok(Gpu {
+        instance,
+        adapter,
+        pipelines: Pipelines::new(&device),
+        device,
+        queue,
+        memory: None,
+        timeout: None,
+    })
 }
 
 fn no_such_backend(wanted: String, infos: &[wgpu::AdapterInfo]) -> GpuError {
@@ -334,12 +325,16 @@ fn names_of(backends: wgpu::Backends) -> String {
     names.collect::<Vec<_>>().join(",")
 }
 
+/// Name and version of an adapter's driver.
+fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info)
+}
+
 /// Adapters for a message.
 fn list(adapters: &[wgpu::AdapterInfo]) -> String {
     let name = |info: &wgpu::AdapterInfo| {
         let backend = info.backend.to_str();
-        let driver = format!("{} {}", info.driver, info.driver_info);
-        match driver.trim() {
+        match driver(info).trim() {
             "" => format!("{} ({backend})", info.name),
             driver => format!("{} ({backend}, {driver})", info.name),
         }

@@ -255,16 +255,11 @@ pub enum ExecuteError {
 
 /// Says how a provided resource differs from the description that the graph was planned for.
 fn change(name: &str, planned: &Option<Provided>, given: &Option<Provided>) -> String {
-    let (planned, given) = match (planned, given) {
-        (Some(planned), Some(given)) => (planned, given),
-        (None, _) => {
-            return format!("the provider has `{name}` now, but the graph was planned without it");
-        }
-        (Some(_), None) => {
-            return format!(
-                "the provider no longer has `{name}`, with which the graph was planned"
-            );
-        }
+    let Some(planned) = planned else {
+        return format!("the provider has `{name}` now, but the graph was planned without it");
+    };
+    let Some(given) = given else {
+        return format!("the provider no longer has `{name}`, with which the graph was planned");
     };
     if let (Some(planned), Some(given)) = (&planned.kind, &given.kind)
         && planned != given
@@ -319,14 +314,14 @@ pub(crate) fn scoped<T>(
 pub(crate) fn refusal(name: &str, error: &wgpu::Error) -> ExecuteError {
     let name = name.to_owned();
     match error {
-        wgpu::Error::OutOfMemory { .. } => ExecuteError::OutOfMemory {
-            name,
-            table: String::new(),
-        },
-        error => ExecuteError::Resource {
-            name,
-            message: chain(error),
-        },
+        wgpu::Error::OutOfMemory { .. } => {
+            let table = String::new();
+            ExecuteError::OutOfMemory { name, table }
+        }
+        wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
+            let message = description.trim().to_owned();
+            ExecuteError::Resource { name, message }
+        }
     }
 }
 
@@ -413,14 +408,5 @@ pub(crate) fn poll(device: &wgpu::Device, how: wgpu::PollType) -> Result<bool, E
         // timeout and its look at the queue.
         Err(panicked) if panicked.message.starts_with("If the queue is empty") => Ok(false),
         Err(panicked) => Err(ExecuteError::DeviceLost(panicked.to_string())),
-    }
-}
-
-fn chain(error: &wgpu::Error) -> String {
-    match error {
-        wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
-            description.trim().to_owned()
-        }
-        wgpu::Error::OutOfMemory { .. } => "out of memory".to_owned(),
     }
 }

@@ -46,11 +46,8 @@ impl Presence {
     /// [`ExecuteError::OtherDevice`], or [`ExecuteError::DeviceLost`].
     pub fn check_queue(&self, queue: &wgpu::Queue) -> Result<(), ExecuteError> {
         let is_own = identity::has_queue(&self.device, queue, &self.buffer);
-        self.check_own(
-            is_own,
-            "the queue",
-            "hand over the one that came with the device",
-        )
+        let way_out = "hand over the one that came with the device";
+        self.check_own(is_own, "the queue", way_out)
     }
 
     /// Returns an error if the resources of `provider` are on another device.

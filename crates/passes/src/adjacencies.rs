@@ -22,16 +22,14 @@ impl Adjacencies {
         let Some(turned) = turned else {
             return Arc::new(Adjacency::new(mesh).opposite);
         };
-        let opposite = match self.known.take() {
-            Some((mut shared, since)) => {
-                let opposite: &mut Vec<u32> = Arc::make_mut(&mut shared);
-                for piece in turned(since) {
-                    renew(opposite, &piece, mesh);
-                }
-                shared
-            }
-            None => Arc::new(Adjacency::new(mesh).opposite),
+        let (mut opposite, pieces) = match self.known.take() {
+            Some((before, since)) => (before, turned(since)),
+            None => (Arc::new(Adjacency::new(mesh).opposite), Vec::new()),
         };
+        for piece in pieces {
+            let list: &mut Vec<u32> = Arc::make_mut(&mut opposite);
+            renew(list, &piece, mesh);
+        }
         self.known = Some((Arc::clone(&opposite), version));
         opposite
     }
@@ -45,16 +43,11 @@ impl Adjacencies {
 /// Finds the neighbours of a piece's triangles, all of which are of the piece.
 fn renew(opposite: &mut [u32], piece: &[u32], mesh: &Mesh) {
     let picked = |list: &Vec<u32>| piece.iter().map(|&id| list[id as usize]).collect();
-    let surfaces = &mesh.surfaces;
-    let surfaces = if surfaces.need_care() || surfaces.have_roles() {
-        Surfaces {
-            materials: surfaces.materials.clone(),
-            of: picked(&surfaces.of),
-            ..Surfaces::default()
-        }
-    } else {
-        Surfaces::default()
-    };
+    let (whole, mut surfaces) = (&mesh.surfaces, Surfaces::default());
+    if whole.need_care() || whole.have_roles() {
+        surfaces.materials.clone_from(&whole.materials);
+        surfaces.of = picked(&whole.of);
+    }
     let triangles = piece.iter().map(|&id| mesh.triangles[id as usize]);
     let alone = Mesh {
         triangles: triangles.collect(),

@@ -175,7 +175,7 @@ impl Buffers {
         let items = if items.is_empty() { &dummy } else { items };
         let content: &[u8] = bytemuck::cast_slice(items);
         let bytes = content.len() as u64;
-        check_size(name, bytes, binding_limit(&on.device.limits()))?;
+        check_binding(name, bytes, on.device)?;
         let buffer = self.create(name, bytes, on.device);
         // Nothing that was encoded reads it yet.
         on.queue.write_buffer(&buffer, 0, content);
@@ -291,11 +291,7 @@ impl Buffers {
         match last.filter(|(there, _)| *there > 1 && *there <= items.len()) {
             Some((there, _)) if there == items.len() => self.still_hold(name, version),
             Some((there, last)) => {
-                check_size(
-                    name,
-                    size_of_val(items) as u64,
-                    binding_limit(&on.device.limits()),
-                )?;
+                check_binding(name, size_of_val(items) as u64, on.device)?;
                 let (range, content) = (there..items.len(), &items[there..]);
                 let changed = (items.len(), std::slice::from_ref(&range), content);
                 self.succeed(name, &last, changed, version, on);
@@ -409,9 +405,13 @@ pub(crate) fn upload(
 
 /// The most bytes that a storage buffer can have and be bound whole.
 pub(crate) fn binding_limit(limits: &wgpu::Limits) -> u64 {
-    limits
-        .max_buffer_size
-        .min(limits.max_storage_buffer_binding_size)
+    let whole = limits.max_buffer_size;
+    whole.min(limits.max_storage_buffer_binding_size)
+}
+
+/// Refuses a buffer of more bytes than a device binds.
+pub(crate) fn check_binding(name: &str, bytes: u64, device: &wgpu::Device) -> Result<(), Error> {
+    check_size(name, bytes, binding_limit(&device.limits()))
 }
 
 /// Refuses a buffer of more bytes than the limit.
@@ -419,9 +419,6 @@ pub(crate) fn check_size(name: &str, bytes: u64, limit: u64) -> Result<(), Error
     if bytes <= limit {
         return Ok(());
     }
-    Err(Error::TooLarge {
-        name: name.to_owned(),
-        bytes,
-        limit,
-    })
+    let name = name.to_owned();
+    Err(Error::TooLarge { name, bytes, limit })
 }

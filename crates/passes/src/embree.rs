@@ -93,13 +93,9 @@ impl Embree {
     fn closest(&self, rays: &[Ray], context: &mut IntersectContext) {
         for (index, ray) in rays.iter().enumerate().filter(|(_, ray)| ray.has_way()) {
             let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
-            let mut traced = RayHit::from_ray(embree3::Ray::segment_with_id(
-                origin,
-                direction,
-                ray.t_min,
-                ray.t_max,
-                index as u32,
-            ));
+            let (near, far, id) = (ray.t_min, ray.t_max, index as u32);
+            let segment = embree3::Ray::segment_with_id(origin, direction, near, far, id);
+            let mut traced = RayHit::from_ray(segment);
             self.0.intersect(context, &mut traced);
             if traced.hit.is_valid() {
                 let hit = Hit {
@@ -130,9 +126,8 @@ impl Embree {
             task.hits = rays.iter().map(miss).collect();
         });
         // Rays from neighbouring pixels towards one light are what Embree calls coherent.
-        let is_parallel = rays
-            .windows(2)
-            .all(|pair| pair[0].direction == pair[1].direction);
+        let mut pairs = rays.windows(2);
+        let is_parallel = pairs.all(|pair| pair[0].direction == pair[1].direction);
         let mut context = if is_parallel {
             IntersectContext::coherent()
         } else {

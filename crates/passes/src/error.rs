@@ -6,6 +6,7 @@
 )]
 
 use crate::parts::PartId;
+use skiagraph_gpu::ProviderError;
 
 /// Reason why a [`SceneProvider`](crate::SceneProvider) refuses a change of its scene, or cannot
 /// build a resource. An executor reports a failed build as
@@ -236,4 +237,10 @@ pub enum Error {
         /// `max_buffer_size` and `max_storage_buffer_binding_size`.
         limit: u64,
     },
+}
+
+impl From<Error> for ProviderError {
+    fn from(error: Error) -> Self {
+        Self::from_error(error)
+    }
 }

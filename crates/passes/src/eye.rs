@@ -106,11 +106,8 @@ impl Eye {
     /// Itself, unless its camera was none.
     pub(crate) fn finite(&self) -> Result<&Self, Error> {
         let numbers: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&self.camera));
-        if numbers.iter().all(|number| number.is_finite()) {
-            Ok(self)
-        } else {
-            Err(Error::Camera(self.camera))
-        }
+        let is_finite = numbers.iter().all(|number| number.is_finite());
+        is_finite.then_some(self).ok_or(Error::Camera(self.camera))
     }
 }
 

@@ -109,6 +109,11 @@ impl Geometry {
         self.first.is_some()
     }
 
+    /// Refuses a mesh without parts.
+    fn check_parts(&self) -> Result<(), Error> {
+        self.first.as_ref().map(drop).ok_or(Error::NoParts)
+    }
+
     /// True if parts are in spaces of their own and have no places yet.
     pub fn is_unplaced(&self) -> bool {
         self.is_unplaced
@@ -155,9 +160,7 @@ impl Geometry {
         maps: &[DAffine3],
         scene: &mut Arc<Scene>,
     ) -> Result<Change, Error> {
-        if self.first.is_none() {
-            return Err(Error::NoParts);
-        }
+        self.check_parts()?;
         let [parts, given] = [self.parts.len(), maps.len()];
         if parts != given {
             return Err(MoveError::Count { parts, maps: given }.into());
@@ -265,9 +268,7 @@ impl Geometry {
     /// # Errors
     /// [`Error::NoParts`], [`Error::TooLarge`].
     pub fn reserve(&mut self, room: Room, scene: &mut Arc<Scene>) -> Result<(), Error> {
-        if self.first.is_none() {
-            return Err(Error::NoParts);
-        }
+        self.check_parts()?;
         self.space.check(room, self.pieces.len(), &scene.mesh)?;
         self.space.reserve(room, &mut Arc::make_mut(scene).mesh);
         self.begun = next_version();
@@ -311,13 +312,10 @@ impl Geometry {
         map: &DAffine3,
         scene: &mut Arc<Scene>,
     ) -> Result<(PartId, Change), Error> {
-        if self.first.is_none() {
-            return Err(Error::NoParts);
-        }
+        self.check_parts()?;
+        let is_mirrored = map.matrix3.determinant() < 0.0;
         let moved = match &host {
-            Some(_) => Ok(MovedPart::written_elsewhere(
-                map.matrix3.determinant() < 0.0,
-            )),
+            Some(_) => Ok(MovedPart::written_elsewhere(is_mirrored)),
             None => movable.moved_part(0, map),
         };
         let moved = moved.map_err(|error| error.renumbered(self.parts.len()))?;
@@ -398,7 +396,9 @@ impl Geometry {
         }
         // Those of a part that was cut out of a mesh may have others between them.
         if part.of.is_joined() {
-            self.space.give_back(part.ranges(), part.triangles());
+            let [positions, normals] = part.ranges();
+            let ranges = [positions, normals, part.triangles()];
+            self.space.give_back(ranges);
         }
         self.pieces[id.piece] = Piece::new(Content::Gone);
         self.maps[id.piece] = None;
@@ -407,11 +407,9 @@ impl Geometry {
         self.cleared.clear(part.triangles());
         self.trees.remove(id.piece);
         self.is_unplaced &= !self.has_places();
-        let is_turned = true;
-        Ok(Change {
-            is_turned,
-            ..Change::MOVED
-        })
+        let mut change = Change::MOVED;
+        change.is_turned = true;
+        Ok(change)
     }
 
     /// Notes that the host has rewritten the vertices of a part within these bounds.
@@ -426,11 +424,8 @@ impl Geometry {
         };
         let [low, high] = bounds;
         if !low.cmple(high).all() || !low.is_finite() || !high.is_finite() {
-            return Err(Error::Bounds {
-                part: id,
-                low,
-                high,
-            });
+            let part = id;
+            return Err(Error::Bounds { part, low, high });
         }
         let moved = placed(bounds, map).map_err(|error| error.renumbered(number))?;
         if let Some(host) = &mut self.part_mut(id.piece)?.host {
@@ -491,20 +486,19 @@ impl Geometry {
 
     /// Returns a part whose vertices are in a buffer of the host, if there is one.
     pub fn a_host_part(&self) -> Option<PartId> {
-        self.parts.iter().copied().find(|&id| {
-            let part = self.part(id);
-            part.is_ok_and(|part| part.host.is_some())
-        })
+        let mut parts = self.parts.iter().copied();
+        parts.find(|id| self.pieces[id.piece].host().is_some())
     }
 
     /// The writes of those parts of hosts' buffers that have changed since a version of the shape,
     /// with the pieces that they are; all of them if the scene's buffer was made anew.
     pub fn host_writes(&self, since: Option<u64>) -> Vec<(usize, HostWrite)> {
+        let is_meant = |piece: &Piece| since.is_none_or(|version| piece.changed() > version);
         let pieces = self.pieces.iter().enumerate();
-        let moved =
-            pieces.filter(|(_, piece)| since.is_none_or(|version| piece.changed() > version));
-        let writes = moved.filter_map(|(number, piece)| match &piece.content {
-            Content::Part(part) => Some((number, part.host_write(self.maps[number]?)?)),
+        let writes = pieces.filter_map(|(number, piece)| match &piece.content {
+            Content::Part(part) if is_meant(piece) => {
+                Some((number, part.host_write(self.maps[number]?)?))
+            }
             _ => None,
         });
         writes.collect()
@@ -529,8 +523,9 @@ impl Geometry {
         let moved = self.pieces.iter();
         let moved = moved.filter(|piece| piece.moved > version && piece.host().is_none());
         let list = usize::from(name == NORMALS);
-        let moved = moved.map(|piece| piece.ranges(mesh)[list].clone());
-        moved.collect()
+        moved
+            .map(|piece| piece.ranges(mesh)[list].clone())
+            .collect()
     }
 
     /// The ranges of triangles that have other corners than in a version of the winding.

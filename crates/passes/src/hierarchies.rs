@@ -76,8 +76,8 @@ struct Kept {
 }
 
 /// A hierarchy as shaders read it.
-pub(crate) struct Tree<N> {
-    pub nodes: Vec<N>,
+pub(crate) struct Tree {
+    pub nodes: Vec<LightSpaceNode>,
     /// `None` where they are those of the last time.
     pub primitives: Option<Vec<u32>>,
     pub how: How,
@@ -114,10 +114,9 @@ impl Hierarchies {
                 (former, since, fitted.pieces.clone(), changed)
             }
             None => {
-                let nodes = Arc::default();
                 let kept = OfParts {
                     space,
-                    nodes,
+                    nodes: Arc::default(),
                     shape,
                     version,
                 };
@@ -157,7 +156,7 @@ impl Hierarchies {
         mesh: &Mesh,
         most: usize,
         keep: bool,
-    ) -> Result<Tree<LightSpaceNode>, Error> {
+    ) -> Result<Tree, Error> {
         let mut trees = self.light_spaces.iter();
         if let Some(at) = trees.position(|(direction, _)| *direction == space.direction) {
             let is_last = at + 1 == self.light_spaces.len();
@@ -182,16 +181,18 @@ impl Hierarchies {
             nodes.push(NOTHING);
         }
         nodes.push(LightSpaceNode::centre(space.centre));
-        let primitives = Some(primitives_of(&mut bvh, keep));
+        let primitives = std::mem::take(&mut bvh.primitives);
         if keep && !bvh.nodes.is_empty() {
+            bvh.primitives.clone_from(&primitives);
             // Its boxes are of the light's space; those of the world tell when it has become bad.
             bvh.refit(mesh);
-            let kept = (space.direction, Kept::new(bvh));
+            let cost = bvh.cost();
+            let kept = (space.direction, Kept { bvh, cost });
             remember(&mut self.light_spaces, kept, DIRECTIONS);
         }
         Ok(Tree {
             nodes,
-            primitives,
+            primitives: Some(primitives),
             how: How::Made,
         })
     }
@@ -203,26 +204,11 @@ pub(crate) fn all(count: usize) -> Vec<Range<usize>> {
 }
 
 fn too_large(mesh: &Mesh) -> Error {
-    Error::LightSpace {
-        triangles: mesh.triangles.len(),
-    }
-}
-
-/// A copy where the tree is kept.
-fn primitives_of(bvh: &mut Bvh, keep: bool) -> Vec<u32> {
-    if keep {
-        bvh.primitives.clone()
-    } else {
-        std::mem::take(&mut bvh.primitives)
-    }
+    let triangles = mesh.triangles.len();
+    Error::LightSpace { triangles }
 }
 
 impl Kept {
-    fn new(bvh: Bvh) -> Self {
-        let cost = bvh.cost();
-        Self { bvh, cost }
-    }
-
     /// Fits the boxes to the mesh; whether the tree is as good as it was.
     fn refit(&mut self, mesh: &Mesh) -> bool {
         self.bvh.refit(mesh);

@@ -22,9 +22,8 @@ pub(crate) fn from_scene(scene: &Scene) -> Vec<LightKind> {
 
 /// The kind of a light, as plans and shaders know it.
 pub(crate) fn provided_kind(light: &LightKind) -> ProvidedKind {
-    let number = LightKind::WORDS
-        .iter()
-        .position(|word| *word == light.word());
+    let mut words = LightKind::WORDS.iter();
+    let number = words.position(|word| *word == light.word());
     ProvidedKind {
         words: &LightKind::WORDS,
         number: number.unwrap_or_default() as u32,
@@ -72,16 +71,16 @@ pub(crate) fn describe(name: &str, lights: &[LightKind]) -> Option<Provided> {
         LIGHTS => size_of::<LightUniform>(),
         _ => size_of::<LightAreaUniform>(),
     };
-    let kind = match number {
-        Some(number) => Some(provided_kind(lights.get(number)?)).filter(|_| list == LIGHTS),
-        None => None,
+    let Some(number) = number else {
+        let (binding, items) = (ProvidedBinding::Storage, lights.len() as u64);
+        return Some(Provided::new(binding, Some(items), bytes as u64));
     };
-    let (binding, items) = match number {
-        Some(_) => (ProvidedBinding::Uniform, 1),
-        None => (ProvidedBinding::Storage, lights.len() as u64),
-    };
-    let provided = Provided::new(binding, Some(items), bytes as u64);
-    Some(kind.map_or(provided, |kind| provided.with_kind(kind)))
+    let kind = provided_kind(lights.get(number)?);
+    let provided = Provided::new(ProvidedBinding::Uniform, Some(1), bytes as u64);
+    Some(match list {
+        LIGHTS => provided.with_kind(kind),
+        _ => provided,
+    })
 }
 
 /// The bytes of what stands behind one of these names; `lay` lays a light around the scene.

@@ -1,7 +1,7 @@
 //! Boxes and outlines of a mesh's pieces, around which lights are laid: of pieces that stand still
 //! they are those of the last time.
 
-use crate::{part::box_corners, uniforms::LightUniform};
+use crate::{names::remember, part::box_corners, uniforms::LightUniform};
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{DirectionalLight, LightKind, Outline, outline::border};
 
@@ -10,7 +10,7 @@ use skiagraph_scene::{DirectionalLight, LightKind, Outline, outline::border};
 const DIRECTIONS: usize = 16;
 
 /// A thing made of a piece, with the number of the piece's last move then.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Of<T> {
     made: T,
     moved: u64,
@@ -57,10 +57,7 @@ impl Outlines {
         corners: impl Fn(usize) -> Vec<Vec3>,
     ) -> (LightUniform, u64) {
         let mut laid = self.lay_boxes(moved, &corners);
-        self.borders.resize_with(moved.len(), || Of {
-            made: Border::default(),
-            moved: 0,
-        });
+        self.borders.resize_with(moved.len(), Of::default);
         let (boxes, borders) = (&self.boxes, &mut self.borders);
         let bounds = boxes.iter().filter_map(|entry| entry.made);
         let bounds = bounds.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
@@ -77,10 +74,7 @@ impl Outlines {
             let exact = |piece: usize| {
                 let entry = &mut borders[piece];
                 if entry.moved != moved[piece] {
-                    *entry = Of {
-                        made: Border::Unasked,
-                        moved: moved[piece],
-                    };
+                    (entry.made, entry.moved) = (Border::Unasked, moved[piece]);
                 }
                 if let Border::Found(border) = &entry.made {
                     laid += border.len() as u64;
@@ -95,7 +89,7 @@ impl Outlines {
                 sun.outline(corners)
             };
             let outline = Outline::joined(&mut direction.outlines, loose, exact);
-            directions.push(direction);
+            remember(directions, direction, DIRECTIONS);
             sun.fit_outline(&outline)
         };
         let bounds = bounds.map(|[low, high]| (low, high));
@@ -106,10 +100,7 @@ impl Outlines {
     /// Makes the boxes of pieces that have moved; the number of corners that were looked at.
     fn lay_boxes(&mut self, moved: &[u64], corners: impl Fn(usize) -> Vec<Vec3>) -> u64 {
         let mut laid = 0;
-        self.boxes.resize_with(moved.len(), || Of {
-            made: None,
-            moved: 0,
-        });
+        self.boxes.resize_with(moved.len(), Of::default);
         for (piece, (entry, &moved)) in self.boxes.iter_mut().zip(moved).enumerate() {
             if entry.moved != moved {
                 let corners = corners(piece);
@@ -143,9 +134,6 @@ fn take(directions: &mut Vec<Direction>, direction: DVec3) -> Direction {
     let mut kept = directions.iter();
     if let Some(at) = kept.position(|kept| kept.direction == direction) {
         return directions.remove(at);
-    }
-    if directions.len() == DIRECTIONS {
-        directions.remove(0);
     }
     Direction {
         direction,

@@ -123,17 +123,13 @@ impl Part {
     /// The write of a part of a host's buffer that a map moves, without nodes.
     pub fn host_write(&self, map: DAffine3) -> Option<HostWrite> {
         let host = self.host.as_ref()?;
-        let PartPlace {
-            position,
-            normal,
-            triangle,
-        } = self.at;
+        let at = self.at;
         Some(HostWrite {
             id: self.id,
             mesh: host.mesh.clone(),
             map,
             bounds: host.bounds,
-            first: [position, normal, triangle],
+            first: [at.position, at.normal, at.triangle],
             nodes: None,
         })
     }
@@ -141,19 +137,21 @@ impl Part {
     /// The ranges of the mesh that hold its positions and normals.
     pub fn ranges(&self) -> [Range<usize>; 2] {
         let [positions, normals] = self.of.ranges(self.number);
-        [
-            from(positions, self.at.position),
-            from(normals, self.at.normal),
-        ]
+        let at = self.at;
+        [from(positions, at.position), from(normals, at.normal)]
     }
 
     /// The range of the mesh that holds its triangles.
     pub fn triangles(&self) -> Range<usize> {
-        let triangles = self.of.triangles(self.number);
-        let ends = triangles.first().zip(triangles.last());
-        let range = ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1);
+        let range = range_of(self.of.triangles(self.number));
         from(range, self.at.triangle)
     }
+}
+
+/// Returns the range that holds these triangles, which are in ascending order.
+pub(crate) fn range_of(triangles: &[u32]) -> Range<usize> {
+    let ends = triangles.first().zip(triangles.last());
+    ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1)
 }
 
 fn from(range: Range<usize>, first: usize) -> Range<usize> {

@@ -48,12 +48,8 @@ impl Room {
 
     /// Returns the room that the parts of both rooms need together.
     pub fn and(self, other: Self) -> Self {
-        Self {
-            parts: self.parts.saturating_add(other.parts),
-            positions: self.positions.saturating_add(other.positions),
-            normals: self.normals.saturating_add(other.normals),
-            triangles: self.triangles.saturating_add(other.triangles),
-        }
+        let (own, other) = (self.numbers(), other.numbers());
+        Self::from_numbers([0, 1, 2, 3].map(|at| own[at].saturating_add(other[at])))
     }
 
     /// The numbers of parts, positions, normals and triangles.
@@ -73,11 +69,8 @@ impl Room {
 
     /// Returns the room of copies of a mesh whose normals are those of a part.
     pub(crate) fn of(rest: &Mesh, copies: usize) -> Self {
-        Self {
-            parts: copies,
-            positions: copies.saturating_mul(rest.positions.len()),
-            normals: copies.saturating_mul(rest.normals.len()),
-            triangles: copies.saturating_mul(rest.triangles.len()),
-        }
+        let (positions, normals) = (rest.positions.len(), rest.normals.len());
+        let one = [1, positions, normals, rest.triangles.len()];
+        Self::from_numbers(one.map(|number| copies.saturating_mul(number)))
     }
 }

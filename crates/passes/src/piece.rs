@@ -2,7 +2,7 @@
 
 use crate::{
     names::next_version,
-    part::{HostPart, Part, box_corners},
+    part::{HostPart, Part, box_corners, range_of},
 };
 use glam::Vec3;
 use skiagraph_scene::{Mesh, Movable, TwoLevelBvh};
@@ -103,7 +103,7 @@ impl Piece {
     pub fn triangles(&self, mesh: &Mesh) -> Range<usize> {
         match &self.content {
             Content::Part(part) => part.triangles(),
-            Content::Outside(outside) => outside.range(),
+            Content::Outside(outside) => range_of(&outside.triangles),
             Content::Gone => 0..0,
             Content::Whole => 0..mesh.triangles.len(),
         }
@@ -124,21 +124,16 @@ impl Piece {
 
     /// The positions that its triangles use.
     pub fn corners(&self, mesh: &Mesh) -> Vec<Vec3> {
-        let at = |corner: usize| mesh.positions[corner];
+        let places = |corners: &[u32], first: usize| {
+            let corners = corners.iter().map(|corner| first + *corner as usize);
+            corners.map(|corner| mesh.positions[corner]).collect()
+        };
         if let Some(host) = self.host() {
             return box_corners(host.placed).collect();
         }
         match &self.content {
-            Content::Part(part) => {
-                let corners = part.of.corners(part.number).iter();
-                corners
-                    .map(|&corner| at(part.at.position + corner as usize))
-                    .collect()
-            }
-            Content::Outside(outside) => {
-                let corners = outside.corners.iter();
-                corners.map(|&corner| at(corner as usize)).collect()
-            }
+            Content::Part(part) => places(part.of.corners(part.number), part.at.position),
+            Content::Outside(outside) => places(&outside.corners, 0),
             Content::Gone => Vec::new(),
             Content::Whole => mesh.used_positions().collect(),
         }
@@ -149,19 +144,11 @@ impl Outside {
     /// True if a corner of its triangles would have another place or normal than in `mesh`.
     pub fn is_elsewhere(&self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> bool {
         let mut corners = self.corners.iter().map(|&corner| corner as usize);
-        let triangles = self
-            .triangles
-            .iter()
-            .map(|&id| mesh.normal_indices[id as usize]);
-        let mut directions = triangles.flatten().map(|normal| normal as usize);
+        let triangles = self.triangles.iter();
+        let directions = triangles.flat_map(|&id| mesh.normal_indices[id as usize]);
+        let mut directions = directions.map(|normal| normal as usize);
         corners.any(|at| mesh.positions[at] != positions[at])
             || directions.any(|at| mesh.normals[at] != normals[at])
-    }
-
-    /// The range that holds its triangles.
-    pub fn range(&self) -> Range<usize> {
-        let ends = self.triangles.first().zip(self.triangles.last());
-        ends.map_or(0..0, |(first, last)| *first as usize..*last as usize + 1)
     }
 
     pub fn new(parts: &Movable) -> Self {

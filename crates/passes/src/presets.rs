@@ -35,20 +35,19 @@ impl Sources for EmbeddedSources {
         let Some(file) = Self::root(path).and_then(|(root, rest)| root.get_file(rest)) else {
             return Ok(None);
         };
-        let text = file
-            .contents_utf8()
-            .ok_or_else(|| format!("{path} is not UTF-8"))?;
-        Ok(Some(text.into()))
+        let text = file.contents_utf8();
+        Ok(Some(
+            text.ok_or_else(|| format!("{path} is not UTF-8"))?.into(),
+        ))
     }
 
     fn list(&self, folder: &str) -> Vec<String> {
         let Some((root, rest)) = Self::root(folder.trim_end_matches('/')) else {
             return Vec::new();
         };
-        let folder = if rest.is_empty() {
-            Some(root)
-        } else {
-            root.get_dir(rest)
+        let folder = match rest {
+            "" => Some(root),
+            rest => root.get_dir(rest),
         };
         let files = folder.into_iter().flat_map(Dir::files);
         let names = files.filter_map(|file| file.path().file_name()?.to_str());
@@ -71,15 +70,13 @@ pub struct Preset {
 
 /// Lists the embedded presets, sorted by name: one for every document directly in `pipelines/`.
 pub fn presets() -> Vec<Preset> {
-    let mut presets: Vec<Preset> = EmbeddedSources
-        .list("pipelines")
-        .iter()
-        .filter_map(|file| file.strip_suffix(".ron"))
-        .map(|name| Preset {
-            name: name.to_owned(),
-            path: format!("pipelines/{name}.ron"),
-        })
-        .collect();
+    let files = EmbeddedSources.list("pipelines");
+    let names = files.iter().filter_map(|file| file.strip_suffix(".ron"));
+    let presets = names.map(|name| Preset {
+        name: name.to_owned(),
+        path: format!("pipelines/{name}.ron"),
+    });
+    let mut presets: Vec<Preset> = presets.collect();
     presets.sort_by(|a, b| a.name.cmp(&b.name));
     presets
 }
@@ -115,12 +112,8 @@ pub fn load_unit_visibility(
     sources: &dyn Sources,
 ) -> Result<Graph, Diagnostics> {
     let over = BTreeMap::from([("over".to_owned(), path.to_owned())]);
-    Graph::load_over(
-        "pipelines/shared/unit_visibility.ron",
-        registry,
-        sources,
-        &over,
-    )
+    let document = "pipelines/shared/unit_visibility.ron";
+    Graph::load_over(document, registry, sources, &over)
 }
 
 /// Creates a registry of the [standard](Registry::standard) pass kinds and [`Trace`], which

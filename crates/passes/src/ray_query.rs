@@ -19,7 +19,9 @@ use std::{
         atomic::{AtomicUsize, Ordering},
     },
 };
-use wgpu::{AccelerationStructureFlags as Flags, BlasTriangleGeometrySizeDescriptor as Size};
+use wgpu::{
+    AccelerationStructureFlags as Flags, BlasTriangleGeometrySizeDescriptor as Size, TlasInstance,
+};
 
 /// Rows of the matrix that leaves everything where it is.
 const IDENTITY: [f32; 12] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0.];
@@ -116,11 +118,8 @@ impl Structures {
             return Ok((tlas, None));
         }
         let limits = source.device.limits();
-        let solids = solids(
-            source.geometry.pieces(),
-            source.mesh,
-            limits.max_tlas_instance_count,
-        );
+        let most = limits.max_tlas_instance_count;
+        let solids = solids(source.geometry.pieces(), source.mesh, most);
         let mut versions = [source.shape, next_version()];
         let mut open = None;
         if let Some(top) = former {
@@ -218,22 +217,18 @@ impl Structures {
             update_mode: wgpu::AccelerationStructureUpdateMode::Build,
         });
         for (index, solid) in solids.iter().enumerate() {
-            let bottom = self.bottoms.get(&solid.piece);
             let first = solid.triangles.start as u32;
-            tlas[index] = bottom
-                .map(|bottom| wgpu::TlasInstance::new(&bottom.blas, IDENTITY, first, u8::MAX));
+            let bottom = self.bottoms.get(&solid.piece);
+            let instance = |it: &Bottom| TlasInstance::new(&it.blas, IDENTITY, first, u8::MAX);
+            tlas[index] = bottom.map(instance);
         }
         let most = source.device.limits().max_tlas_instance_count;
         let together = new.iter().find(|(solid, _)| solid.piece.is_none());
         let together = together.map(|(solid, _)| {
             let corners = joined_corners(source.geometry.pieces(), source.mesh, solid, most);
             let corners = bytemuck::cast_slice(corners.as_flattened());
-            upload(
-                source.device,
-                "scene.blas",
-                corners,
-                wgpu::BufferUsages::BLAS_INPUT,
-            )
+            let usage = wgpu::BufferUsages::BLAS_INPUT;
+            upload(source.device, "scene.blas", corners, usage)
         });
         let sizes = new.iter().map(|(solid, _)| size_of(solid, source.mesh));
         let sizes: Vec<Size> = sizes.collect();
@@ -258,9 +253,8 @@ impl Structures {
             Some(wgpu::BlasBuildEntry { blas, geometry })
         });
         let entries: Vec<wgpu::BlasBuildEntry<'_>> = entries.collect();
-        let descriptor = wgpu::CommandEncoderDescriptor {
-            label: Some("scene.tlas"),
-        };
+        let label = Some("scene.tlas");
+        let descriptor = wgpu::CommandEncoderDescriptor { label };
         let mut encoder = source.device.create_command_encoder(&descriptor);
         encoder.build_acceleration_structures(entries.iter(), [&tlas]);
         let submitted = refused(source.device, || source.queue.submit([encoder.finish()]));

@@ -85,9 +85,8 @@ pub(crate) fn joined_corners(
     most: u32,
 ) -> Vec<[u32; 3]> {
     let mut corners = vec![[0; 3]; solid.triangles.len()];
-    let joined = pieces
-        .iter()
-        .filter(|piece| runs(pieces, piece, mesh, most).is_none());
+    let joined = pieces.iter();
+    let joined = joined.filter(|piece| runs(pieces, piece, mesh, most).is_none());
     let joined = joined.flat_map(|piece| piece.primitives(mesh));
     for primitive in joined.filter(|id| mesh.casts(*id)) {
         corners[primitive as usize] = mesh.triangles[primitive as usize];

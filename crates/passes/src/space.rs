@@ -22,9 +22,8 @@ const GROWING: [(&str, u64); 4] = [
 /// Room of a mesh that no part has.
 #[derive(Clone, Default)]
 pub(crate) struct Space {
-    positions: Free,
-    normals: Free,
-    triangles: Free,
+    /// Room for positions, for normals and for triangles.
+    free: [Free; 3],
     /// All room that was asked for.
     pub room: Room,
     /// The most bytes of a buffer that the device binds, once that is known.
@@ -59,15 +58,13 @@ impl Space {
     pub fn reserve(&mut self, room: Room, mesh: &mut Mesh) {
         // Triangles that no part has yet have a corner, and a normal.
         let least = usize::from(room.triangles > 0);
-        let positions = room.positions.max(least);
-        self.positions
-            .give_back(lengthened(&mut mesh.positions, positions, Vec3::ZERO));
-        let normals = room.normals.max(least);
-        self.normals
-            .give_back(lengthened(&mut mesh.normals, normals, Vec3::Y));
+        let [positions, normals] = [room.positions, room.normals].map(|it| it.max(least));
         lengthened(&mut mesh.normal_indices, room.triangles, [0; 3]);
-        self.triangles
-            .give_back(lengthened(&mut mesh.triangles, room.triangles, [0; 3]));
+        self.give_back([
+            lengthened(&mut mesh.positions, positions, Vec3::ZERO),
+            lengthened(&mut mesh.normals, normals, Vec3::Y),
+            lengthened(&mut mesh.triangles, room.triangles, [0; 3]),
+        ]);
         mesh.surfaces.pad(mesh.triangles.len());
         self.room.parts += room.parts;
         self.room.triangles += room.triangles;
@@ -75,9 +72,9 @@ impl Space {
 
     /// True if there is that room.
     pub fn has(&self, needed: Room) -> bool {
-        needed.positions <= self.positions.longest()
-            && needed.normals <= self.normals.longest()
-            && needed.triangles <= self.triangles.longest()
+        let [_, needed @ ..] = needed.numbers();
+        let mut each = self.free.iter().zip(needed);
+        each.all(|(free, needed)| needed <= free.longest())
     }
 
     /// Returns the room by which a mesh of so many pieces is to grow: a half, or what is needed.
@@ -93,18 +90,21 @@ impl Space {
 
     /// Takes room that there is.
     pub fn take(&mut self, needed: Room) -> PartPlace {
+        let [_, needed @ ..] = needed.numbers();
+        let taken = |at: usize| self.free[at].take(needed[at]).unwrap_or_default();
+        let [position, normal, triangle] = [0, 1, 2].map(taken);
         PartPlace {
-            position: self.positions.take(needed.positions).unwrap_or_default(),
-            normal: self.normals.take(needed.normals).unwrap_or_default(),
-            triangle: self.triangles.take(needed.triangles).unwrap_or_default(),
+            position,
+            normal,
+            triangle,
         }
     }
 
-    /// Gives back the positions and normals, and the triangles, of a part.
-    pub fn give_back(&mut self, [positions, normals]: [Range<usize>; 2], triangles: Range<usize>) {
-        self.positions.give_back(positions);
-        self.normals.give_back(normals);
-        self.triangles.give_back(triangles);
+    /// Gives back the positions, normals and triangles of a part.
+    pub fn give_back(&mut self, ranges: [Range<usize>; 3]) {
+        for (free, range) in self.free.iter_mut().zip(ranges) {
+            free.give_back(range);
+        }
     }
 }
 

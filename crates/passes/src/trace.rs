@@ -3,7 +3,7 @@
 use crate::names::{EMBREE, LIGHT};
 use serde::Deserialize;
 use skiagraph_graph::{
-    Chosen, Code, Diagnostic, Expr, Located, Lowering, PassKind, Reference, Span,
+    Chosen, Code, Diagnostic, Expr, Located, Lowering, PassKind, Reference,
     step::{CpuCall, CpuItems, Dispatch, Groups, Operand, Program, Step, Threads},
 };
 use skiagraph_scene::LightKind;
@@ -202,48 +202,43 @@ impl Trace {
         if is_whole && (self.of.is_none() || self.skip.is_none()) {
             return;
         }
-        let what = "a `Trace` has either `rays` and `hits`, or `of` and `most`";
-        let place = pass.name().span;
-        let mistake = Diagnostic::error(Code::Unused, what)
-            .at(place, "this one")
-            .help(
-                "write `rays: \"…\", hits: \"…\"` for buffers, with `skip` if rays do not see a \
+        let mistake = Diagnostic::error(
+            Code::Unused,
+            "a `Trace` has either `rays` and `hits`, or `of` and `most`",
+        );
+        let mistake = mistake.at(pass.name().span, "this one").help(
+            "write `rays: \"…\", hits: \"…\"` for buffers, with `skip` if rays do not see a \
              primitive; or `of: \"module.wgsl\", most: \"count\"` for a module that makes rays and \
              takes hits",
-            );
+        );
         pass.report(mistake);
     }
 
-    fn refuse(&self, pass: &mut Lowering<'_>) {
-        let place = self.engine_place(pass);
-        let what = "`LightSpace` traces only rays that go towards the light";
-        let mistake = Diagnostic::error(Code::Unused, what)
-            .at(place, "nothing says that those of this pass do")
-            .help(
-                "say `direction: Light` if the direction of every ray is `light.to_light`, as \
-                 `shared/fill_rays.ron` makes them; else take `engine: Hierarchy`",
-            );
-        pass.report(mistake);
+    /// Refuses the engine: says what is wrong, where, and the way out.
+    fn refuse(&self, pass: &mut Lowering<'_>, code: Code, what: &str, [label, help]: [&str; 2]) {
+        let place = match &self.engine {
+            Chosen::Expr(expr) => expr.span().clone(),
+            Chosen::Word(_) => pass.name().span,
+        };
+        pass.report(Diagnostic::error(code, what).at(place, label).help(help));
     }
 
-    fn refuse_light(&self, pass: &mut Lowering<'_>, kind: &str) {
-        let what = format!("`LightSpace` traces no rays to a {kind} light");
-        let mistake = Diagnostic::error(Code::Light, what)
-            .at(self.engine_place(pass), "its rays all have one direction")
-            .help("take the engine `hierarchy`, or `ray_query` where there is one");
-        pass.report(mistake);
-    }
-
-    /// Refuses the engine that the host lacks.
-    fn refuse_embree(&self, pass: &mut Lowering<'_>) {
-        let mistake = Diagnostic::error(Code::Feature, "this program was built without Embree")
-            .at(self.engine_place(pass), "its rays would be traced by it")
-            .help(
-                "build it with `--features embree`, which needs Embree 3 (on Debian 12 the package \
-                 `libembree-dev`; elsewhere its folder in EMBREE_DIR), or take another engine: \
-                 `hierarchy` traces on every device",
-            );
-        pass.report(mistake);
+    /// Refuses the engine `LightSpace` if rays do not go towards one directional light.
+    fn check_light_space(&self, pass: &mut Lowering<'_>) {
+        if self.direction.is_none() {
+            let label = "nothing says that those of this pass do";
+            let help = "say `direction: Light` if the direction of every ray is `light.to_light`, \
+                        as `shared/fill_rays.ron` makes them; else take `engine: Hierarchy`";
+            let what = "`LightSpace` traces only rays that go towards the light";
+            self.refuse(pass, Code::Unused, what, [label, help]);
+        } else if let Some(kind) = pass.kind_of(LIGHT)
+            && kind != LightKind::WORDS[0]
+        {
+            let label = "its rays all have one direction";
+            let help = "take the engine `hierarchy`, or `ray_query` where there is one";
+            let what = format!("`LightSpace` traces no rays to a {kind} light");
+            self.refuse(pass, Code::Light, &what, [label, help]);
+        }
     }
 
     /// Has the CPU trace. Rays of a module are written to memory for it, and hits handed back.
@@ -299,13 +294,6 @@ impl Trace {
         }
     }
 
-    fn engine_place(&self, pass: &Lowering<'_>) -> Span {
-        match &self.engine {
-            Chosen::Expr(expr) => expr.span().clone(),
-            Chosen::Word(_) => pass.name().span,
-        }
-    }
-
     /// A dispatch of its own, because a buffer cannot be written and be the size of the dispatch
     /// that writes it.
     fn count_groups(&self, pass: &mut Lowering<'_>) -> Operand {
@@ -332,7 +320,12 @@ impl PassKind for Trace {
         }
         let mut engine = pass.word(&self.engine, &Engine::WORDS);
         if engine == Engine::Embree && !pass.is_provided(EMBREE) {
-            self.refuse_embree(pass);
+            let label = "its rays would be traced by it";
+            let help = "build it with `--features embree`, which needs Embree 3 (on Debian 12 the \
+                        package `libembree-dev`; elsewhere its folder in EMBREE_DIR), or take \
+                        another engine: `hierarchy` traces on every device";
+            let what = "this program was built without Embree";
+            self.refuse(pass, Code::Feature, what, [label, help]);
             // So that nothing that follows from it is told, too.
             engine = Engine::Hierarchy;
         }
@@ -344,13 +337,7 @@ impl PassKind for Trace {
         };
         self.announce(engine, pass);
         if engine == Engine::LightSpace {
-            match (self.direction, pass.kind_of(LIGHT)) {
-                (None, _) => self.refuse(pass),
-                (Some(Direction::Light), Some(kind)) if kind != LightKind::WORDS[0] => {
-                    self.refuse_light(pass, kind);
-                }
-                (Some(Direction::Light), _) => {}
-            }
+            self.check_light_space(pass);
         }
         let groups = self.groups(pass);
         let mut trace = self.program(shader, pass);

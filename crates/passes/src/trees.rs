@@ -8,7 +8,7 @@ use crate::{
     piece::{Content, Piece},
 };
 use skiagraph_scene::{
-    BvhNode, LightSpace, LightSpaceNode, Mesh, Movable, TwoLevelBvh,
+    BvhNode, LightSpace, Mesh, Movable, TwoLevelBvh,
     bvh::{self, Moved},
 };
 use std::{borrow::Cow, collections::BTreeMap, sync::Arc};
@@ -131,9 +131,8 @@ impl Trees {
         let Some(kept) = self.bvh.take() else {
             return self.build_bvh(over, most, version);
         };
-        let moved = over.pieces.iter().enumerate();
-        let moved =
-            moved.filter_map(|(number, piece)| (piece.moved > kept.version).then_some(number));
+        let pieces = 0..over.pieces.len();
+        let moved = pieces.filter(|piece| over.pieces[*piece].moved > kept.version);
         let moved: Vec<usize> = moved.collect();
         let how = if self.is_bent {
             Moved::Freely
@@ -152,15 +151,14 @@ impl Trees {
             over.pieces[piece].built = version;
         }
         let held = held.unwrap_or_default();
+        let pieces = &*over.pieces;
         let since = |stamp: fn(&Piece) -> u64| {
-            let pieces = over.pieces.iter().enumerate();
-            let since = pieces.filter(move |(_, piece)| stamp(piece) > held);
-            since.map(|(piece, _)| piece)
+            (0..pieces.len()).filter(move |piece| stamp(&pieces[*piece]) > held)
         };
         let changed: Vec<usize> = since(Piece::changed).collect();
         // The GPU fits the nodes of hosts' parts, once they are there.
         let written = changed.iter().filter(|&&piece| {
-            let piece = &over.pieces[piece];
+            let piece = &pieces[piece];
             piece.host().is_none() || piece.built > held
         });
         let nodes = written.map(|&piece| tree.nodes_of(piece));
@@ -228,7 +226,7 @@ impl Trees {
         over: &mut Over,
         space: LightSpace,
         most: usize,
-    ) -> Result<Tree<LightSpaceNode>, Error> {
+    ) -> Result<Tree, Error> {
         let hierarchies = &mut self.hierarchies;
         let tree = hierarchies.light_space(space, over.mesh, most, over.is_deformed)?;
         over.work.nodes += tree.nodes.len() as u64;

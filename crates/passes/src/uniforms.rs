@@ -157,15 +157,14 @@ impl LightUniform {
         if let Some(sun) = light.directional() {
             return Self::directional(sun, bounds, fit(sun));
         }
+        let axis = light.direction().map(DVec3::normalize);
         let placed = Self {
-            to_light: light
-                .direction()
-                .map_or(Vec3::ZERO, |axis| -axis.normalize().as_vec3()),
+            to_light: axis.map_or(Vec3::ZERO, |axis| -axis.as_vec3()),
             edge_cosine: light.edge_cosine().unwrap_or(0.0) as f32,
             ..Self::at(light.position().unwrap_or_default(), bounds)
         };
-        match (light.direction(), light.cone_degrees()) {
-            (Some(axis), Some(degrees)) => placed.with_cone(axis.normalize(), degrees),
+        match (axis, light.cone_degrees()) {
+            (Some(axis), Some(degrees)) => placed.with_cone(axis, degrees),
             _ => placed,
         }
     }

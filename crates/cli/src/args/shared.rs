@@ -124,17 +124,6 @@ pub enum Materials {
     BlendMask,
 }
 
-impl From<Materials> for MaterialUse {
-    fn from(materials: Materials) -> Self {
-        match materials {
-            Materials::All => Self::All,
-            Materials::Color => Self::Color,
-            Materials::Ignore => Self::Ignore,
-            Materials::BlendMask => Self::BlendMask,
-        }
-    }
-}
-
 /// Ways in which concave polygons of an OBJ file become triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ConcavePolygons {
@@ -142,15 +131,6 @@ pub enum ConcavePolygons {
     Cut,
     /// They become fans around their first corner, which may cover more than the polygon.
     Fan,
-}
-
-impl From<ConcavePolygons> for Concave {
-    fn from(polygons: ConcavePolygons) -> Self {
-        match polygons {
-            ConcavePolygons::Cut => Self::Cut,
-            ConcavePolygons::Fan => Self::Fan,
-        }
-    }
 }
 
 impl SceneArgs {
@@ -191,11 +171,21 @@ impl SceneArgs {
 
     /// Returns the settings that turn a mesh file into a scene.
     pub fn mesh_scene(&self) -> MeshSceneOptions {
+        let concave = self.concave.map(|concave| match concave {
+            ConcavePolygons::Cut => Concave::Cut,
+            ConcavePolygons::Fan => Concave::Fan,
+        });
+        let materials = self.materials.map(|materials| match materials {
+            Materials::All => MaterialUse::All,
+            Materials::Color => MaterialUse::Color,
+            Materials::Ignore => MaterialUse::Ignore,
+            Materials::BlendMask => MaterialUse::BlendMask,
+        });
         MeshSceneOptions {
             file: MeshFileOptions {
                 quads: QuadDiagonal::default(),
-                concave: self.concave.map_or_else(Concave::default, Into::into),
-                materials: self.materials.map_or_else(MaterialUse::default, Into::into),
+                concave: concave.unwrap_or_default(),
+                materials: materials.unwrap_or_default(),
             },
             camera: self.camera(),
             sun: self.own_light(),

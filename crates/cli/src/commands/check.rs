@@ -46,9 +46,8 @@ pub fn check(args: &CheckArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         let _ = sender.send(());
     };
     let _watch = Watch::start(&folders, listen).map_err(|error| {
-        CliError::Input(format!(
-            "cannot watch files here: {error}; without --watch they are checked once"
-        ))
+        let way_out = "without --watch they are checked once";
+        CliError::Input(format!("cannot watch files here: {error}; {way_out}"))
     })?;
     loop {
         if let Err(error) = check_once(args, gpu) {
@@ -154,10 +153,8 @@ fn text(outcomes: &[Found]) -> Result<(), CliError> {
                 let noun = if passes == 1 { "pass" } else { "passes" };
                 let refused = refused_lights(graph, plan);
                 let idle = idle_params::under_other_lights(graph);
-                let planned_for = &checked.planned_for;
-                fine += &format!(
-                    "{argument}: fine, {passes} {noun} for {planned_for}{refused}{idle}\n"
-                );
+                let place = &checked.planned_for;
+                fine += &format!("{argument}: fine, {passes} {noun} for {place}{refused}{idle}\n");
             }
             Err(Fault::Graph(diagnostics)) => faults.add(argument, diagnostics),
             Err(Fault::Missing(message)) => missing.push(message.as_str()),
@@ -195,13 +192,11 @@ fn json(outcomes: &[Found]) -> Result<(), CliError> {
     };
     let report = CheckReport::new(outcomes.iter().map(file_report).collect());
     print(&to_text(&report))?;
-    let outcomes = outcomes.iter();
-    let count = outcomes.len();
-    match outcomes.filter(|(_, checked)| checked.is_err()).count() {
-        0 => Ok(()),
-        faulty => Err(CliError::Input(format!(
-            "{faulty} of {} cannot be used; the diagnostics are on standard output",
-            count
+    let faulty = outcomes.iter().filter(|(_, checked)| checked.is_err());
+    match (faulty.count(), outcomes.len()) {
+        (0, _) => Ok(()),
+        (faulty, count) => Err(CliError::Input(format!(
+            "{faulty} of {count} cannot be used; the diagnostics are on standard output"
         ))),
     }
 }

@@ -47,12 +47,10 @@ fn text(plan: &Plan, title: String, format: DrawingFormat) -> Result<String, Cli
         DrawingFormat::Memory => Ok(format!("{title}\n{}\n", plan.memory_table())),
         DrawingFormat::Svg => Ok(to_svg(&drawing())),
         DrawingFormat::Dot => Ok(to_dot(&drawing())),
-        DrawingFormat::Json => match serde_json::to_string_pretty(&drawing()) {
-            Ok(json) => Ok(json + "\n"),
-            Err(error) => {
-                let text = format!("the plan cannot be written as JSON: {error}");
-                Err(CliError::Input(text))
-            }
-        },
+        DrawingFormat::Json => {
+            let text = |error| format!("the plan cannot be written as JSON: {error}");
+            let json = serde_json::to_string_pretty(&drawing());
+            Ok(json.map_err(|error| CliError::Input(text(error)))? + "\n")
+        }
     }
 }

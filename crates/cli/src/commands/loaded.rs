@@ -183,9 +183,8 @@ pub fn note_without_map(methods: &[Method], map_sizes: &[u32]) {
     let without: Vec<&str> = without.map(|method| method.name.as_str()).collect();
     if !map_sizes.is_empty() && !without.is_empty() {
         let names = without.join(", ");
-        note(&format!(
-            "--map-size has no effect on {names}: no param `map_size`"
-        ));
+        let text = format!("--map-size has no effect on {names}: no param `map_size`");
+        note(&text);
     }
 }
 

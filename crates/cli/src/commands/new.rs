@@ -49,14 +49,12 @@ fn check_name(name: &str) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
     for (folder, ending) in [("pipelines", "ron"), ("shaders", "wgsl")] {
         let path = format!("{folder}/{name}.{ending}");
-        let why = match sources.read(&path) {
-            Ok(None) => continue,
-            Ok(Some(_)) => {
-                format!("`{path}` is there already, here or built in; take another name")
-            }
-            Err(reason) => format!("cannot read `{path}`: {reason}"),
-        };
-        return Err(CliError::Input(why));
+        let taken = "is there already, here or built in; take another name";
+        match sources.read(&path) {
+            Ok(None) => {}
+            Ok(Some(_)) => return Err(CliError::Input(format!("`{path}` {taken}"))),
+            Err(why) => return Err(CliError::Input(format!("cannot read `{path}`: {why}"))),
+        }
     }
     Ok(())
 }

@@ -85,20 +85,18 @@ fn row(preset: &Arc<Preset>) -> Result<Vec<String>, CliError> {
         _ => lights.join(", "),
     };
     let traces = graph.outputs().contains(&RAY_COUNT);
-    let fits = preset.param("fit").map_or("–".to_owned(), |fit| {
-        fit.words().map(|word| word.as_str()).join(", ")
-    });
+    let fits = preset.param("fit");
+    let fits = fits.map(|fit| fit.words().map(|word| word.as_str()).join(", "));
     let method = Method::new(preset.clone(), Default::default());
     let promise = guarantee::find(&method, &[])?;
     let promise = promise.map_or("–", |(guarantee, _)| guarantee.word());
-    let description = graph.description().trim_end_matches('.').to_owned();
     Ok(vec![
         format!("`{}`", preset.name),
-        description,
+        graph.description().trim_end_matches('.').to_owned(),
         lights,
         answers.to_owned(),
         if traces { "yes" } else { "–" }.to_owned(),
-        fits,
+        fits.unwrap_or_else(|| "–".to_owned()),
         promise.to_owned(),
     ])
 }

@@ -32,9 +32,8 @@ use std::{path::Path, sync::Arc};
 /// the command, or a file cannot be written.
 pub async fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     check_writable(&files(args))?;
-    let old = args.baseline.as_deref();
-    let old = old.map(|path| Ok::<_, CliError>((path, read_back::profile(path)?)));
-    let old = old.transpose()?;
+    let read = |path| Ok::<_, CliError>((path, read_back::profile(path)?));
+    let old = args.baseline.as_deref().map(read).transpose()?;
     let (words, sizes) = (&args.presets, &args.map_size);
     let sources = preset::sources(&Terminal);
     let methods = method::load(words, &args.params, sizes, &sources, preset::load_each)?;
@@ -119,12 +118,9 @@ fn interrupted(args: &ProfileArgs, profiles: &[Profile], planned: usize) -> Resu
 
 /// Refuses files that hold one profile where there are several.
 fn check_single(args: &ProfileArgs, planned: usize) -> Result<(), CliError> {
-    let single = [
-        ("--json", args.json.is_some()),
-        ("--trace", args.trace.is_some()),
-        ("--baseline", args.baseline.is_some()),
-    ];
-    match single.iter().find(|(_, is_given)| *is_given) {
+    let given = [&args.json, &args.trace, &args.baseline].map(Option::is_some);
+    let mut single = ["--json", "--trace", "--baseline"].iter().zip(given);
+    match single.find(|(_, is_given)| *is_given) {
         Some((name, _)) if planned > 1 => Err(CliError::Usage(format!(
             "{name} is of one profile, and {planned} are asked for; name one method, view and \
              size, or take --csv, which holds them all"
@@ -135,12 +131,8 @@ fn check_single(args: &ProfileArgs, planned: usize) -> Result<(), CliError> {
 
 /// The files to write, each with the argument that names it.
 fn files(args: &ProfileArgs) -> Vec<(String, &Path)> {
-    let files = [
-        ("--csv", &args.csv),
-        ("--json", &args.json),
-        ("--trace", &args.trace),
-    ];
-    let files = files.into_iter();
+    let names = ["--csv", "--json", "--trace"].into_iter();
+    let files = names.zip([&args.csv, &args.json, &args.trace]);
     let given = files.filter_map(|(name, path)| Some((name.to_owned(), path.as_deref()?)));
     given.collect()
 }

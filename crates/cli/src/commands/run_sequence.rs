@@ -47,9 +47,8 @@ pub fn sequence(
         (Some(name), ..) => path(args, scene, own, name)?,
         (None, Some(_), [view]) => ViewOrPath::Still(view.clone()),
         (None, Some(_), _) => {
-            return Err(CliError::Usage(
-                "--frames is of one view under one light".into(),
-            ));
+            let text = "--frames is of one view under one light";
+            return Err(CliError::Usage(text.into()));
         }
     };
     if let (ViewOrPath::Path(path), Some(count)) = (&view_or_path, args.frames)
@@ -99,9 +98,8 @@ pub async fn record(
     }
     let failed = |error| frame::failed(session, &preset.name, error);
     let viewport = plan.viewport();
-    let (mut executor, growth) = frame::settled(session, plan, provider)
-        .await
-        .map_err(failed)?;
+    let settled = frame::settled(session, plan, provider).await;
+    let (mut executor, growth) = settled.map_err(failed)?;
     print(&growth.text())?;
     if let Some(pass) = executor.waits_in() {
         print(&format!("  waits for the CPU, which works in {pass}\n"))?;
@@ -120,10 +118,8 @@ pub async fn record(
         let request = Frame::new().with_read(&names);
         let request = request.with_seconds(sequence.seconds(index));
         let draw = async |executor: &mut Executor| frame::run(session, executor, &request).await;
-        let drawn = frame::next(&mut executor, provider, draw)
-            .await
-            .map_err(failed)?;
-        let contents = frame::contents(drawn.frame.0.readbacks);
+        let drawn = frame::next(&mut executor, provider, draw).await;
+        let contents = frame::contents(drawn.map_err(failed)?.frame.0.readbacks);
         let files = saves.iter().map(|save| of_frame(save, index, are_numbered));
         let files: Vec<Save> = files.collect();
         for line in write_all(&preset.name, &files, &decodings, &contents) {

@@ -21,10 +21,7 @@ pub fn scenes() -> Result<(), CliError> {
     };
     let heads = ["scene", "mesh", "views", "paths", "description"];
     let table = terminal(&Table::new(heads, 5, listings.into_iter().map(row)));
-    let hint = if missing {
-        "\n`skiagraph doctor` says where missing meshes are searched.\n"
-    } else {
-        ""
-    };
+    let hint = "\n`skiagraph doctor` says where missing meshes are searched.\n";
+    let hint = missing.then_some(hint).unwrap_or_default();
     print(&format!("{table}\n{hint}"))
 }

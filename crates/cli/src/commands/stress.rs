@@ -53,10 +53,8 @@ pub async fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     if let Some(folder) = &args.save {
         check_pictures(&methods, &cases, viewport, folder)?;
     }
-    let _claimed = match &args.out {
-        Some(folder) => Some(claim(folder, &Terminal)?),
-        None => None,
-    };
+    let out = args.out.as_ref();
+    let _claimed = out.map(|folder| claim(folder, &Terminal)).transpose()?;
     let context = HardCaseContext {
         session,
         primary: &primary,

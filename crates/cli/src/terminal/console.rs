@@ -14,15 +14,6 @@ pub fn colour() -> bool {
     io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 
-/// `text` in an ANSI style where standard error takes it.
-fn style(text: &str, code: &str) -> String {
-    if colour() {
-        format!("\u{1b}[{code}m{text}\u{1b}[0m")
-    } else {
-        text.to_string()
-    }
-}
-
 /// Prints a message on standard error, without marking it as an error.
 pub fn note(text: &str) {
     let _ = writeln!(io::stderr(), "{text}");
@@ -32,9 +23,8 @@ pub fn note(text: &str) {
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut stdout = io::stdout().lock();
     let written = stdout.write_all(text.as_bytes());
-    written
-        .and_then(|()| stdout.flush())
-        .map_err(CliError::Stdout)
+    let written = written.and_then(|()| stdout.flush());
+    written.map_err(CliError::Stdout)
 }
 
 /// Prints an error with its causes on standard error, and returns the exit code of the process.
@@ -46,7 +36,8 @@ pub fn report(error: &CliError) -> ExitCode {
                 rendered(faults, colour()) + summary
             }
             CliError::Interrupted { .. } => error.to_string(),
-            _ => format!("{} {error}", style("error:", "1;31")),
+            _ if colour() => format!("\u{1b}[1;31merror:\u{1b}[0m {error}"),
+            _ => format!("error: {error}"),
         };
         let mut line = |line: &str| text += &format!("\n  {}", line.replace('\n', "\n  "));
         for error in causes(error) {

@@ -50,21 +50,21 @@ impl CpuTurn<'_> {
             Ok(u64::from(u32::from_ne_bytes(word)))
         })?;
         let lists = call.reads.iter().chain([&call.writes]);
-        let room = lists.map(|items| {
-            let (_, place) = bytes(&items.buffer)?;
-            Ok((place.end - place.start) / items.bytes.max(1))
-        });
-        let room: Vec<u64> = room.collect::<Result<_, ExecuteError>>()?;
-        let count = room.into_iter().fold(count, u64::min);
+        let lists = lists.map(|items| Ok((bytes(&items.buffer)?, items.bytes)));
+        let lists: Vec<(Bytes<'_>, u64)> = lists.collect::<Result<_, ExecuteError>>()?;
+        let room = lists.iter();
+        let room = room.map(|((_, place), size)| (place.end - place.start) / (*size).max(1));
+        let count = room.fold(count, u64::min);
         if count == 0 {
             self.worked.get_or_insert_default();
             return Ok(());
         }
-        let reads = call.reads.iter().map(|items| {
-            let (buffer, place) = bytes(&items.buffer)?;
-            Ok((buffer, place.start..place.start + count * items.bytes))
+        let filled = lists.into_iter().map(|((buffer, place), size)| {
+            let bytes = place.start..place.start + count * size;
+            (buffer, bytes)
         });
-        let reads: Vec<Bytes<'_>> = reads.collect::<Result<_, ExecuteError>>()?;
+        let mut reads: Vec<Bytes<'_>> = filled.collect();
+        let target = reads.pop();
         let mut written = vec![0; (count * call.writes.bytes) as usize];
         let mut worked = Duration::ZERO;
         self.read(&reads, encoder, |read| {
@@ -77,8 +77,9 @@ impl CpuTurn<'_> {
             })
         })?;
         *self.worked.get_or_insert_default() += worked;
-        let (target, place) = bytes(&call.writes.buffer)?;
-        self.queue.write_buffer(target, place.start, &written);
+        if let Some((target, place)) = target {
+            self.queue.write_buffer(target, place.start, &written);
+        }
         Ok(())
     }
 

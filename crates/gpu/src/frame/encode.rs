@@ -38,17 +38,13 @@ pub(super) fn encode_all(
             Step::Draw(draw) => encode_draw(draw, name, encoder, meters),
             Step::Dispatch(dispatch) => encode_dispatch(dispatch, name, encoder, meters),
             Step::Copy { from, to } => {
-                let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
-                copy(from, to, encoder);
-                end(timer, query, encoder);
+                timed(name, encoder, timer, |encoder| copy(from, to, encoder));
             }
             Step::Clear { target, value } => clear(target, *value, name, encoder, timer),
             Step::Cpu(call) => {
                 if let Some(cpu) = &mut cpu {
                     // Its time on the GPU is how long that stands still for it.
-                    let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
-                    cpu.call(call, encoder)?;
-                    end(timer, query, encoder);
+                    timed(name, encoder, timer, |encoder| cpu.call(call, encoder))?;
                 }
             }
         }
@@ -66,12 +62,11 @@ fn encode_dispatch(
     Meters { timer, counters }: Meters<'_>,
 ) {
     let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
+    let timestamps = query.as_ref();
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some(name),
-            timestamp_writes: query
-                .as_ref()
-                .and_then(|query| query.compute_pass_timestamp_writes()),
+            timestamp_writes: timestamps.and_then(|it| it.compute_pass_timestamp_writes()),
         });
         if let Some(timer) = timer {
             timer.open_compute(&mut pass);
@@ -182,20 +177,10 @@ fn copy(from: &GpuOperand, to: &GpuOperand, encoder: &mut wgpu::CommandEncoder) 
                 ..
             },
         ) => {
-            let info = |texture, mip_level, layer| wgpu::TexelCopyTextureInfo {
-                texture,
-                mip_level,
-                origin: wgpu::Origin3d {
-                    x: 0,
-                    y: 0,
-                    z: layer,
-                },
-                aspect: wgpu::TextureAspect::All,
-            };
             for (mip, extent) in (0u32..).zip(mips) {
                 encoder.copy_texture_to_texture(
-                    info(texture, part.mips.start + mip, part.layers.start),
-                    info(target, place.mips.start + mip, place.layers.start),
+                    layers_from(texture, part.mips.start + mip, part.layers.start),
+                    layers_from(target, place.mips.start + mip, place.layers.start),
                     *extent,
                 );
             }
@@ -203,6 +188,30 @@ fn copy(from: &GpuOperand, to: &GpuOperand, encoder: &mut wgpu::CommandEncoder) 
         // Linking has seen to it that both are of one kind.
         _ => {}
     }
+}
+
+/// Returns the place of a copy in a mip of a texture, from a layer on.
+pub(super) fn layers_from(
+    texture: &wgpu::Texture,
+    mip: u32,
+    layer: u32,
+) -> wgpu::TexelCopyTextureInfo<'_> {
+    let mut place = texture.as_image_copy();
+    (place.mip_level, place.origin.z) = (mip, layer);
+    place
+}
+
+/// Encodes commands that are no pass; in a timed frame it takes their time.
+fn timed<T>(
+    name: &str,
+    encoder: &mut wgpu::CommandEncoder,
+    timer: Option<&Timer>,
+    encode: impl FnOnce(&mut wgpu::CommandEncoder) -> T,
+) -> T {
+    let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
+    let encoded = encode(encoder);
+    end(timer, query, encoder);
+    encoded
 }
 
 fn clear(
@@ -214,9 +223,10 @@ fn clear(
 ) {
     match target {
         GpuOperand::Buffer { buffer, range } => {
-            let query = timer.map(|timer| timer.profiler().begin_query(name, encoder));
-            encoder.clear_buffer(buffer, range.start, Some(range.end - range.start));
-            end(timer, query, encoder);
+            let bytes = range.end - range.start;
+            timed(name, encoder, timer, |encoder| {
+                encoder.clear_buffer(buffer, range.start, Some(bytes));
+            });
         }
         GpuOperand::Texture { texture, views, .. } => {
             for view in views {
@@ -337,20 +347,16 @@ fn encode_draw(
     };
     let query = timer.map(|timer| timer.profiler().begin_pass_query(name, encoder));
     // Every frame comes here: on the stack, as many as devices have.
-    let colors: SmallVec<[_; 8]> = draw
-        .colors
-        .iter()
-        .map(|color| {
-            let color = color.as_ref()?;
-            color_attachment(&color.target, color.resolve.as_ref(), color.clear)
-        })
-        .chain(draw.canvas.iter().map(canvas_attachment))
-        .collect();
+    let colors = draw.colors.iter().map(|color| {
+        let color = color.as_ref()?;
+        color_attachment(&color.target, color.resolve.as_ref(), color.clear)
+    });
+    let colors = colors.chain(draw.canvas.iter().map(canvas_attachment));
+    let colors: SmallVec<[_; 8]> = colors.collect();
     let depth = draw.depth.as_ref();
     let stencil = draw.stencil.as_ref();
-    let target = depth
-        .map(|depth| &depth.target)
-        .or(stencil.map(|stencil| &stencil.target));
+    let target = depth.map(|depth| &depth.target);
+    let target = target.or(stencil.map(|stencil| &stencil.target));
     let target = target.map(|target| wgpu::RenderPassDepthStencilAttachment {
         view: &target.view,
         depth_ops: depth.and_then(|depth| operations(depth.clear, depth.write, depth.target.store)),

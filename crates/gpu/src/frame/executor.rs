@@ -2,11 +2,11 @@
 
 use super::{
     growth_readback::GrowthReadback,
-    in_flight::names,
+    in_flight::{list, names},
     prepare::{Prepared, Preparer},
     replan::ReplanReport,
     report::{Frame, FrameFault, FrameReport},
-    runner::{Runner, list},
+    runner::Runner,
 };
 use crate::{
     device::Gpu,
@@ -174,11 +174,10 @@ impl Executor {
     ) -> Result<u32, ExecuteError> {
         let label = Some("frame");
         let begun = wgpu::CommandEncoderDescriptor { label };
-        let mut encoder = self.runner.device.create_command_encoder(&begun);
-        let index = self
-            .runner
-            .encode_with(&mut encoder, frame, Some(gives_up))?;
-        submit((&self.runner.device, &self.runner.queue), encoder, index).map(|()| index)
+        let runner = &mut self.runner;
+        let mut encoder = runner.device.create_command_encoder(&begun);
+        let index = runner.encode_with(&mut encoder, frame, Some(gives_up))?;
+        submit((&runner.device, &runner.queue), encoder, index).map(|()| index)
     }
 
     /// Returns the report of the oldest frame that requested times, statistics or readbacks (fields
@@ -262,11 +261,7 @@ impl Executor {
         let waited = Instant::now();
         loop {
             self.runner.settle()?;
-            if let Some(report) = self
-                .runner
-                .frames_in_flight
-                .report(&self.runner.device, &self.runner.presence)?
-            {
+            if let Some(report) = self.runner.report()? {
                 return Ok(report);
             }
             if self.under_way() == 0 {
@@ -293,12 +288,8 @@ impl Executor {
         }
         // The profiler never gives up a frame whose timestamps cannot be mapped.
         self.runner.frames_in_flight.give_up();
-        let report = self
-            .runner
-            .frames_in_flight
-            .report(&self.runner.device, &self.runner.presence)?;
         let frame = waited_for.unwrap_or_default();
-        report.ok_or(ExecuteError::NotRun { frame })
+        self.runner.report()?.ok_or(ExecuteError::NotRun { frame })
     }
 
     /// Waits as [`finish`](Self::finish) does, but leaves the thread to others meanwhile.
@@ -337,16 +328,12 @@ impl Executor {
 
     /// Returns the error of a frame that has not finished, with the passes of the last frame.
     fn unfinished(&self, began: Instant) -> ExecuteError {
+        let skipped = &self.runner.skipped;
         let passes = self.runner.state.passes.iter().map(|pass| &*pass.name);
-        let ran = passes.filter(|name| {
-            self.runner
-                .skipped
-                .iter()
-                .all(|skipped| **skipped != **name)
-        });
+        let ran = passes.filter(|name| skipped.iter().all(|skipped| **skipped != **name));
         ExecuteError::Unfinished {
             after: began.elapsed(),
-            passes: list(&ran.collect::<Vec<_>>()),
+            passes: list(ran),
         }
     }
 
@@ -415,10 +402,9 @@ impl Executor {
             self.runner.state.touch(id);
         } else if !self.plan().offers(name) {
             let used = self.plan().used().filter(|used| of_host(used));
-            let used: Vec<&str> = used.map(|resource| resource.name.as_str()).collect();
             return Err(ExecuteError::NotOfHost {
                 name: name.to_owned(),
-                known: list(&used),
+                known: list(used.map(|resource| resource.name.as_str())),
             });
         }
         Ok(())
@@ -458,12 +444,7 @@ impl Executor {
             _ if target.part.layers.len() == 1 => wgpu::TextureViewDimension::D2,
             _ => wgpu::TextureViewDimension::D2Array,
         };
-        let view = self
-            .runner
-            .state
-            .memory
-            .view(target, dimension, &self.runner.ping_pong);
-        view.ok()
+        self.runner.in_frame().view(target, dimension).ok()
     }
 
     /// Returns the buffer of the output or capture `name` (see [`Executor`]) with the content of
@@ -472,11 +453,8 @@ impl Executor {
     /// not set. Fetch it anew when [`output_view`](Self::output_view) says so, and only read it.
     pub fn output_buffer(&self, name: &str) -> Option<wgpu::Buffer> {
         let target = self.plan().readable_target(name)?;
-        let buffer = self
-            .runner
-            .state
-            .memory
-            .buffer(target.id, &self.runner.ping_pong);
+        let memory = &self.runner.state.memory;
+        let buffer = memory.buffer(target.id, &self.runner.ping_pong);
         buffer.ok().cloned()
     }
 

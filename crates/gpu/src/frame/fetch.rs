@@ -1,10 +1,10 @@
 //! Reads outputs back to the host: requested for a frame, copied after its passes, and mapped when
 //! the host submits it.
 
-use super::read_buffer::ReadBuffer;
+use super::{encode::layers_from, read_buffer::ReadBuffer};
 use crate::{
     error::ExecuteError,
-    memory::{allocation::extent, memory::Memory, physical::PingPong},
+    memory::{allocation::extent, memory::InFrame},
     readback::{Content, Readback},
     signal::Progress,
 };
@@ -39,9 +39,7 @@ impl MipCopy {
     }
 
     pub fn in_texture<'t>(&self, texture: &'t wgpu::Texture) -> wgpu::TexelCopyTextureInfo<'t> {
-        let mut place = texture.as_image_copy();
-        (place.mip_level, place.origin.z) = (self.mip, self.layer);
-        place
+        layers_from(texture, self.mip, self.layer)
     }
 
     pub fn in_buffer<'b>(
@@ -75,26 +73,21 @@ impl Readable {
         plan.readable().iter().map(readable).collect()
     }
 
-    fn source(
-        &self,
-        plan: &Plan,
-        memory: &Memory,
-        ping_pong: &PingPong,
-    ) -> Result<Source, ExecuteError> {
+    fn source(&self, frame: InFrame<'_>) -> Result<Source, ExecuteError> {
         // Resources that the graph made can be copied from; the host's may not.
         let refuse = |usage: &'static str| ExecuteError::NotReadable {
             name: self.name.clone(),
             usage,
         };
         let id = self.target.id;
-        if let ResourceKind::Texture(_) = &plan.resource(id).kind {
-            let texture = memory.texture(id, ping_pong)?.clone();
+        if let ResourceKind::Texture(_) = &frame.plan.resource(id).kind {
+            let texture = frame.texture(id)?.clone();
             if !texture.usage().contains(wgpu::TextureUsages::COPY_SRC) {
                 return Err(refuse("TextureUsages::COPY_SRC"));
             }
             return Ok(Source::Texture(texture));
         }
-        let (buffer, bytes) = memory.bytes(plan, &self.target, ping_pong)?;
+        let (buffer, bytes) = frame.bytes(&self.target)?;
         if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) {
             return Err(refuse("BufferUsages::COPY_SRC"));
         }
@@ -138,7 +131,7 @@ impl Fetch {
     pub fn new(
         name: &str,
         readable: &[Arc<Readable>],
-        (plan, memory, ping_pong): (&Plan, &Memory, &PingPong),
+        frame: InFrame<'_>,
         pool: &mut StagingPool,
         device: &wgpu::Device,
     ) -> Result<Self, ExecuteError> {
@@ -149,7 +142,7 @@ impl Fetch {
                 known: names.join(", "),
             });
         };
-        let source = readable.source(plan, memory, ping_pong)?;
+        let source = readable.source(frame)?;
         let size = match &source {
             Source::Texture(_) => readable.mips.iter().map(MipCopy::bytes).sum(),
             Source::Buffer(_, bytes) => copied(bytes).end - copied(bytes).start,
@@ -171,11 +164,8 @@ impl Fetch {
         match &self.source {
             Source::Texture(texture) => {
                 for copy in &self.readable.mips {
-                    let (from, to) = (
-                        copy.in_texture(texture),
-                        copy.in_buffer(buffer, copy.offset),
-                    );
-                    encoder.copy_texture_to_buffer(from, to, copy.size);
+                    let to = copy.in_buffer(buffer, copy.offset);
+                    encoder.copy_texture_to_buffer(copy.in_texture(texture), to, copy.size);
                 }
             }
             Source::Buffer(source, bytes) => {

@@ -3,11 +3,7 @@
 //! need that is missed meanwhile shows in the next one, or has passed.
 
 use super::read_buffer::ReadBuffer;
-use crate::{
-    error::ExecuteError,
-    memory::{memory::Memory, physical::PingPong},
-    signal::Progress,
-};
+use crate::{error::ExecuteError, memory::memory::InFrame, signal::Progress};
 use skiagraph_graph::{Growth, Plan, ResourceId, ResourceKind};
 
 /// Bytes of a counter.
@@ -72,16 +68,13 @@ impl GrowthReadback {
     pub fn copy(
         &mut self,
         change: u64,
-        plan: &Plan,
-        memory: &Memory,
-        ping_pong: &PingPong,
+        frame: InFrame<'_>,
         encoder: &mut wgpu::CommandEncoder,
     ) -> bool {
-        let counter = &self.growth.counter;
         if self.is_asked {
             return self.counted == Some(change);
         }
-        let Ok((buffer, part)) = memory.bytes(plan, counter, ping_pong) else {
+        let Ok((buffer, part)) = frame.bytes(&self.growth.counter) else {
             return false;
         };
         encoder.copy_buffer_to_buffer(buffer, part.start, &self.staging.buffer, 0, COUNTER);

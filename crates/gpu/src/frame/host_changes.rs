@@ -35,7 +35,7 @@ impl Changed {
 pub(super) struct HostChanges {
     /// Versions of all provided resources by name; `None` while no live pass reads `frame`.
     known: Option<BTreeMap<String, u64>>,
-    changed: Changed,
+    pub changed: Changed,
 }
 
 impl Default for HostChanges {
@@ -49,15 +49,6 @@ impl Default for HostChanges {
 }
 
 impl HostChanges {
-    pub fn changed(&self) -> Changed {
-        self.changed
-    }
-
-    /// Notes that a frame was encoded.
-    pub fn clear(&mut self) {
-        self.changed = Changed::default();
-    }
-
     /// Notes that a frame to which these changes were told never ran.
     pub fn tell_again(&mut self, changed: Changed) {
         self.changed.scene |= changed.scene;
@@ -88,16 +79,15 @@ impl HostChanges {
             let version = provider.version(&name);
             (name, version)
         });
-        let now: Option<BTreeMap<String, u64>> = Some(now.collect());
-        match (&self.known, &now) {
-            (Some(before), Some(now)) => {
-                let differs = |name: &&String| before.get(*name) != now.get(*name);
-                let names = before.keys().chain(now.keys()).filter(differs);
-                names.for_each(|name| self.changed.note(name));
-            }
-            _ => self.touch_all(),
+        let now: BTreeMap<String, u64> = now.collect();
+        if let Some(before) = &self.known {
+            let differs = |name: &&String| before.get(*name) != now.get(*name);
+            let names = before.keys().chain(now.keys()).filter(differs);
+            names.for_each(|name| self.changed.note(name));
+        } else {
+            self.touch_all();
         }
-        self.known = now;
+        self.known = Some(now);
     }
 
     /// Forgets the known versions, because no live pass reads the flags. The first frame that reads

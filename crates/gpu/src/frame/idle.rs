@@ -8,9 +8,9 @@ pub(super) struct Idle {
     /// True if each frame computes the same until the host makes or reports a change.
     repeats: bool,
     /// Number of these changes.
-    changes: u64,
+    pub changes: u64,
     /// Number of changes before the last frame that ran; `None` before the first one.
-    settled: Option<u64>,
+    pub settled: Option<u64>,
 }
 
 impl Idle {
@@ -22,19 +22,9 @@ impl Idle {
         }
     }
 
-    /// Returns the number of changes that were noted.
-    pub fn changes(&self) -> u64 {
-        self.changes
-    }
-
     /// Notes that the host has made or reported a change.
     pub fn note_change(&mut self) {
         self.changes += 1;
-    }
-
-    /// Notes that a frame ran before which there were so many changes.
-    pub fn settle(&mut self, changes: u64) {
-        self.settled = Some(changes);
     }
 
     /// True if a frame ran since which nothing has changed.

@@ -4,7 +4,7 @@ use super::encode::{Meters, encode_all};
 use crate::{
     error::{ExecuteError, named, scoped},
     memory::{
-        memory::Memory,
+        memory::InFrame,
         physical::{PingPong, Versions},
     },
     pipelines::{
@@ -42,10 +42,8 @@ impl GpuPass {
         at: usize,
         old: Option<(&LinkedPass, &GpuPass)>,
         pipelines: &Pipelines,
-        device: &wgpu::Device,
     ) -> Result<Self, ExecuteError> {
         let pass = plan.pass(plan.schedule().passes[at]);
-        let refused = |error| named(error, pass);
         let (mut made, mut params) = (Vec::new(), Vec::new());
         for (index, step) in pass.steps.iter().enumerate() {
             let before = old.and_then(|(linked, made)| {
@@ -53,18 +51,17 @@ impl GpuPass {
                 serves.then_some(made)
             });
             // Frames that are not submitted yet read those of before.
-            let same = old
-                .is_some_and(|(linked, _)| linked.params().nth(index) == pass.params().nth(index));
-            let uniform = before.filter(|_| same);
+            let own = pass.params().nth(index);
+            let same = old.filter(|(linked, _)| linked.params().nth(index) == own);
+            let uniform = before.filter(|_| same.is_some());
             let uniform = uniform.and_then(|made| made.params[index].clone());
             made.push(match before {
                 Some(made) => made.pipelines[index].clone(),
-                None => pipelines.get_or_make(&pass.name, step).map_err(refused)?,
+                None => pipelines.get_or_make(pass, step)?,
             });
             params.push(match uniform {
                 Some(buffer) => Some(buffer),
-                None => scoped(device, &pass.name, || upload(device, &pass.name, step))
-                    .map_err(refused)??,
+                None => upload(pipelines.device(), pass, step)?,
             });
         }
         Ok(Self {
@@ -98,36 +95,31 @@ impl GpuPass {
     /// throw-away encoder, so that errors of the device are found here.
     pub fn bind(
         &mut self,
-        plan: &Plan,
         at: usize,
-        memory: &Memory,
-        ping_pong: &PingPong,
+        frame: InFrame<'_>,
         device: &wgpu::Device,
     ) -> Result<(), ExecuteError> {
+        let plan = frame.plan;
         let pass = plan.pass(plan.schedule().passes[at]);
         let binder = Binder {
             device,
-            plan,
-            memory,
-            ping_pong,
+            frame,
             discarded: &plan.discarded(at),
         };
         let refused = |error| named(error, pass);
         let steps = scoped(device, &pass.name, || {
             let steps = pass.steps.iter().zip(&self.pipelines).zip(&self.params);
-            steps
-                .map(|((step, pipeline), params)| {
-                    binder.step(&pass.name, step, pipeline.as_deref(), params.as_ref())
-                })
-                .collect::<Result<Vec<_>, _>>()
-        })
-        .map_err(refused)??;
-        let versions = |id: &ResourceId| ping_pong.get(id).copied().unwrap_or_default();
+            let bound = steps.map(|((step, pipeline), params)| {
+                binder.step(&pass.name, step, pipeline.as_deref(), params.as_ref())
+            });
+            bound.collect::<Result<Vec<_>, _>>()
+        });
+        let steps = steps.map_err(refused)??;
+        let versions = |id: &ResourceId| frame.ping_pong.get(id).copied().unwrap_or_default();
         let state: Vec<Versions> = self.ping_pong.iter().map(versions).collect();
         if !self.tried.contains(&state) {
             scoped(device, &pass.name, || {
-                let mut encoder =
-                    device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+                let mut encoder = device.create_command_encoder(&Default::default());
                 let done = encode_all(&steps, &pass.name, &mut encoder, Meters::default(), None);
                 encoder.finish();
                 done
@@ -162,10 +154,7 @@ impl GpuPass {
         pass: &LinkedPass,
         device: &wgpu::Device,
     ) -> Result<Vec<Option<wgpu::Buffer>>, ExecuteError> {
-        let refused = |error| named(error, pass);
-        let params = pass.steps.iter().map(|step| {
-            scoped(device, &pass.name, || upload(device, &pass.name, step)).map_err(refused)?
-        });
+        let params = pass.steps.iter().map(|step| upload(device, pass, step));
         params.collect()
     }
 

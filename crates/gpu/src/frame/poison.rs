@@ -9,7 +9,7 @@ use crate::{
     buffer,
     error::{ExecuteError, scoped},
     memory::{
-        memory::Memory,
+        memory::{InFrame, Memory},
         physical::{PingPong, Versions},
     },
     pipelines::{bind::Binder, handles::GpuAttachment},
@@ -88,9 +88,7 @@ impl Poison {
                 let ping_pong = PingPong::from([(id, Versions { current, previous })]);
                 let binder = Binder {
                     device,
-                    plan,
-                    memory,
-                    ping_pong: &ping_pong,
+                    frame: InFrame::new(plan, memory, &ping_pong),
                     discarded: &[],
                 };
                 fill(&binder, id, byte)
@@ -100,7 +98,7 @@ impl Poison {
         }
         let each_fill = fills
             .iter()
-            .flat_map(|(_, _, fills): &(_, _, Vec<Fill>)| fills);
+            .flat_map(|(.., fills): &(_, _, Vec<Fill>)| fills);
         let most = each_fill.map(Fill::bytes).fold(4, u64::max);
         let pattern = scoped(device, "pattern", || {
             let (bytes, usage) = (vec![byte; most as usize], wgpu::BufferUsages::COPY_SRC);
@@ -123,27 +121,21 @@ impl Poison {
 
 /// Returns the way to fill a resource with a byte; `None` if it has no bytes.
 fn fill(binder: &Binder<'_>, id: ResourceId, byte: u8) -> Result<Option<Fill>, ExecuteError> {
-    Ok(Some(match &binder.plan.resource(id).kind {
+    Ok(Some(match &binder.frame.plan.resource(id).kind {
         ResourceKind::Buffer(_) => {
             let part = SubresourceRange::WHOLE;
             let target = Target { id, part };
-            let (buffer, place) = binder
-                .memory
-                .bytes(binder.plan, &target, binder.ping_pong)?;
+            let (buffer, place) = binder.frame.bytes(&target)?;
             Fill::Buffer(buffer.clone(), place)
         }
         ResourceKind::Texture(texture) => {
             let part = texture.whole();
             if texture.format.is_depth_stencil_format() || texture.samples > 1 {
                 let views = binder.single_views(&Target { id, part })?;
-                return Ok(Some(Fill::Views(
-                    views,
-                    texture.format,
-                    cleared_to(texture, byte),
-                )));
+                let value = cleared_to(texture, byte);
+                return Ok(Some(Fill::Views(views, texture.format, value)));
             }
-            let made = binder.memory.texture(id, binder.ping_pong)?.clone();
-            Fill::Texture(made, mips(texture, &part))
+            Fill::Texture(binder.frame.texture(id)?.clone(), mips(texture, &part))
         }
         _ => return Ok(None),
     }))

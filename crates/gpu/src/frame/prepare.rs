@@ -2,7 +2,7 @@
 //! the time. Bindings to existing memory are made later, when the plan is put in.
 
 use crate::{
-    error::{ExecuteError, named, with_table},
+    error::{ExecuteError, with_table},
     pipelines::pipelines::{Pipeline, Pipelines},
     presence::Presence,
 };
@@ -38,9 +38,8 @@ impl Preparer {
         let mut pipelines = Vec::new();
         for pass in plan.live() {
             for step in &pass.steps {
-                let made = self.pipelines.get_or_make(&pass.name, step);
-                let refused = |error| named(error, pass);
-                let made = made.map_err(|error| with_table(refused(error), &plan));
+                let made = self.pipelines.get_or_make(pass, step);
+                let made = made.map_err(|error| with_table(error, &plan));
                 pipelines.extend(made?);
             }
         }

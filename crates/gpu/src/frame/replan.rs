@@ -59,19 +59,12 @@ pub(super) struct Reused<'a> {
 
 impl<'a> Reused<'a> {
     pub fn new(old: &'a State, plan: &'a Plan, memory: &'a Memory) -> Self {
-        let positions: HashMap<&str, usize> = old
-            .plan
-            .live()
-            .enumerate()
-            .map(|(at, pass)| (pass.name.as_str(), at))
-            .collect();
-        let formers: HashMap<&str, ResourceId> = old
-            .plan
-            .schedule()
-            .lifetimes
-            .keys()
-            .map(|id| (old.plan.resource(*id).name.as_str(), *id))
-            .collect();
+        let passes = old.plan.live().enumerate();
+        let positions = passes.map(|(at, pass)| (pass.name.as_str(), at));
+        let positions: HashMap<&str, usize> = positions.collect();
+        let live = old.plan.schedule().lifetimes.keys();
+        let formers = live.map(|id| (old.plan.resource(*id).name.as_str(), *id));
+        let formers: HashMap<&str, ResourceId> = formers.collect();
         let same = plan.schedule().lifetimes.keys().filter_map(|&id| {
             let resource = plan.resource(id);
             let former = *formers.get(resource.name.as_str())?;
@@ -106,12 +99,8 @@ impl<'a> Reused<'a> {
     }
 
     /// Creates the passes of the plan.
-    pub fn passes(
-        &self,
-        pipelines: &Pipelines,
-        device: &wgpu::Device,
-    ) -> Result<Vec<GpuPass>, ExecuteError> {
-        let made = |at| GpuPass::new(self.plan, at, self.before(at), pipelines, device);
+    pub fn passes(&self, pipelines: &Pipelines) -> Result<Vec<GpuPass>, ExecuteError> {
+        let made = |at| GpuPass::new(self.plan, at, self.before(at), pipelines);
         (0..self.positions.len()).map(made).collect()
     }
 
@@ -151,11 +140,9 @@ impl<'a> Reused<'a> {
         let has_changed = |id: ResourceId, former: ResourceId| {
             self.memory.version(id) != self.old.memory.version(former)
         };
-        for (&id, &former) in &self.same {
-            // A provider may hand out the buffer of before with something else in it.
-            if has_changed(id, former) {
-                continue;
-            }
+        // A provider may hand out the buffer of before with something else in it.
+        let same = self.same.iter();
+        for (&id, &former) in same.filter(|(id, former)| !has_changed(**id, **former)) {
             contents.take_over(id, old, former);
         }
         let groups = self.groups();

@@ -8,7 +8,7 @@ use super::{
     growth::Unchanged,
     growth_readback::GrowthReadback,
     host_changes::HostChanges,
-    in_flight::{FrameInFlight, FramesInFlight},
+    in_flight::{FrameInFlight, FramesInFlight, list},
     pass::GpuPass,
     replan::{ReplanReport, Reused, has_same_params},
     report::{Frame, FrameReport},
@@ -22,7 +22,7 @@ use crate::{
     error::{ExecuteError, in_encoder, poll, with_table},
     memory::{
         import::{differs, is_on},
-        memory::{Memory, ResourceFactory, check_bound, check_relied_on},
+        memory::{InFrame, Memory, ResourceFactory, check_bound, check_relied_on},
         physical::{Physical, PingPong},
     },
     pipelines::pipelines::Pipelines,
@@ -95,6 +95,11 @@ impl Runner {
         &self.state.plan
     }
 
+    /// Returns the memory of the frame that was encoded last.
+    pub fn in_frame(&self) -> InFrame<'_> {
+        InFrame::new(&self.state.plan, &self.state.memory, &self.ping_pong)
+    }
+
     pub fn encode_with(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -131,8 +136,7 @@ impl Runner {
             return Err(error);
         }
         let index = frame_in_flight.index;
-        frame_in_flight.changed = self.host_changes.changed();
-        self.host_changes.clear();
+        frame_in_flight.changed = std::mem::take(&mut self.host_changes.changed);
         self.skipped.clone_from(&frame_in_flight.skipped);
         self.frames_in_flight.submit(frame_in_flight, encoder);
         std::mem::swap(&mut self.ping_pong, &mut self.decision.ping_pong);
@@ -149,11 +153,12 @@ impl Runner {
         let (state, device) = (&self.state, &self.device);
         frame_in_flight.index = self.frames;
         if state.uniform.is_some() {
-            let values = (self.frames, frame.seconds, self.host_changes.changed());
+            let values = (self.frames, frame.seconds, self.host_changes.changed);
             FrameUniform::write(&mut frame_in_flight.uniform, values, device)?;
         }
         for name in frame.read {
-            let source = (&state.plan, &state.memory, &self.decision.ping_pong);
+            let ping_pong = &self.decision.ping_pong;
+            let source = InFrame::new(&state.plan, &state.memory, ping_pong);
             let staging = &mut self.frames_in_flight.staging;
             let fetch = Fetch::new(name, &state.readables, source, staging, device)?;
             frame_in_flight.fetches.push(fetch);
@@ -215,10 +220,10 @@ impl Runner {
             fetch.copy(encoder);
         }
         if !decision.rests {
-            let (mut is_counted, change) = (true, state.idle.changes());
+            let (mut is_counted, change) = (true, state.idle.changes);
+            let frame = InFrame::new(&state.plan, memory, ping_pong);
             for readback in &mut state.growth_readbacks {
-                let (plan, memory) = (&state.plan, &state.memory);
-                is_counted &= readback.copy(change, plan, memory, ping_pong, encoder);
+                is_counted &= readback.copy(change, frame, encoder);
             }
             // Else a resource that has no room could stay so.
             frame_in_flight.changes = is_counted.then_some(change);
@@ -241,6 +246,11 @@ impl Runner {
             return Ok(None);
         }
         self.settle()?;
+        self.report()
+    }
+
+    /// Returns the report of the oldest frame with requests, if the GPU has finished it.
+    pub fn report(&mut self) -> Result<Option<FrameReport>, ExecuteError> {
         self.frames_in_flight.report(&self.device, &self.presence)
     }
 
@@ -253,9 +263,7 @@ impl Runner {
         }
         let (frames, state) = (&mut self.frames_in_flight, &mut self.state);
         let setback = frames.settle();
-        if let Some(changes) = setback.settled {
-            state.idle.settle(changes);
-        }
+        state.idle.settled = setback.settled.or(state.idle.settled);
         if setback.is_lost || setback.forgets {
             state.idle.note_change();
             let from_last = frames.under_way.iter_mut().rev();
@@ -283,10 +291,9 @@ impl Runner {
     pub fn import(&mut self, name: &str, physical: Physical) -> Result<(), ExecuteError> {
         let imports = self.plan().imports();
         let Some(described) = imports.get(name) else {
-            let names: Vec<&str> = imports.keys().map(String::as_str).collect();
             return Err(ExecuteError::NoSuchImport {
                 name: name.to_owned(),
-                known: list(&names),
+                known: list(imports.keys().map(String::as_str)),
             });
         };
         if let Some(why) = differs(&physical, described) {
@@ -450,7 +457,7 @@ impl Runner {
         let memory = Memory::new(&plan, Some(before), &mut factory);
         let memory = memory.map_err(|error| with_table(error, &plan))?;
         let reused = Reused::new(&self.state, &plan, &memory);
-        let made = reused.passes(&self.pipelines, &self.device);
+        let made = reused.passes(&self.pipelines);
         let passes = made.map_err(|error| with_table(error, &plan))?;
         let mut report = ReplanReport {
             pipelines: reused.made_pipelines(),
@@ -587,13 +594,4 @@ fn check_backend(device: &wgpu::Device, plan: &Plan) -> Result<(), ExecuteError>
         plan.check_backend(&backend)?;
     }
     Ok(())
-}
-
-/// Joins names for a message.
-pub(super) fn list(names: &[&str]) -> String {
-    if names.is_empty() {
-        "none".to_owned()
-    } else {
-        names.join(", ")
-    }
 }

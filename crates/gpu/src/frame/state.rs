@@ -4,7 +4,7 @@ use super::{
     clears,
     contents::{Contents, HostCopy},
     cpu::CpuTurn,
-    encode::{Meters, SharedPass, clear_buffers, encode_all},
+    encode::{Meters, SharedPass, clear_buffers, encode_all, layers_from},
     fetch::Readable,
     growth_readback::GrowthReadback,
     idle::Idle,
@@ -16,7 +16,7 @@ use super::{
 use crate::{
     error::{ExecuteError, with_table},
     memory::{
-        memory::{Grown, Memory, ResourceFactory},
+        memory::{Grown, InFrame, Memory, ResourceFactory},
         physical::{Physical, PingPong},
     },
     pipelines::pipelines::Pipelines,
@@ -65,7 +65,7 @@ impl State {
         let refused = |error| with_table(error, &plan);
         let memory = Memory::new(&plan, None, factory).map_err(refused)?;
         let passes = (0..plan.schedule().passes.len())
-            .map(|at| GpuPass::new(&plan, at, None, pipelines, factory.device))
+            .map(|at| GpuPass::new(&plan, at, None, pipelines))
             .collect::<Result<Vec<_>, _>>()
             .map_err(refused)?;
         let contents = Contents::new(&plan, 0);
@@ -148,15 +148,17 @@ impl State {
         ping_pong: &PingPong,
         device: &wgpu::Device,
     ) -> Result<(), ExecuteError> {
+        let (plan, memory) = (&self.plan, &self.memory);
+        let frame = InFrame::new(plan, memory, ping_pong);
         for (at, made) in self.passes.iter_mut().enumerate() {
             if !runs[at] || made.is_bound(ping_pong) {
                 continue;
             }
-            if let Some(id) = missing(&self.plan, &self.memory, at) {
-                return Err(not_there(&self.plan, &self.memory, id, at));
+            if let Some(id) = missing(plan, memory, at) {
+                return Err(not_there(plan, memory, id, at));
             }
-            made.bind(&self.plan, at, &self.memory, ping_pong, device)
-                .map_err(|error| with_table(error, &self.plan))?;
+            let bound = made.bind(at, frame, device);
+            bound.map_err(|error| with_table(error, plan))?;
         }
         Ok(())
     }
@@ -298,17 +300,10 @@ impl State {
                     encoder.copy_buffer_to_buffer(from, 0, to, 0, from.size());
                 }
                 (Physical::Texture(from), Physical::Texture(to)) => {
-                    for mip_level in 0..from.mip_level_count() {
-                        let level = |texture| wgpu::TexelCopyTextureInfo {
-                            mip_level,
-                            ..wgpu::Texture::as_image_copy(texture)
-                        };
-                        let size = wgpu::Extent3d {
-                            width: (from.width() >> mip_level).max(1),
-                            height: (from.height() >> mip_level).max(1),
-                            depth_or_array_layers: from.depth_or_array_layers(),
-                        };
-                        encoder.copy_texture_to_texture(level(from), level(to), size);
+                    for mip in 0..from.mip_level_count() {
+                        let [source, target] = [from, to].map(|it| layers_from(it, mip, 0));
+                        let size = from.size().mip_level_size(mip, from.dimension());
+                        encoder.copy_texture_to_texture(source, target, size);
                     }
                 }
                 _ => {}

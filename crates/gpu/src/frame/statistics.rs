@@ -121,13 +121,11 @@ impl Counters {
         if self.is_being_mapped() {
             return Err(failed());
         }
-        let words = self.staging.take(|bytes| {
-            let words = bytes.as_chunks().0.iter();
-            words
-                .map(|word| u64::from_ne_bytes(*word))
-                .collect::<Vec<_>>()
-        });
-        let words = words.ok_or_else(failed)?;
+        let word = |word: &[u8; 8]| u64::from_ne_bytes(*word);
+        let words = self
+            .staging
+            .take(|bytes| bytes.as_chunks().0.iter().map(word).collect());
+        let words: Vec<u64> = words.ok_or_else(failed)?;
         let sum = |queries: &Range<u32>, at: usize| -> u64 {
             let queries = queries.clone();
             queries.map(|query| words[4 * query as usize + at]).sum()

@@ -2,7 +2,7 @@
 
 use super::times::{FrameTiming, PassTiming};
 use crate::error::ExecuteError;
-use std::{sync::Arc, time::Duration};
+use std::{ops::Range, sync::Arc, time::Duration};
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 /// Timestamps of one frame after another. Frames in flight have a timer each: a profiler cannot
@@ -89,19 +89,14 @@ pub(crate) fn times(
     passes: &[(Arc<str>, Duration)],
     results: &[GpuTimerQueryResult],
 ) -> FrameTiming {
-    let first = Stretch::over(results.iter());
+    let first = stretch_over(results.iter());
     let of_pass = |(name, cpu): &(Arc<str>, Duration)| {
-        let stretch = Stretch::over(results.iter().filter(|query| query.label == **name));
-        let length = stretch.and_then(Stretch::length);
+        let stretch = stretch_over(results.iter().filter(|query| query.label == **name));
+        let length = stretch.clone().and_then(length_of);
+        let ends = length.and(stretch).zip(first.clone());
         PassTiming {
             name: name.to_string(),
-            begin: length.and(stretch).zip(first).and_then(|(pass, first)| {
-                let offset = Stretch {
-                    begin: first.begin,
-                    end: pass.begin,
-                };
-                offset.length()
-            }),
+            begin: ends.and_then(|(pass, first)| length_of(first.start..pass.start)),
             gpu: length,
             cpu: *cpu,
         }
@@ -111,31 +106,16 @@ pub(crate) fn times(
     }
 }
 
-/// From the first begin to the last end of some queries, seconds of the GPU's clock.
-#[derive(Clone, Copy)]
-struct Stretch {
-    begin: f64,
-    end: f64,
+/// From the first begin to the last end of some queries, seconds of the GPU's clock; `None` if no
+/// query has times: without timestamps between passes, copies and clears have none; their time
+/// falls between their neighbours'.
+fn stretch_over<'a>(queries: impl Iterator<Item = &'a GpuTimerQueryResult>) -> Option<Range<f64>> {
+    queries
+        .filter_map(|query| query.time.clone())
+        .reduce(|span, one| span.start.min(one.start)..span.end.max(one.end))
 }
 
-impl Stretch {
-    /// `None` if no query has times: without timestamps between passes, copies and clears have
-    /// none; their time falls between their neighbours'.
-    fn over<'a>(queries: impl Iterator<Item = &'a GpuTimerQueryResult>) -> Option<Self> {
-        queries
-            .filter_map(|query| query.time.as_ref())
-            .map(|time| Self {
-                begin: time.start,
-                end: time.end,
-            })
-            .reduce(|span, one| Self {
-                begin: span.begin.min(one.begin),
-                end: span.end.max(one.end),
-            })
-    }
-
-    /// Timestamps that run backwards are no measurement.
-    fn length(self) -> Option<Duration> {
-        Duration::try_from_secs_f64(self.end - self.begin).ok()
-    }
+/// Timestamps that run backwards are no measurement.
+fn length_of(stretch: Range<f64>) -> Option<Duration> {
+    Duration::try_from_secs_f64(stretch.end - stretch.start).ok()
 }

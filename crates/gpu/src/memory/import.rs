@@ -40,15 +40,12 @@ pub(crate) fn differs(physical: &Physical, described: &Import) -> Option<String>
                 ..
             },
         ) => {
+            let own_layers = texture.depth_or_array_layers();
             vec![
                 unless("its format", format, texture.format()),
                 unless("its size", size, [texture.width(), texture.height()]),
                 unless("its number of mips", mips, texture.mip_level_count()),
-                unless(
-                    "its number of layers",
-                    layers,
-                    texture.depth_or_array_layers(),
-                ),
+                unless("its number of layers", layers, own_layers),
                 unless("its dimension", dimension(is_3d), texture.dimension()),
                 unless("its number of samples", samples, texture.sample_count()),
                 unless("its usage", usage, texture.usage() & usage),

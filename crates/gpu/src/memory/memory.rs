@@ -7,13 +7,16 @@ use super::{
 };
 use crate::{
     buffer,
-    error::{ExecuteError, scoped},
+    error::{
+        ExecuteError::{self, Internal},
+        scoped,
+    },
     presence::Presence,
     provider::{Provider, ProviderError},
 };
 use skiagraph_graph::{
     Address, Aliases, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId,
-    ResourceKind, Sampler, SubresourceRange, Target,
+    ResourceKind, Sampler, Target,
 };
 use std::{collections::BTreeMap, ops::Range};
 
@@ -202,19 +205,6 @@ impl Memory {
         allocation.versions.get(version)
     }
 
-    pub fn texture(
-        &self,
-        id: ResourceId,
-        ping_pong: &PingPong,
-    ) -> Result<&wgpu::Texture, ExecuteError> {
-        match self.find(id, ping_pong) {
-            Some(Physical::Texture(texture)) => Ok(texture),
-            _ => Err(ExecuteError::Internal(
-                "a texture that a live pass uses was not made",
-            )),
-        }
-    }
-
     pub fn buffer(
         &self,
         id: ResourceId,
@@ -222,9 +212,7 @@ impl Memory {
     ) -> Result<&wgpu::Buffer, ExecuteError> {
         match self.find(id, ping_pong) {
             Some(Physical::Buffer(buffer)) => Ok(buffer),
-            _ => Err(ExecuteError::Internal(
-                "a buffer that a live pass uses was not made",
-            )),
+            _ => Err(Internal("a buffer that a live pass uses was not made")),
         }
     }
 
@@ -234,30 +222,10 @@ impl Memory {
         self.aliases.places.get(base).cloned()
     }
 
-    /// Returns the buffer that holds a part of a plan's buffer in a frame, and the part's bytes.
-    pub fn bytes(
-        &self,
-        plan: &Plan,
-        target: &Target,
-        ping_pong: &PingPong,
-    ) -> Result<(&wgpu::Buffer, Range<u64>), ExecuteError> {
-        let buffer = self.buffer(target.id, ping_pong)?;
-        let place = self.place(target.id).unwrap_or(0..buffer.size());
-        let stride = match &plan.resource(target.id).kind {
-            ResourceKind::Buffer(buffer) => buffer.stride,
-            ResourceKind::Provided(provided) => provided.stride,
-            _ => 0,
-        };
-        let at = |item: u32| place.start + u64::from(item) * stride;
-        let items = target.part.items();
-        let bytes = items.map(|items| at(items.start)..at(items.end));
-        Ok((buffer, bytes.unwrap_or(place)))
-    }
-
     pub fn acceleration_structure(&self, id: ResourceId) -> Result<&wgpu::Tlas, ExecuteError> {
         match self.host.get(&id) {
             Some(Physical::AccelerationStructure(structure)) => Ok(structure),
-            _ => Err(ExecuteError::Internal(
+            _ => Err(Internal(
                 "an acceleration structure that a live pass uses was not made",
             )),
         }
@@ -266,7 +234,7 @@ impl Memory {
     pub fn cpu_work(&self, id: ResourceId) -> Result<&Work, ExecuteError> {
         match self.host.get(&id) {
             Some(Physical::CpuWork(work)) => Ok(work),
-            _ => Err(ExecuteError::Internal(
+            _ => Err(Internal(
                 "work for the CPU that a live pass uses was not made",
             )),
         }
@@ -275,37 +243,11 @@ impl Memory {
     pub fn sampler(&self, id: ResourceId) -> Result<&wgpu::Sampler, ExecuteError> {
         match self.host.get(&id) {
             Some(Physical::Sampler(sampler)) => Ok(sampler),
-            _ => self.samplers.get(&id).ok_or(ExecuteError::Internal(
-                "a sampler that a live pass uses was not made",
-            )),
+            _ => {
+                let own = self.samplers.get(&id);
+                own.ok_or(Internal("a sampler that a live pass uses was not made"))
+            }
         }
-    }
-
-    /// Returns a view of a part of a texture, with the dimension that a shader or attachment needs.
-    pub fn view(
-        &self,
-        target: &Target,
-        dimension: wgpu::TextureViewDimension,
-        ping_pong: &PingPong,
-    ) -> Result<wgpu::TextureView, ExecuteError> {
-        let texture = self.texture(target.id, ping_pong)?;
-        let SubresourceRange {
-            mips,
-            layers,
-            aspect,
-        } = &target.part;
-        // Slices of a 3D texture are no layers of a view.
-        let is_3d = texture.dimension() == wgpu::TextureDimension::D3;
-        let descriptor = wgpu::TextureViewDescriptor {
-            dimension: Some(dimension),
-            aspect: *aspect,
-            base_mip_level: mips.start,
-            mip_level_count: Some(mips.len() as u32),
-            base_array_layer: if is_3d { 0 } else { layers.start },
-            array_layer_count: (!is_3d).then_some(layers.len() as u32),
-            ..wgpu::TextureViewDescriptor::default()
-        };
-        Ok(texture.create_view(&descriptor))
     }
 
     /// Gives up a provided resource whose content is not there, so that the provider is asked for
@@ -446,6 +388,67 @@ impl Memory {
         };
         let (a, b) = (versions(self, id), versions(other, of_other));
         a.is_some() && a == b
+    }
+}
+
+/// A plan's memory in a frame.
+#[derive(Clone, Copy)]
+pub(crate) struct InFrame<'a> {
+    pub plan: &'a Plan,
+    pub memory: &'a Memory,
+    pub ping_pong: &'a PingPong,
+}
+
+impl<'a> InFrame<'a> {
+    pub fn new(plan: &'a Plan, memory: &'a Memory, ping_pong: &'a PingPong) -> Self {
+        Self {
+            plan,
+            memory,
+            ping_pong,
+        }
+    }
+
+    pub fn texture(self, id: ResourceId) -> Result<&'a wgpu::Texture, ExecuteError> {
+        match self.memory.find(id, self.ping_pong) {
+            Some(Physical::Texture(texture)) => Ok(texture),
+            _ => Err(Internal("a texture that a live pass uses was not made")),
+        }
+    }
+
+    /// Returns the buffer that holds a part of a plan's buffer, and the part's bytes.
+    pub fn bytes(self, target: &Target) -> Result<(&'a wgpu::Buffer, Range<u64>), ExecuteError> {
+        let buffer = self.memory.buffer(target.id, self.ping_pong)?;
+        let place = self.memory.place(target.id).unwrap_or(0..buffer.size());
+        let stride = match &self.plan.resource(target.id).kind {
+            ResourceKind::Buffer(buffer) => buffer.stride,
+            ResourceKind::Provided(provided) => provided.stride,
+            _ => 0,
+        };
+        let at = |item: u32| place.start + u64::from(item) * stride;
+        let items = target.part.items();
+        let bytes = items.map(|items| at(items.start)..at(items.end));
+        Ok((buffer, bytes.unwrap_or(place)))
+    }
+
+    /// Returns a view of a part of a texture, with the dimension that a shader or attachment needs.
+    pub fn view(
+        self,
+        target: &Target,
+        dimension: wgpu::TextureViewDimension,
+    ) -> Result<wgpu::TextureView, ExecuteError> {
+        let texture = self.texture(target.id)?;
+        let (mips, layers) = (&target.part.mips, &target.part.layers);
+        // Slices of a 3D texture are no layers of a view.
+        let is_3d = texture.dimension() == wgpu::TextureDimension::D3;
+        Ok(texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(dimension),
+            aspect: target.part.aspect,
+            base_mip_level: mips.start,
+            mip_level_count: Some(mips.len() as u32),
+            base_array_layer: if is_3d { 0 } else { layers.start },
+            array_layer_count: (!is_3d).then_some(layers.len() as u32),
+            ..wgpu::TextureViewDescriptor::default()
+        }))
     }
 }
 

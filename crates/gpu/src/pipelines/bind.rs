@@ -6,39 +6,36 @@ use super::{
 };
 use crate::{
     buffer,
-    error::ExecuteError,
-    memory::{allocation::extent, memory::Memory, physical::PingPong},
+    error::{ExecuteError, named, scoped},
+    memory::{allocation::extent, memory::InFrame},
 };
 use skiagraph_graph::{
-    Attachment, BindTarget, Ids, LinkedProgram, Plan, ResourceKind, SubresourceRange, Target,
+    Attachment, BindTarget, Ids, LinkedPass, LinkedProgram, ResourceKind, SubresourceRange, Target,
     step::{
         ColorTarget, CpuCall, CpuItems, DepthTarget, Dispatch, Draw, Groups, StencilTarget, Step,
     },
 };
 
-/// Creates the uniform buffer of a step's `params`; `None` if its shader has none.
+/// Creates the uniform buffer of the `params` of a pass's step; `None` if its shader has none.
 pub(crate) fn upload(
     device: &wgpu::Device,
-    label: &str,
+    pass: &LinkedPass,
     step: &Step<Ids>,
 ) -> Result<Option<wgpu::Buffer>, ExecuteError> {
     let Some(bytes) = step.program().and_then(LinkedProgram::params) else {
         return Ok(None);
     };
-    let (label, failed) = (
-        format!("{label} params"),
-        "the params of a pass could not be uploaded",
-    );
+    let label = format!("{} params", *pass.name);
+    let failed = "the params of a pass could not be uploaded";
     let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
-    buffer::filled(device, &label, bytes, usage, failed).map(Some)
+    let fill = || buffer::filled(device, &label, bytes, usage, failed).map(Some);
+    scoped(device, &pass.name, fill).map_err(|error| named(error, pass))?
 }
 
 /// Binds steps to memory, for one state of the ping-pong.
 pub(crate) struct Binder<'a> {
     pub device: &'a wgpu::Device,
-    pub plan: &'a Plan,
-    pub memory: &'a Memory,
-    pub ping_pong: &'a PingPong,
+    pub frame: InFrame<'a>,
     /// Attachments that are not stored.
     pub discarded: &'a [Target],
 }
@@ -89,7 +86,7 @@ impl Binder<'_> {
                     if !buffer.usage().contains(wgpu::BufferUsages::COPY_SRC) =>
                 {
                     Err(ExecuteError::NotReadable {
-                        name: self.plan.resource(target.id).name.clone(),
+                        name: self.frame.plan.resource(target.id).name.clone(),
                         usage: "BufferUsages::COPY_SRC",
                     })
                 }
@@ -104,8 +101,8 @@ impl Binder<'_> {
         });
         Ok(CpuCall {
             work: NamedWork {
-                name: self.plan.resource(call.work).name.clone(),
-                work: self.memory.cpu_work(call.work)?.clone(),
+                name: self.frame.plan.resource(call.work).name.clone(),
+                work: self.frame.memory.cpu_work(call.work)?.clone(),
             },
             entry: call.entry.clone(),
             count: read(&call.count)?,
@@ -120,7 +117,7 @@ impl Binder<'_> {
     /// Returns a view of each mip of each layer of a part.
     pub fn single_views(&self, target: &Target) -> Result<Vec<GpuAttachment>, ExecuteError> {
         let id = target.id;
-        let ResourceKind::Texture(texture) = &self.plan.resource(id).kind else {
+        let ResourceKind::Texture(texture) = &self.frame.plan.resource(id).kind else {
             return Err(ExecuteError::Internal("only textures have views"));
         };
         let mut views = Vec::new();
@@ -140,7 +137,7 @@ impl Binder<'_> {
 
     fn attachment(&self, target: &Target) -> Result<GpuAttachment, ExecuteError> {
         let is_3d = matches!(
-            &self.plan.resource(target.id).kind,
+            &self.frame.plan.resource(target.id).kind,
             ResourceKind::Texture(texture) if texture.is_3d
         );
         let dimension = if is_3d {
@@ -152,7 +149,7 @@ impl Binder<'_> {
         let mut whole = target.clone();
         whole.part.aspect = wgpu::TextureAspect::All;
         Ok(GpuAttachment {
-            view: self.memory.view(&whole, dimension, self.ping_pong)?,
+            view: self.frame.view(&whole, dimension)?,
             slice: is_3d.then_some(target.part.layers.start),
             store: match self.discarded.contains(target) {
                 true => wgpu::StoreOp::Discard,
@@ -162,14 +159,14 @@ impl Binder<'_> {
     }
 
     fn arguments(&self, target: &Target) -> Result<(wgpu::Buffer, u64), ExecuteError> {
-        let (buffer, range) = self.memory.bytes(self.plan, target, self.ping_pong)?;
+        let (buffer, range) = self.frame.bytes(target)?;
         Ok((buffer.clone(), range.start))
     }
 
     fn operand(&self, target: &Target, is_cleared: bool) -> Result<GpuOperand, ExecuteError> {
-        let resource = self.plan.resource(target.id);
+        let resource = self.frame.plan.resource(target.id);
         let ResourceKind::Texture(texture) = &resource.kind else {
-            let (buffer, range) = self.memory.bytes(self.plan, target, self.ping_pong)?;
+            let (buffer, range) = self.frame.bytes(target)?;
             let buffer = buffer.clone();
             return Ok(GpuOperand::Buffer { buffer, range });
         };
@@ -177,7 +174,7 @@ impl Binder<'_> {
         let mips = target.part.mips.clone();
         let mips = mips.map(|mip| extent(texture, mip, layers.min(texture.mip_layers(mip))));
         Ok(GpuOperand::Texture {
-            texture: self.memory.texture(target.id, self.ping_pong)?.clone(),
+            texture: self.frame.texture(target.id)?.clone(),
             part: target.part.clone(),
             mips: mips.collect(),
             views: if is_cleared {
@@ -220,14 +217,11 @@ impl Binder<'_> {
                 reference: stencil.reference,
             })
         };
+        let colors = draw.colors.iter().map(color);
         Ok(Draw {
             program,
             fullscreen: draw.fullscreen,
-            colors: draw
-                .colors
-                .iter()
-                .map(color)
-                .collect::<Result<_, ExecuteError>>()?,
+            colors: colors.collect::<Result<_, ExecuteError>>()?,
             depth: draw.depth.as_ref().map(depth).transpose()?,
             stencil: draw.stencil.as_ref().map(stencil).transpose()?,
             canvas: draw.canvas.as_ref().map(attachment).transpose()?,
@@ -250,19 +244,18 @@ impl Binder<'_> {
             let Some(layout) = layout else {
                 continue;
             };
-            let bound: Vec<(u32, Bound)> = program
-                .bindings
-                .iter()
-                .filter(|binding| binding.group == group)
-                .map(|binding| Ok((binding.binding, self.bound(&binding.target, params)?)))
-                .collect::<Result<_, ExecuteError>>()?;
-            let entries: Vec<wgpu::BindGroupEntry<'_>> = bound
-                .iter()
-                .map(|(binding, bound)| wgpu::BindGroupEntry {
-                    binding: *binding,
-                    resource: bound.resource(),
+            let bindings = program.bindings.iter();
+            let bindings = bindings.filter(|binding| binding.group == group);
+            let textures = bindings.clone();
+            let views = textures.map(|binding| self.bound_view(&binding.target));
+            let views: Vec<Option<wgpu::TextureView>> = views.collect::<Result<_, _>>()?;
+            let entries = bindings.zip(&views).map(|(bound, view)| {
+                Ok(wgpu::BindGroupEntry {
+                    binding: bound.binding,
+                    resource: self.resource(&bound.target, view.as_ref(), params)?,
                 })
-                .collect();
+            });
+            let entries: Vec<_> = entries.collect::<Result<_, ExecuteError>>()?;
             let made = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(label),
                 layout,
@@ -273,44 +266,27 @@ impl Binder<'_> {
         Ok(groups)
     }
 
-    fn bound(
-        &self,
+    /// Returns the view of a texture that a shader binds; `None` for other resources.
+    fn bound_view(&self, target: &BindTarget) -> Result<Option<wgpu::TextureView>, ExecuteError> {
+        match target {
+            BindTarget::Texture { target, dimension } => {
+                self.frame.view(target, *dimension).map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Returns a resource as a shader binds it, a texture by its view.
+    fn resource<'r>(
+        &'r self,
         target: &BindTarget,
-        params: Option<&wgpu::Buffer>,
-    ) -> Result<Bound, ExecuteError> {
+        view: Option<&'r wgpu::TextureView>,
+        params: Option<&'r wgpu::Buffer>,
+    ) -> Result<wgpu::BindingResource<'r>, ExecuteError> {
+        let memory = self.frame.memory;
         Ok(match target {
             BindTarget::Buffer(target) => {
-                let (buffer, range) = self.memory.bytes(self.plan, target, self.ping_pong)?;
-                Bound::Buffer(buffer.clone(), range)
-            }
-            BindTarget::Texture { target, dimension } => {
-                Bound::View(self.memory.view(target, *dimension, self.ping_pong)?)
-            }
-            BindTarget::Sampler(id) => Bound::Sampler(self.memory.sampler(*id)?.clone()),
-            BindTarget::AccelerationStructure(id) => {
-                Bound::AccelerationStructure(self.memory.acceleration_structure(*id)?.clone())
-            }
-            BindTarget::Params(_) => {
-                let missing = ExecuteError::Internal("the params of a pass were not uploaded");
-                let buffer = params.ok_or(missing)?.clone();
-                let size = buffer.size();
-                Bound::Buffer(buffer, 0..size)
-            }
-        })
-    }
-}
-
-enum Bound {
-    Buffer(wgpu::Buffer, std::ops::Range<u64>),
-    View(wgpu::TextureView),
-    Sampler(wgpu::Sampler),
-    AccelerationStructure(wgpu::Tlas),
-}
-
-impl Bound {
-    fn resource(&self) -> wgpu::BindingResource<'_> {
-        match self {
-            Self::Buffer(buffer, range) => {
+                let (buffer, range) = self.frame.bytes(target)?;
                 let size = std::num::NonZeroU64::new(range.end - range.start);
                 wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                     buffer,
@@ -318,9 +294,18 @@ impl Bound {
                     size: size.filter(|size| size.get() < buffer.size()),
                 })
             }
-            Self::View(view) => wgpu::BindingResource::TextureView(view),
-            Self::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
-            Self::AccelerationStructure(structure) => structure.as_binding(),
-        }
+            BindTarget::Texture { .. } => {
+                let missing = ExecuteError::Internal("a bound texture has no view");
+                wgpu::BindingResource::TextureView(view.ok_or(missing)?)
+            }
+            BindTarget::Sampler(id) => wgpu::BindingResource::Sampler(memory.sampler(*id)?),
+            BindTarget::AccelerationStructure(id) => {
+                memory.acceleration_structure(*id)?.as_binding()
+            }
+            BindTarget::Params(_) => {
+                let missing = ExecuteError::Internal("the params of a pass were not uploaded");
+                params.ok_or(missing)?.as_entire_binding()
+            }
+        })
     }
 }

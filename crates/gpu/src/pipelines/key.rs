@@ -1,7 +1,7 @@
 //! Keys of pipelines: all that a pipeline is made from.
 
 use skiagraph_graph::{
-    Ids, LinkedProgram, Shader,
+    Ids, Shader,
     step::{Draw, Step},
 };
 use std::sync::Arc;
@@ -50,10 +50,6 @@ impl PipelineKey {
             Step::Draw(draw) => Some(DrawKey::new(draw)),
             _ => None,
         };
-        Some(Self::of_program(program, draw))
-    }
-
-    fn of_program(program: &LinkedProgram, draw: Option<DrawKey>) -> Self {
         let slots = program.bindings.iter().map(|bound| Slot {
             group: bound.group,
             binding: bound.binding,
@@ -61,15 +57,14 @@ impl PipelineKey {
             visibility: bound.visibility,
         });
         let constants = program.constants.iter();
-        Self {
+        let constants = constants.map(|(name, value)| (name.clone(), value.to_bits()));
+        Some(Self {
             shader: Arc::clone(&program.shader),
             entries: program.entries.clone(),
             bindings: slots.collect(),
-            constants: constants
-                .map(|(name, value)| (name.clone(), value.to_bits()))
-                .collect(),
+            constants: constants.collect(),
             draw,
-        }
+        })
     }
 
     /// Returns the overrides by key, as wgpu takes them.
@@ -123,32 +118,25 @@ pub(crate) fn same_pipeline(a: &Step<Ids>, b: &Step<Ids>) -> bool {
 
 /// Depth and stencil of a draw, as its pipeline has them.
 fn depth_stencil(draw: &Draw<Ids>) -> Option<wgpu::DepthStencilState> {
-    let target = draw.depth.as_ref().map(|depth| &depth.target);
-    let target = target.or(draw.stencil.as_ref().map(|stencil| &stencil.target))?;
-    let depth = draw.depth.as_ref();
+    let (depth, stencil) = (draw.depth.as_ref(), draw.stencil.as_ref());
+    let target = depth.map(|depth| &depth.target);
+    let target = target.or(stencil.map(|stencil| &stencil.target))?;
     let has_depth = target.format.has_depth_aspect();
+    let compare = depth.map_or(wgpu::CompareFunction::Always, |depth| depth.compare);
     Some(wgpu::DepthStencilState {
         format: target.format,
         // An aspect that no field names is left alone.
         depth_write_enabled: has_depth.then_some(depth.is_some_and(|depth| depth.write)),
-        depth_compare: has_depth
-            .then_some(depth.map_or(wgpu::CompareFunction::Always, |depth| depth.compare)),
-        stencil: draw
-            .stencil
-            .as_ref()
-            .map(|stencil| stencil.state.clone())
-            .unwrap_or_default(),
+        depth_compare: has_depth.then_some(compare),
+        stencil: stencil.map_or_else(Default::default, |stencil| stencil.state.clone()),
         bias: depth.map(|depth| depth.bias).unwrap_or_default(),
     })
 }
 
 /// Samples of the attachments, which all have as many.
 fn samples(draw: &Draw<Ids>) -> u32 {
-    let colors = draw
-        .colors
-        .iter()
-        .flatten()
-        .map(|color| color.target.samples);
+    let colors = draw.colors.iter().flatten();
+    let colors = colors.map(|color| color.target.samples);
     let depth = draw.depth.iter().map(|depth| depth.target.samples);
     let stencil = draw.stencil.iter().map(|stencil| stencil.target.samples);
     colors.chain(depth).chain(stencil).next().unwrap_or(1)

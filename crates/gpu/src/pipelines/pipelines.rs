@@ -1,9 +1,9 @@
 //! Shader modules and pipelines of a device: each is made once, for all executors that share it.
 
 use super::{handles::PipelineKind, key::PipelineKey};
-use crate::error::{ExecuteError, scoped};
+use crate::error::{ExecuteError, named, scoped};
 use naga::ShaderStage;
-use skiagraph_graph::{Ids, Shader, step::Step};
+use skiagraph_graph::{Ids, LinkedPass, Shader, step::Step};
 use std::{
     borrow::Cow,
     collections::HashMap,
@@ -128,10 +128,10 @@ impl Pipelines {
     }
 
     /// Returns the pipeline of a step, which is made if there is none yet; `None` for copies and
-    /// clears. `label` names the pass. Other threads may use the object meanwhile.
+    /// clears. Errors name `pass`, whose step it is. Other threads may use the object meanwhile.
     pub(crate) fn get_or_make(
         &self,
-        label: &str,
+        pass: &LinkedPass,
         step: &Step<Ids>,
     ) -> Result<Option<Arc<Pipeline>>, ExecuteError> {
         let Some(key) = PipelineKey::new(step) else {
@@ -145,17 +145,15 @@ impl Pipelines {
         let fullscreen = self.store().fullscreen.clone();
         let needs_fullscreen = key.draw.as_ref().is_some_and(|draw| draw.fullscreen);
         // The store gets nothing that the device refuses.
-        let (module, fullscreen, pipeline) = scoped(device, label, || {
+        let made = scoped(device, &pass.name, || {
             let module = module.unwrap_or_else(|| module_of(device, &key.shader));
             let fullscreen =
                 fullscreen.or_else(|| needs_fullscreen.then(|| fullscreen_module(device)));
-            let modules = Modules {
-                own: &module,
-                fullscreen: fullscreen.as_ref().filter(|_| needs_fullscreen),
-            };
-            let pipeline = make(device, label, &key, modules, self.cache());
+            let modules = (&module, fullscreen.as_ref().filter(|_| needs_fullscreen));
+            let pipeline = make(device, &pass.name, &key, modules, self.cache());
             (module, fullscreen, Arc::new(pipeline))
-        })?;
+        });
+        let (module, fullscreen, pipeline) = made.map_err(|error| named(error, pass))?;
         let mut store = self.store();
         store.modules.insert(Arc::clone(&key.shader), module);
         store.fullscreen = fullscreen;
@@ -193,13 +191,6 @@ impl Store {
     }
 }
 
-/// Shader modules that a pipeline is made from.
-struct Modules<'a> {
-    own: &'a wgpu::ShaderModule,
-    /// Module of the vertex stage of a full-screen pass; `None` for other passes.
-    fullscreen: Option<&'a wgpu::ShaderModule>,
-}
-
 fn module_of(device: &wgpu::Device, shader: &Shader) -> wgpu::ShaderModule {
     // A browser's compiler reads WGSL: the author's, since naga's writer leaves attributes out.
     #[cfg(target_arch = "wasm32")]
@@ -217,11 +208,13 @@ fn fullscreen_module(device: &wgpu::Device) -> wgpu::ShaderModule {
     })
 }
 
+/// Makes a pipeline from its own module, and that of the vertex stage of a full-screen pass, if it
+/// is of one.
 fn make(
     device: &wgpu::Device,
     label: &str,
     key: &PipelineKey,
-    modules: Modules<'_>,
+    (module, fullscreen): (&wgpu::ShaderModule, Option<&wgpu::ShaderModule>),
     cache: Option<&wgpu::PipelineCache>,
 ) -> Pipeline {
     let layouts = layouts(device, label, key);
@@ -237,7 +230,7 @@ fn make(
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(label),
             layout: Some(&layout),
-            module: modules.own,
+            module,
             entry_point: key.entry(ShaderStage::Compute),
             compilation_options,
             cache,
@@ -247,28 +240,24 @@ fn make(
             layouts,
         };
     };
-    let vertex = match modules.fullscreen {
-        Some(module) => wgpu::VertexState {
-            module,
-            entry_point: Some("fullscreen"),
-            compilation_options: options(&[]),
-            buffers: &[],
-        },
-        None => wgpu::VertexState {
-            module: modules.own,
-            entry_point: key.entry(ShaderStage::Vertex),
-            compilation_options: compilation_options.clone(),
-            buffers: &[],
-        },
+    let own_vertex = (key.entry(ShaderStage::Vertex), compilation_options.clone());
+    let (entry_point, options) = match fullscreen {
+        Some(_) => (Some("fullscreen"), options(&[])),
+        None => own_vertex,
     };
-    let fragment = key
-        .entry(ShaderStage::Fragment)
-        .map(|name| wgpu::FragmentState {
-            module: modules.own,
-            entry_point: Some(name),
-            compilation_options,
-            targets: &draw.colors,
-        });
+    let vertex = wgpu::VertexState {
+        module: fullscreen.unwrap_or(module),
+        entry_point,
+        compilation_options: options,
+        buffers: &[],
+    };
+    let fragment = key.entry(ShaderStage::Fragment);
+    let fragment = fragment.map(|name| wgpu::FragmentState {
+        module,
+        entry_point: Some(name),
+        compilation_options,
+        targets: &draw.colors,
+    });
     let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(label),
         layout: Some(&layout),
@@ -298,14 +287,13 @@ fn layouts(
     let groups = key.bindings.iter().map(|slot| slot.group + 1);
     let layout = |group: u32| {
         let slots = key.bindings.iter().filter(|slot| slot.group == group);
-        let entries: Vec<wgpu::BindGroupLayoutEntry> = slots
-            .map(|slot| wgpu::BindGroupLayoutEntry {
-                binding: slot.binding,
-                visibility: slot.visibility,
-                ty: slot.ty,
-                count: None,
-            })
-            .collect();
+        let entries = slots.map(|slot| wgpu::BindGroupLayoutEntry {
+            binding: slot.binding,
+            visibility: slot.visibility,
+            ty: slot.ty,
+            count: None,
+        });
+        let entries: Vec<_> = entries.collect();
         (!entries.is_empty()).then(|| {
             device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some(label),

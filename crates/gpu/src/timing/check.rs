@@ -40,14 +40,11 @@ const FRAMES: usize = 5;
 /// If the check's own small graph fails on this device.
 pub async fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, ExecuteError> {
     if !device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-        return Ok(Trust::Untrusted {
-            reason: "the adapter has no timestamp queries".to_owned(),
-        });
+        return Ok(untrusted("the adapter has no timestamp queries"));
     }
     if let Some(backend) = partial(device.adapter_info().backend) {
-        return Ok(Trust::Untrusted {
-            reason: format!("they are not checked on the backend {}", backend.name),
-        });
+        let reason = format!("they are not checked on the backend {}", backend.name);
+        return Ok(untrusted(reason));
     }
     let internal = |_| ExecuteError::Internal("the timestamp check's own graph is broken");
     let graph = Graph::load("check.ron", &Registry::standard(), &CheckSources).map_err(internal)?;
@@ -56,12 +53,8 @@ pub async fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, 
     loop {
         let mut request = PlanRequest::new([64, 64], &NoProvider);
         request.params = BTreeMap::from([("rounds".to_owned(), ParamValue::U32(rounds))]);
-        let mut executor = Executor::new(
-            device,
-            queue,
-            graph.plan(&request).map_err(internal)?,
-            &mut NoProvider,
-        )?;
+        let plan = graph.plan(&request).map_err(internal)?;
+        let mut executor = Executor::new(device, queue, plan, &mut NoProvider)?;
         let mut frames = Vec::new();
         for _ in 0..FRAMES {
             let mut encoder =
@@ -71,9 +64,8 @@ pub async fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, 
             let start = Instant::now();
             queue.submit([encoder.finish()]);
             let report = executor.finished().await?;
-            let gpu = report
-                .timing
-                .and_then(|timing| timing.passes.last().and_then(|pass| pass.gpu));
+            let timing = report.timing;
+            let gpu = timing.and_then(|timing| timing.passes.last()?.gpu);
             frames.push((start.elapsed(), gpu));
         }
         // The first frame compiles shaders on some drivers.
@@ -101,9 +93,7 @@ fn judge(frames: &[(Duration, Option<Duration>)]) -> Trust {
     let mut best: Option<(f64, f64)> = None;
     for (wall, gpu) in frames {
         let Some(gpu) = gpu else {
-            return Trust::Untrusted {
-                reason: "the adapter gave no timestamps for a timed pass".to_owned(),
-            };
+            return untrusted("the adapter gave no timestamps for a timed pass");
         };
         let (wall, gpu) = (wall.as_secs_f64(), gpu.as_secs_f64());
         if best.is_none_or(|(best_wall, best_gpu)| gpu / wall > best_gpu / best_wall) {
@@ -112,18 +102,18 @@ fn judge(frames: &[(Duration, Option<Duration>)]) -> Trust {
     }
     match best {
         Some((wall, gpu)) if (0.5..=1.1).contains(&(gpu / wall)) => Trust::Trusted,
-        Some((wall, gpu)) => Trust::Untrusted {
-            reason: format!(
-                "a dispatch that took {:.1} ms of wall time after a raster pass was timed as \
-                 {:.1} ms",
-                wall * 1e3,
-                gpu * 1e3
-            ),
-        },
-        None => Trust::Untrusted {
-            reason: "no frame was timed".to_owned(),
-        },
+        Some((wall, gpu)) => untrusted(format!(
+            "a dispatch that took {:.1} ms of wall time after a raster pass was timed as {:.1} ms",
+            wall * 1e3,
+            gpu * 1e3
+        )),
+        None => untrusted("no frame was timed"),
     }
+}
+
+fn untrusted(reason: impl Into<String>) -> Trust {
+    let reason = reason.into();
+    Trust::Untrusted { reason }
 }
 
 /// A raster pass and a long dispatch after it.

@@ -62,11 +62,7 @@ impl HostVertices {
             offset,
             stride,
             count,
-            position: Attribute {
-                name: "position",
-                format: VertexFormat::Float32x3,
-                at: 0,
-            },
+            position: Attribute::new("position", VertexFormat::Float32x3, 0),
             normal: None,
             decoder: None,
         }
@@ -74,18 +70,14 @@ impl HostVertices {
 
     /// Sets the format of positions, and their offset within a vertex in bytes, divisible by 4.
     pub fn with_position(mut self, format: VertexFormat, at: u64) -> Self {
-        (self.position.format, self.position.at) = (format, at);
+        self.position = Attribute::new("position", format, at);
         self
     }
 
     /// Sets the format of normals, of any length, and their offset within a vertex in bytes,
     /// divisible by 4. Without them, or where one is 0, triangles have the normals of their planes.
     pub fn with_normal(mut self, format: VertexFormat, at: u64) -> Self {
-        self.normal = Some(Attribute {
-            name: "normal",
-            format,
-            at,
-        });
+        self.normal = Some(Attribute::new("normal", format, at));
         self
     }
 
@@ -156,6 +148,10 @@ impl HostVertices {
 }
 
 impl Attribute {
+    fn new(name: &'static str, format: VertexFormat, at: u64) -> Self {
+        Self { name, format, at }
+    }
+
     fn check(self, stride: u64) -> Result<(), HostMeshError> {
         let Self { name, format, at } = self;
         if !FORMATS.contains(&format) {

@@ -9,6 +9,7 @@ use glam::Vec3;
 use skiagraph_gpu::DeviceIdentity;
 use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, Shadows, TwoLevelBvh};
 use std::{
+    borrow::Cow,
     collections::HashMap,
     sync::{Arc, OnceLock},
 };
@@ -96,14 +97,11 @@ impl HostMesh {
             return Err(HostMeshError::Rest { needed, given });
         }
         binds(device, "the vertices", needed)?;
-        let wide;
-        let indices = match indices {
-            HostIndices::U32(indices) => indices,
-            HostIndices::U16(indices) => {
-                wide = indices.iter().copied().map(u32::from).collect::<Vec<_>>();
-                &wide[..]
-            }
+        let indices: Cow<'_, [u32]> = match indices {
+            HostIndices::U32(indices) => indices.into(),
+            HostIndices::U16(indices) => indices.iter().copied().map(u32::from).collect(),
         };
+        let indices = &*indices;
         let [positions, normals] = match &vertices.decoder {
             Some(decoder) => decoded(decoder, &vertices, rest, On { device, queue })?,
             None => {
@@ -312,8 +310,8 @@ fn packed(levels: &[Vec<u32>]) -> Vec<u32> {
 /// Checks that a device can bind so many bytes.
 fn binds(device: &wgpu::Device, what: &'static str, bytes: u64) -> Result<(), HostMeshError> {
     let limit = binding_limit(&device.limits());
-    let error = HostMeshError::TooLarge { what, bytes, limit };
-    if bytes <= limit { Ok(()) } else { Err(error) }
+    let is_bound = (bytes <= limit).then_some(());
+    is_bound.ok_or(HostMeshError::TooLarge { what, bytes, limit })
 }
 
 /// Checks that a device can bind what is made of a mesh.

@@ -15,4 +15,4 @@ pub use decoder::HostDecoder;
 pub use error::HostMeshError;
 pub use layout::HostVertices;
 pub use mesh::{HostIndices, HostMesh};
-pub(crate) use writes::{Bound, HostWrite, Kernels, Written};
+pub(crate) use writes::{Bound, HostWrite, Kernel, Kernels};

@@ -25,12 +25,8 @@ pub(super) fn decoded(
     let bytes = bytes.map_err(|error| HostMeshError::Decoding(error.to_string()))?;
     let vertices: Vec<[[f32; 3]; 2]> = bytemuck::pod_collect_to_vec(&bytes);
     let attribute = |at: usize| vertices.iter().map(|vertex| vertex[at]).collect();
-    let normals = if decoder.has_normals {
-        attribute(1)
-    } else {
-        Vec::new()
-    };
-    Ok([attribute(0), normals])
+    let normals = decoder.has_normals.then(|| attribute(1));
+    Ok([attribute(0), normals.unwrap_or_default()])
 }
 
 /// Submits the kernel that decodes vertices; the buffer that it writes.
@@ -61,12 +57,11 @@ fn submitted(decoder: &HostDecoder, vertices: &HostVertices, rest: &[u8], on: On
         entries: &entries,
     });
     let mut encoder = device.create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(across_items(vertices.count), 1, 1);
-    }
+    let mut pass = encoder.begin_compute_pass(&Default::default());
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.dispatch_workgroups(across_items(vertices.count), 1, 1);
+    drop(pass);
     on.queue.submit([encoder.finish()]);
     decoded
 }

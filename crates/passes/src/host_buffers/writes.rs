@@ -6,7 +6,7 @@ use super::{
     mesh_record::{MOST_GROUPS, MeshRecord, across_items},
 };
 use crate::{
-    buffers::{On, binding_limit, refused, upload},
+    buffers::{On, check_binding, refused, upload},
     error::Error,
     host,
     parts::PartId,
@@ -46,67 +46,32 @@ struct PartRecord {
 
 /// Kernels, by the numbers of their entry points.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kernel {
+pub(crate) enum Kernel {
     Positions,
+    /// Writes normals, and reads positions and indices.
     Normals,
+    /// Writes nodes, and reads positions, indices and primitives.
     Nodes,
     /// Finds the first vertex of each part that is beyond its bounds.
     Beyond,
 }
 
-/// A kernel with the buffer that it writes and the scene's buffers that it reads, by binding.
-pub(crate) struct Written<'a> {
-    kernel: Kernel,
-    buffers: Vec<(u32, &'a wgpu::Buffer)>,
-}
-
-impl<'a> Written<'a> {
-    fn new(kernel: Kernel, buffers: Vec<(u32, &'a wgpu::Buffer)>) -> Self {
-        Self { kernel, buffers }
-    }
-
-    pub fn positions(positions: &'a wgpu::Buffer) -> Self {
-        Self::new(Kernel::Positions, vec![(5, positions)])
-    }
-
-    /// Writes normals; `read` are positions and indices.
-    pub fn normals(normals: &'a wgpu::Buffer, read: [&'a wgpu::Buffer; 2]) -> Self {
-        let buffers = vec![(6, normals), (7, read[0]), (8, read[1])];
-        Self::new(Kernel::Normals, buffers)
-    }
-
-    /// Writes nodes; `read` are positions, indices and primitives.
-    pub fn nodes(nodes: &'a wgpu::Buffer, read: [&'a wgpu::Buffer; 3]) -> Self {
-        let buffers = vec![(7, read[0]), (8, read[1]), (9, read[2]), (11, nodes)];
-        Self::new(Kernel::Nodes, buffers)
-    }
-
-    fn beyond(beyond: &'a wgpu::Buffer) -> Self {
-        Self::new(Kernel::Beyond, vec![(12, beyond)])
-    }
-
-    /// The bindings that its entry point uses: the numbers of those of vertices and parts, and its
-    /// own. A pipeline's layout has no others.
-    fn bindings<'b>(
-        &'b self,
-        part: &'b HostWrite,
-    ) -> (
-        &'static [u32],
-        impl Iterator<Item = (u32, wgpu::BindingResource<'b>)>,
-    ) {
-        let of_vertices: &[u32] = match self.kernel {
-            Kernel::Positions | Kernel::Beyond => &[0, 1, 2, 3],
-            Kernel::Normals => &[0, 1, 2, 4],
-            Kernel::Nodes => &[1],
-        };
-        let levels = part.nodes.iter().map(|(_, levels)| (10, levels));
-        let own = self.buffers.iter().copied().chain(levels);
-        (
-            of_vertices,
-            own.map(|(at, buffer)| (at, buffer.as_entire_binding())),
-        )
+impl Kernel {
+    /// The bindings that its entry point uses, of which a pipeline's layout has no others: those of
+    /// vertices and parts, and those of the buffer that it writes and the scene's that it reads.
+    fn bindings(self) -> (&'static [u32], &'static [u32]) {
+        match self {
+            Self::Positions => (&[0, 1, 2, 3], &[5]),
+            Self::Normals => (&[0, 1, 2, 4], &[6, 7, 8]),
+            Self::Nodes => (&[1], &[11, 7, 8, 9]),
+            Self::Beyond => (&[0, 1, 2, 3], &[12]),
+        }
     }
 }
+
+/// A kernel with the buffer that it writes and the scene's buffers that it reads, in the order of
+/// its bindings.
+pub(crate) type Written<'a> = (Kernel, &'a [&'a wgpu::Buffer]);
 
 impl HostWrite {
     /// Sorts parts so that those of one mesh are one dispatch.
@@ -156,25 +121,25 @@ impl Kernels {
     /// [`Error::HostVertices`] if it refuses them.
     pub fn bind(
         &mut self,
-        written: &Written,
+        written: Written,
         parts: &[HostWrite],
         device: &wgpu::Device,
     ) -> Result<Bound, Error> {
-        let mut batch = |(first, parts): (usize, &[HostWrite])| {
-            let mesh = &parts[0].mesh;
-            let pipeline = self.pipeline(written.kernel, mesh, device);
-            let (group, uploaded) = bind(&pipeline, written, (first, parts), device)?;
-            Ok(Batch {
-                pipeline,
-                group,
-                workgroups: [groups(written.kernel, mesh), parts.len() as u32],
-                uploaded,
-            })
+        let batch = |(first, parts): (usize, &[HostWrite])| {
+            let make = || {
+                let mesh = &parts[0].mesh;
+                let pipeline = self.pipeline(written.0, mesh, device);
+                let (group, uploaded) = bind(&pipeline, written, (first, parts), device)?;
+                Ok(Batch {
+                    pipeline,
+                    group,
+                    workgroups: [groups(written.0, mesh), parts.len() as u32],
+                    uploaded,
+                })
+            };
+            refused(device, make).map_err(|why| unread(parts, why))?
         };
-        let mut batch = |(first, parts): (usize, &[HostWrite])| {
-            refused(device, || batch((first, parts))).map_err(|why| unread(parts, why))?
-        };
-        let batches: Result<Vec<_>, Error> = batches(parts).map(&mut batch).collect();
+        let batches: Result<Vec<_>, Error> = batches(parts).map(batch).collect();
         Ok(Bound(batches?))
     }
 
@@ -187,7 +152,7 @@ impl Kernels {
         let (label, none) = ("vertices beyond their bounds", bytemuck::cast_slice(&none));
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         let beyond = upload(on.device, label, none, usage);
-        let bound = self.bind(&Written::beyond(&beyond), parts, on.device)?;
+        let bound = self.bind((Kernel::Beyond, &[&beyond]), parts, on.device)?;
         let mut encoder = on.device.create_command_encoder(&Default::default());
         bound.record(&mut encoder);
         let submitted = refused(on.device, || on.queue.submit([encoder.finish()]));
@@ -260,7 +225,7 @@ fn groups(kernel: Kernel, mesh: &HostMesh) -> u32 {
 /// The bind group of some parts of one mesh, and the number of bytes that were uploaded for it.
 fn bind(
     pipeline: &wgpu::ComputePipeline,
-    written: &Written,
+    (kernel, buffers): Written,
     (begins, parts): (usize, &[HostWrite]),
     device: &wgpu::Device,
 ) -> Result<(wgpu::BindGroup, u64), Error> {
@@ -270,11 +235,7 @@ fn bind(
     let offset = vertices.offset - vertices.offset % alignment;
     let first = vertices.offset - offset;
     let bytes = first + vertices.length();
-    let limit = binding_limit(&device.limits());
-    if bytes > limit {
-        let name = "the vertices of a host's mesh".to_owned();
-        return Err(Error::TooLarge { name, bytes, limit });
-    }
+    check_binding("the vertices of a host's mesh", bytes, device)?;
     let numbers = [rest.positions.len(), rest.normals.len()];
     let record = MeshRecord::new(vertices, first, numbers.map(|number| number as u32));
     let records = (begins..).zip(parts);
@@ -297,12 +258,16 @@ fn bind(
         (3, mesh.sources.as_entire_binding()),
         (4, mesh.normal_sources.as_entire_binding()),
     ];
-    let (used, outputs) = written.bindings(&parts[0]);
+    let (used, of_scene) = kernel.bindings();
     let own = own.into_iter().filter(|(at, _)| used.contains(at));
+    let of_scene = of_scene.iter().copied().zip(buffers.iter().copied());
+    let levels = parts[0].nodes.iter().map(|(_, levels)| (10, levels));
+    let of_scene = of_scene.chain(levels);
+    let of_scene = of_scene.map(|(at, buffer)| (at, buffer.as_entire_binding()));
     let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<wgpu::BindGroupEntry> = own.chain(outputs).map(entry).collect();
+    let entries: Vec<wgpu::BindGroupEntry> = own.chain(of_scene).map(entry).collect();
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(ENTRIES[written.kernel as usize]),
+        label: Some(ENTRIES[kernel as usize]),
         layout: &pipeline.get_bind_group_layout(0),
         entries: &entries,
     });

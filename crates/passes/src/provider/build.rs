@@ -1,7 +1,9 @@
 //! The resources of a scene as plans and executors ask for them.
 
 use super::SceneProvider;
-use crate::{buffers::On, built::How, error::Error, lights, names::*, ray_query::Source};
+#[cfg(feature = "embree")]
+use crate::error::Error;
+use crate::{buffers::On, built::How, lights, names::*, ray_query::Source};
 #[cfg(feature = "embree")]
 use skiagraph_gpu::CpuWork;
 use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
@@ -57,9 +59,8 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        let checked = self.check_device(device);
-        let buffer = checked.and_then(|()| self.uploads.buffer(name, On { device, queue }));
-        buffer.map_err(ProviderError::from_error)
+        self.check_device(device)?;
+        Ok(self.uploads.buffer(name, On { device, queue })?)
     }
 
     fn submit_built(
@@ -67,8 +68,7 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<(), ProviderError> {
-        let submitted = self.uploads.buffers.submit(On { device, queue });
-        submitted.map_err(ProviderError::from_error)
+        Ok(self.uploads.buffers.submit(On { device, queue })?)
     }
 
     fn build_acceleration_structure(
@@ -77,26 +77,24 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Tlas, ProviderError> {
-        let why = |error: Error| ProviderError::from_error(error);
         if name != TLAS {
-            return Err(why(self.uploads.unknown(name)));
+            return Err(self.uploads.unknown(name).into());
         }
-        self.check_device(device).map_err(why)?;
+        self.check_device(device)?;
         let on = On { device, queue };
-        let vertices = self.uploads.buffer(POSITIONS, on).map_err(why)?;
-        let indices = self.uploads.buffer(INDICES, on).map_err(why)?;
+        let vertices = self.uploads.buffer(POSITIONS, on)?;
+        let indices = self.uploads.buffer(INDICES, on)?;
         // It is built of what they hold.
         self.submit_built(device, queue)?;
         let began = self.uploads.begin();
-        let tlas = self.structures.get(Source {
+        let (tlas, triangles) = self.structures.get(Source {
             mesh: &self.uploads.scene.mesh,
             geometry: &self.uploads.geometry,
             buffers: [&vertices, &indices],
             shape: self.uploads.versions.shape,
             device,
             queue,
-        });
-        let (tlas, triangles) = tlas.map_err(why)?;
+        })?;
         if let Some(triangles) = triangles {
             self.uploads.geometry.work.triangles += triangles as u64;
             self.uploads.note(TLAS, How::Made, began);
@@ -106,9 +104,8 @@ impl Provider for SceneProvider {
 
     #[cfg(feature = "embree")]
     fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {
-        let why = |error: Error| ProviderError::from_error(error);
         if name != EMBREE {
-            return Err(why(self.uploads.unknown(name)));
+            return Err(self.uploads.unknown(name).into());
         }
         let version = self.uploads.version(EMBREE);
         if let Some((embree, held)) = &self.embree
@@ -117,10 +114,10 @@ impl Provider for SceneProvider {
             return Ok(embree.clone());
         }
         if let Some(part) = self.uploads.geometry.a_host_part() {
-            return Err(why(Error::OnDevice(EMBREE, part)));
+            return Err(Error::OnDevice(EMBREE, part).into());
         }
         let began = self.uploads.begin();
-        let embree = Arc::new(crate::embree::Embree::build(&self.uploads.scene).map_err(why)?);
+        let embree = Arc::new(crate::embree::Embree::build(&self.uploads.scene)?);
         self.embree = Some((embree.clone(), version));
         self.uploads.note(EMBREE, How::Made, began);
         Ok(embree)

@@ -377,13 +377,12 @@ impl SceneProvider {
     /// [`Error::NoParts`] if the mesh was not given in parts, [`Error::TooLarge`] if the device
     /// cannot bind the mesh with that room. The mesh then stays as it was.
     pub fn reserve(&mut self, room: Room, limits: &wgpu::Limits) -> Result<(), Error> {
-        self.uploads.geometry.space.limit = Some(binding_limit(limits));
-        self.uploads
-            .geometry
-            .reserve(room, &mut self.uploads.scene)?;
-        self.uploads.facts = Facts::new(&self.uploads.scene.mesh).into();
-        self.uploads.put_sheets(&Mesh::default(), 0);
-        self.uploads.versions.change_mesh();
+        let uploads = &mut self.uploads;
+        uploads.geometry.space.limit = Some(binding_limit(limits));
+        uploads.geometry.reserve(room, &mut uploads.scene)?;
+        uploads.facts = Facts::new(&uploads.scene.mesh).into();
+        uploads.put_sheets(&Mesh::default(), 0);
+        uploads.versions.change_mesh();
         Ok(())
     }
 
@@ -413,10 +412,8 @@ impl SceneProvider {
     /// [`reserve`](Self::reserve) was given. The mesh then stays as it was. If `reserve` was not
     /// called, a mesh that the device cannot bind is an error of the next refresh instead.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
-        let Uploads {
-            geometry, scene, ..
-        } = &mut self.uploads;
-        let added = geometry.add(mesh, map, scene)?;
+        let uploads = &mut self.uploads;
+        let added = uploads.geometry.add(mesh, map, &mut uploads.scene)?;
         self.note_added(mesh, added)
     }
 
@@ -439,10 +436,8 @@ impl SceneProvider {
     /// than the provider's resources.
     pub fn add_host_part(&mut self, mesh: &HostMesh, map: &DAffine3) -> Result<PartId, Error> {
         self.check_mesh(mesh)?;
-        let Uploads {
-            geometry, scene, ..
-        } = &mut self.uploads;
-        let added = geometry.add_host(mesh, map, scene)?;
+        let uploads = &mut self.uploads;
+        let added = uploads.geometry.add_host(mesh, map, &mut uploads.scene)?;
         self.note_added(&mesh.movable().rest, added)
     }
 
@@ -519,9 +514,8 @@ impl SceneProvider {
         if writes.is_empty() {
             return Ok(());
         }
-        self.uploads
-            .kernels
-            .check_bounds(&writes, On { device, queue })
+        let kernels = &mut self.uploads.kernels;
+        kernels.check_bounds(&writes, On { device, queue })
     }
 
     /// Removes a part. From the next [`refresh`](skiagraph_gpu::Executor::refresh) of an executor

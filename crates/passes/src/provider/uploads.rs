@@ -8,8 +8,8 @@ use crate::{
     error::Error,
     eye::Eye,
     geometry::Geometry,
-    hierarchies::{Tree, all},
-    host_buffers::{Bound, HostWrite, Kernels, Written},
+    hierarchies::all,
+    host_buffers::{Bound, HostWrite, Kernel, Kernels},
     lights,
     names::*,
     trees::nodes_to_walk,
@@ -79,9 +79,8 @@ pub(super) struct Uploads {
 impl Uploads {
     pub fn new(scene: Arc<Scene>, resources: &'static [Resource]) -> Self {
         let lights = lights::from_scene(&scene);
-        let held = resources
-            .iter()
-            .map(|resource| (resource.name, resource.held));
+        let held = resources.iter();
+        let held = held.map(|resource| (resource.name, resource.held));
         Self {
             versions: Versions::new(Eye::default(), scene.light(), lights),
             facts: Facts::new(&scene.mesh).into(),
@@ -236,9 +235,8 @@ impl Uploads {
                 ..write
             }
         };
-        let cast = writes
-            .into_iter()
-            .filter(|(_, write)| write.mesh.shadows().casts());
+        let writes = writes.into_iter();
+        let cast = writes.filter(|(_, write)| write.mesh.shadows().casts());
         let writes: Vec<HostWrite> = cast.map(with_nodes).collect();
         self.write_host_parts(BVH_NODES, patched, writes, on)?;
         Ok(fitted.how)
@@ -302,18 +300,15 @@ impl Uploads {
         on: On,
     ) -> Result<Bound, Error> {
         self.geometry.check_host_parts()?;
-        if name == POSITIONS {
-            let written = Written::positions(buffer);
-            return self.kernels.bind(&written, &writes, on.device);
-        }
-        let [positions, indices] = [self.buffer(POSITIONS, on)?, self.buffer(INDICES, on)?];
-        if name == NORMALS {
-            let written = Written::normals(buffer, [&positions, &indices]);
-            return self.kernels.bind(&written, &writes, on.device);
-        }
-        let primitives = self.buffer(BVH_PRIMITIVES, on)?;
-        let written = Written::nodes(buffer, [&positions, &indices, &primitives]);
-        self.kernels.bind(&written, &writes, on.device)
+        let (kernel, read): (_, &[&str]) = match name {
+            POSITIONS => (Kernel::Positions, &[]),
+            NORMALS => (Kernel::Normals, &[POSITIONS, INDICES]),
+            _ => (Kernel::Nodes, &[POSITIONS, INDICES, BVH_PRIMITIVES]),
+        };
+        let read = read.iter().map(|name| self.buffer(name, on));
+        let read = read.collect::<Result<Vec<_>, _>>()?;
+        let buffers: Vec<_> = std::iter::once(buffer).chain(&read).collect();
+        self.kernels.bind((kernel, &buffers), &writes, on.device)
     }
 
     /// Uploads the numbers of those triangles that have other corners than before.
@@ -347,21 +342,6 @@ impl Uploads {
         }
         self.buffers.extend(name, items, version, on)?;
         Ok(How::Made)
-    }
-
-    fn upload_tree<N: bytemuck::Pod>(
-        &mut self,
-        [nodes, primitives]: [&str; 2],
-        tree: Tree<N>,
-        on: On,
-    ) -> Result<How, Error> {
-        self.upload_items(nodes, &tree.nodes, on)?;
-        let version = self.version(primitives);
-        match tree.primitives {
-            Some(items) => drop(self.upload_items(primitives, &items, on)?),
-            None => self.buffers.still_hold(primitives, version),
-        }
-        Ok(tree.how)
     }
 
     /// The light, if it can be used; of the scene's lights the error names which one it is.
@@ -398,7 +378,15 @@ impl Uploads {
         }
         let (trees, mut over) = self.geometry.trees(&self.scene.mesh);
         let tree = trees.light_space(&mut over, space, most as usize)?;
-        self.upload_tree([LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES], tree, on)
+        self.upload_items(LIGHT_SPACE_NODES, &tree.nodes, on)?;
+        match tree.primitives {
+            Some(items) => drop(self.upload_items(LIGHT_SPACE_PRIMITIVES, &items, on)?),
+            None => {
+                let version = self.version(LIGHT_SPACE_PRIMITIVES);
+                self.buffers.still_hold(LIGHT_SPACE_PRIMITIVES, version);
+            }
+        }
+        Ok(tree.how)
     }
 
     fn upload_light_space_of_parts(
@@ -414,28 +402,21 @@ impl Uploads {
         let buffers = &mut self.buffers;
         let names = [LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES];
         let is_held = names.map(|name| buffers.take_up(name, parted.since));
-        let [nodes, primitives] = parted.changed;
-        let nodes = if is_held[0] {
-            nodes
-        } else {
-            all(parted.nodes.len())
-        };
-        buffers.patch_list(names[0], &parted.nodes, &nodes, version, on)?;
         let items = &parted.tree.primitives;
-        let primitives = if is_held[1] {
-            primitives
-        } else {
-            all(items.len())
-        };
+        let [mut nodes, mut primitives] = parted.changed;
+        if !is_held[0] {
+            nodes = all(parted.nodes.len());
+        }
+        if !is_held[1] {
+            primitives = all(items.len());
+        }
+        buffers.patch_list(names[0], &parted.nodes, &nodes, version, on)?;
         buffers.patch_list(names[1], items, &primitives, version, on)?;
         for name in names {
             buffers.leave(name, parted.since, version);
         }
-        Ok(if parted.since == 0 {
-            How::Made
-        } else {
-            How::Refitted
-        })
+        let is_new = parted.since == 0;
+        Ok(if is_new { How::Made } else { How::Refitted })
     }
 
     /// Uploads `lights` or `light_areas`, or one of them.

@@ -64,6 +64,8 @@ struct Bench {
     viewport: [u32; 2],
     /// The param `stage`.
     stage: &'static str,
+    /// The param `unlisted`.
+    unlisted: &'static str,
 }
 
 const FITS: [&str; 3] = ["scene", "camera", "receivers"];
@@ -81,13 +83,19 @@ impl Bench {
             provider: provider(scene, &scene.views[0], viewport),
             viewport,
             stage: "fragment",
+            unlisted: "receivers",
         }
     }
 
     fn executor(&mut self, fit: &str, params: &[(&str, u32)], captured: &[&str]) -> Executor {
         let path = "pipelines/light_buffer.ron";
         let plan = plan(path, &self.provider, self.viewport, |request| {
-            for (name, word) in [("fit", fit), ("stage", self.stage)] {
+            let words = [
+                ("fit", fit),
+                ("stage", self.stage),
+                ("unlisted", self.unlisted),
+            ];
+            for (name, word) in words {
                 let word = ParamValue::Choice(word.to_owned());
                 request.params.insert(name.to_owned(), word);
             }
@@ -98,7 +106,9 @@ impl Bench {
             request
                 .captures
                 .extend(captured.iter().map(|name| Capture::new(*name)));
-            request.captures.push(Capture::new("pending_state"));
+            if self.unlisted == "receivers" {
+                request.captures.push(Capture::new("pending_state"));
+            }
         });
         Executor::on(&self.gpu, plan, &mut self.provider).unwrap_or_else(|error| panic!("{error}"))
     }
@@ -376,6 +386,34 @@ fn answers_are_those_of_rays_whatever_the_map() {
         lit > 50_000 && shadow > 50_000,
         "{lit} lit, {shadow} in shadow"
     );
+}
+
+/// Neither in the preset, nor with room for a single entry.
+#[test]
+fn lists_need_no_hierarchy() {
+    for (word, params, is_built) in [
+        ("receivers", &[][..], false),
+        ("receivers", &[("max_entries", 1)], false),
+        ("rays", &[("max_entries", 1)], true),
+    ] {
+        let mut bench = Bench::new(&mixed(3));
+        bench.unlisted = word;
+        let expected = bench.by_rays();
+        let mut bench = Bench::new(&mixed(3));
+        bench.unlisted = word;
+        let mut executor = bench.executor("receivers", params, &[]);
+        let report = frame(&bench.gpu, &mut executor, &["visibility"]);
+        assert!(values(&report, "visibility") == expected, "{word}");
+        let mut built = bench.provider.built().iter();
+        assert_eq!(
+            built.any(|built| built.name == "scene.bvh_nodes"),
+            is_built,
+            "{word}"
+        );
+        let passes = executor.plan().passes();
+        let traces = passes.iter().any(|pass| pass.name.ends_with("trace_rays"));
+        assert_eq!(traces, is_built, "{word}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! looks at.
 
 use crate::support::{Files, Triangle, checked, codes, load, names, plan, right};
-use skiagraph_graph::{Code, Diagnostic, PlanRequest, Run, Severity};
+use skiagraph_graph::{AdapterFacts, Code, Diagnostic, PlanRequest, Run, Severity};
 
 const FILL: &str = "struct Params { value: f32 } var<uniform> params: Params;
     @fragment fn fragment() -> @location(0) f32 { return params.value; }";
@@ -35,6 +35,43 @@ fn with(condition: &str) -> Files {
     let blur = format!(r#"Fullscreen(name: "blur", if: {condition}, color: ["blurred"]),"#);
     let outputs = format!(r#""image", (name: "soft_image", material: "blurred", if: {condition})"#);
     files(&format!("{FIRST} {blur}"), &outputs)
+}
+
+/// Documents choose by what they run on.
+#[test]
+fn facts_about_the_adapter_decide_what_is_there() {
+    let passes = |condition: &str, adapter: AdapterFacts, storage_binding| {
+        let graph = right(load(&with(condition)));
+        let mut request = PlanRequest::new([8, 8], &Triangle);
+        request.adapter = adapter;
+        request.limits.max_storage_buffer_binding_size = storage_binding;
+        names(&right(graph.plan(&request))).len()
+    };
+    let gpu = AdapterFacts::default();
+    let software = AdapterFacts {
+        is_software: true,
+        subgroup_size: 4,
+    };
+    let ample = 1 << 31;
+    for (condition, adapter, storage_binding, expected) in [
+        (r#""adapter.software""#, gpu, ample, 1),
+        (r#""adapter.software""#, software, ample, 2),
+        (r#""adapter.subgroup_size >= 4""#, gpu, ample, 1),
+        (r#""adapter.subgroup_size >= 4""#, software, ample, 2),
+        (r#""adapter.storage_binding >= 2147483648""#, gpu, ample, 2),
+        (
+            r#""adapter.storage_binding >= 2147483648""#,
+            gpu,
+            1 << 27,
+            1,
+        ),
+    ] {
+        assert_eq!(
+            passes(condition, adapter, storage_binding),
+            expected,
+            "{condition}"
+        );
+    }
 }
 
 /// An entry or output whose `if` is false is not there; params, sizes and the device may decide.

@@ -166,6 +166,7 @@ pub(crate) mod answers {
     use super::*;
     use crate::tests::Answer;
     use crate::tests::answer::{among, in_sheet, judge};
+    use glam::DVec3;
 
     fn lid_lit(p: DVec3, scale: f32, gap: f32) -> Option<bool> {
         let lid = LID.map(|corner| corner.map(|c| c * scale));

@@ -1,4 +1,4 @@
-//! Wavefront OBJ files, welded into a [`Mesh`](crate::Mesh).
+//! Wavefront OBJ files, read by `tobj` behind a guard and welded into a [`Mesh`](crate::Mesh).
 //!
 //! Conventions: `o` and `g` both begin a group; faces before the first are in the group `unnamed`.
 //! A polygon is split into a fan of triangles from the corner that [`QuadDiagonal`] names; a
@@ -9,13 +9,13 @@
 //! negative numbers count back from the face. Lines that are not UTF-8 are read as Windows-1252.
 //! The import report lists ignored parts.
 
+mod guard;
 mod import;
 mod mtl;
 mod mtl_file;
 pub(crate) mod options;
 mod polygon;
 pub(crate) mod read;
-mod statements;
 mod texture_statement;
 
 pub use options::{Concave, ObjMaterials, ObjOptions, QuadDiagonal};

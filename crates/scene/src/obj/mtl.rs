@@ -1,9 +1,9 @@
 //! The materials that the faces of an OBJ file use: colours, masks and their textures.
 
 use super::{
+    guard::Guard,
     mtl_file::{self, MtlMaterial},
     options::{ObjMaterials, ObjOptions},
-    statements::Statements,
     texture_statement::{Channel, TextureStatement, UvTransform},
 };
 use crate::{
@@ -60,18 +60,18 @@ pub(super) struct Found {
 /// # Errors
 /// [`SceneError::Part`] where a mask depends on what cannot be read.
 pub(super) fn materials(
-    statements: &Statements<'_>,
+    guard: &Guard<'_>,
     options: &ObjOptions,
     path: &Path,
 ) -> Result<Found, SceneError> {
     if let ObjMaterials::Made(patterns) = &options.materials {
-        let materials = made(statements, patterns, path)?;
+        let materials = made(guard, patterns, path)?;
         return Ok(Found {
             materials,
             ..Found::default()
         });
     }
-    if statements.libraries.is_empty() {
+    if guard.libraries.is_empty() {
         return Ok(Found::default());
     }
     let mut reading = Reading {
@@ -80,13 +80,13 @@ pub(super) fn materials(
         found: Found::default(),
         masks: HashMap::new(),
     };
-    let (by_name, unread) = reading.libraries(statements);
-    let mut is_used = vec![false; statements.materials.len()];
-    for face in &statements.faces {
+    let (by_name, unread) = reading.libraries(guard);
+    let mut is_used = vec![false; guard.materials.len()];
+    for face in &guard.faces {
         is_used[face.material as usize] = true;
     }
     // The first stands for none.
-    let used = statements.materials.iter().zip(is_used).skip(1);
+    let used = guard.materials.iter().zip(is_used).skip(1);
     let mut unknown = used.filter(|(name, is_used)| *is_used && !by_name.contains_key(*name));
     match unknown.next() {
         Some((name, _)) if unread.is_empty() => reading.found.remarks.push(format!(
@@ -104,7 +104,7 @@ pub(super) fn materials(
             reading.found.remarks.extend(unread.into_iter().map(passed));
         }
     }
-    for name in &statements.materials {
+    for name in &guard.materials {
         let (material, uvs) = match by_name.get(name) {
             Some((file, material)) => reading.material(file, material)?,
             None => (plain(name), UvTransform::IDENTITY),
@@ -124,14 +124,11 @@ fn plain(name: &str) -> Material {
 
 /// Materials that are known by name alone, some with a mask that is made here.
 fn made(
-    statements: &Statements<'_>,
+    guard: &Guard<'_>,
     patterns: &BTreeMap<String, Pattern>,
     path: &Path,
 ) -> Result<Vec<Material>, SceneError> {
-    if let Some(unknown) = patterns
-        .keys()
-        .find(|name| !statements.materials.contains(name))
-    {
+    if let Some(unknown) = patterns.keys().find(|name| !guard.materials.contains(name)) {
         return Err(SceneError::Part {
             path: path.to_owned(),
             place: format!("material {unknown:?}"),
@@ -140,12 +137,14 @@ fn made(
                 .to_owned(),
         });
     }
-    let masks = patterns.iter();
-    let masks = masks.map(|(name, pattern)| (name, Arc::new(pattern.mask())));
-    let masks: BTreeMap<&String, Arc<Mask>> = masks.collect();
-    let materials = statements.materials.iter().map(|name| Material {
+    let masks: BTreeMap<&String, Arc<Mask>> = patterns
+        .iter()
+        .map(|(name, pattern)| (name, Arc::new(pattern.mask())))
+        .collect();
+    let materials = guard.materials.iter().map(|name| Material {
+        name: name.clone(),
         mask: masks.get(name).cloned(),
-        ..plain(name)
+        ..Material::default()
     });
     Ok(materials.collect())
 }
@@ -163,10 +162,13 @@ type Known = HashMap<String, (PathBuf, MtlMaterial)>;
 impl Reading<'_> {
     /// The materials of all files that `mtllib` lines name, and the files that cannot be read, with
     /// the reason.
-    fn libraries(&self, statements: &Statements<'_>) -> (Known, Vec<(String, String)>) {
+    fn libraries(&self, guard: &Guard<'_>) -> (Known, Vec<(String, String)>) {
         let (mut by_name, mut unread) = (Known::new(), Vec::new());
-        let libraries = statements.libraries.iter();
-        for file in libraries.flat_map(|library| self.files(library)) {
+        for file in guard
+            .libraries
+            .iter()
+            .flat_map(|library| self.files(library))
+        {
             match MTL_FILE.read(&file) {
                 Ok(bytes) => {
                     let materials = mtl_file::parse(&bytes).into_iter();
@@ -213,8 +215,11 @@ impl Reading<'_> {
         from: &MtlMaterial,
     ) -> Result<(Material, UvTransform), SceneError> {
         let place = format!("material {:?} of {}", from.name, file.display());
-        let remark = |remark| format!("{place}: {remark}");
-        self.found.remarks.extend(from.remarks.iter().map(remark));
+        let remarks = from
+            .remarks
+            .iter()
+            .map(|remark| format!("{place}: {remark}"));
+        self.found.remarks.extend(remarks);
         let colour = from.diffuse_map.as_deref().map(TextureStatement::parse);
         let texture = colour.as_ref().map(|statement| {
             let source = beside(file, &statement.file);

@@ -1,10 +1,10 @@
 //! Reads files of materials, line by line, for the five statements that colour a triangle or cut it
 //! out: `Kd`, `d`, `Tr`, `map_Kd` and `map_d`.
 //!
-//! Every other statement may say what it likes: a number that is missing from a highlight bears on
-//! nothing here.
+//! Every other statement may say what it likes. `tobj`'s own reader refuses the whole file over a
+//! number that is missing from a highlight, and dies where `Kd` has one number instead of three.
 
-use super::statements::split;
+use super::guard::split;
 use crate::{
     error::beginning,
     text::{line_text, next_line, without_comment, without_mark},

@@ -22,8 +22,10 @@ pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec
         return Some(fan);
     }
     let flat = project(points);
-    let extents = flat.iter().map(|p| (*p - flat[0]).abs().max_element());
-    let extent = extents.fold(0.0, f64::max);
+    let extent = flat
+        .iter()
+        .map(|p| (*p - flat[0]).abs().max_element())
+        .fold(0.0, f64::max);
     let least = -FLAT * extent * extent;
     if fan.iter().all(|&triangle| area(&flat, triangle) >= least) {
         return Some(fan);
@@ -53,8 +55,8 @@ fn partition(points: &[DVec2], outline: &[usize], least: f64) -> Option<Vec<[usi
     let covered: f64 = areas.clone().map(f64::abs).sum();
     let fits = (covered - whole).abs() <= -least * flat.len() as f64;
     (fits && areas.into_iter().all(|area| area >= least)).then(|| {
-        let triangles = triangles.into_iter();
         triangles
+            .into_iter()
             .map(|triangle| triangle.map(|at| outline[at]))
             .collect()
     })
@@ -88,8 +90,10 @@ fn project(points: &[DVec3]) -> Vec<DVec2> {
     };
     let turned = normal[normal.abs().max_position()] < 0.0;
     let [x, y] = if turned { [axes[1], axes[0]] } else { axes };
-    let flat = |point: &DVec3| DVec2::new(point[x], point[y]);
-    points.iter().map(flat).collect()
+    points
+        .iter()
+        .map(|point| DVec2::new(point[x], point[y]))
+        .collect()
 }
 
 /// Twice the area of a polygon as a vector along its normal: the sum over its edges.

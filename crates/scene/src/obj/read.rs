@@ -1,7 +1,8 @@
 //! Reading the file, and what is refused of it.
 
-use super::{import::import, options::ObjOptions, statements::Statements};
+use super::{guard::Guard, import::import, options::ObjOptions};
 use crate::{
+    border::caught,
     error::{EXTENTS, SceneError},
     limit::Limit,
     mesh::Mesh,
@@ -25,7 +26,10 @@ const OBJ_FILE: Limit = Limit {
 /// that names missing or non-finite vertices, a polygon that cannot be cut, a mask that cannot be
 /// read, a group to be left out that does not exist, a file without triangles.
 pub fn load_obj(path: &Path, options: &ObjOptions) -> Result<(Mesh, ImportReport), SceneError> {
-    let bytes = OBJ_FILE.read(path).map_err(SceneError::unread(path))?;
+    let bytes = OBJ_FILE.read(path).map_err(|reason| SceneError::Read {
+        path: path.to_owned(),
+        reason,
+    })?;
     parse_obj(&bytes, path, options)
 }
 
@@ -40,8 +44,23 @@ pub fn parse_obj(
     options: &ObjOptions,
 ) -> Result<(Mesh, ImportReport), SceneError> {
     let bytes = without_mark(bytes);
-    let mut statements = Statements::read(&bytes, options, path)?;
-    if statements.is_empty() && bytes.contains(&0) {
+    let mut guard = Guard::new(&bytes, &options.leave_out, &options.materials);
+    let no_materials = |_: &Path| Ok(Default::default());
+    let loaded = caught("tobj", || {
+        tobj::load_obj_buf(&mut guard, &tobj::LoadOptions::default(), no_materials)
+    });
+    let loaded = loaded.and_then(|loaded| {
+        loaded.map_err(|error| match guard.fatal.take() {
+            Some(reason) => reason,
+            None => format!("{error} in {:?}", guard.current_line()),
+        })
+    });
+    let (models, _) = loaded.map_err(|reason| SceneError::ObjLine {
+        path: path.to_owned(),
+        line: guard.line,
+        reason,
+    })?;
+    if guard.is_empty() && bytes.contains(&0) {
         return Err(SceneError::ObjLine {
             path: path.to_owned(),
             line: 1,
@@ -49,18 +68,18 @@ pub fn parse_obj(
                 .to_owned(),
         });
     }
-    std::mem::take(&mut statements.faults).refuse(path)?;
-    let groups: HashSet<&String> = statements.groups.iter().collect();
+    std::mem::take(&mut guard.faults).refuse(path)?;
+    let groups: HashSet<&String> = guard.groups.iter().collect();
     let missing = options.leave_out.iter().find(|name| !groups.contains(name));
     if let Some(name) = missing {
-        let groups = statements.groups.into_iter().skip(1).collect();
+        let groups = guard.groups.into_iter().skip(1).collect();
         return Err(SceneError::NoSuchGroup {
             path: path.to_owned(),
             name: name.clone(),
             groups,
         });
     }
-    let (mesh, report) = import(&statements, options, path)?;
+    let (mesh, report) = import(&models, &guard, options, path)?;
     check_read(&mesh, &report, path)?;
     Ok((mesh, report))
 }

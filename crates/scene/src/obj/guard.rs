@@ -1,59 +1,64 @@
-//! Reads the statements of an OBJ file: what its faces name, and where each of them stands.
+//! Stands between an OBJ file and `tobj`: hands it one clean line at a time and remembers where
+//! each face stood.
 //!
-//! A face may name vertices below it, so that the file is read twice: first all of its vertices,
-//! then its faces. Statements may be continued on the next line by `\`.
+//! `tobj` reports no line and no face, fails as a whole on an index out of range (and overflows on
+//! a huge one), takes an `l` record of three points for a triangle, reuses the normal of the corner
+//! before where one is missing, wants vertices above the faces that name them, and does not join
+//! lines continued by `\`. All of that is settled here, line by line, before it sees them: the file
+//! is read twice, first all of its vertices, then its faces.
 
-use super::options::{ObjMaterials, ObjOptions};
+use super::options::ObjMaterials;
 use crate::{
     error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, SceneError, beginning},
     text::{line_text, next_line, without_comment},
 };
-use glam::{Vec2, Vec3};
-use std::{borrow::Cow, collections::HashSet, ops::Range, path::Path};
+use glam::Vec2;
+use std::{
+    borrow::Cow,
+    collections::HashSet,
+    io::{self, BufRead, Read},
+    path::Path,
+};
 
-/// A face, and where it stands.
-pub(super) struct Face {
-    /// Index into [`Statements::groups`].
+/// Where a face that was handed on stood, and whether the file gives it normals.
+pub(super) struct FaceRecord {
+    /// Index into [`Guard::groups`].
     pub group: u32,
     /// Number within its group, from 1.
     pub number: u32,
     /// Line in the file, from 1.
     pub line: u32,
-    /// Index into [`Statements::materials`].
+    /// True if every corner names a normal.
+    pub has_normals: bool,
+    /// Index into [`Guard::materials`].
     pub material: u32,
-    /// Its corners in [`Statements::corners`].
-    pub corners: Range<usize>,
+    /// The first of its corners in [`Guard::corner_uvs`], if each names texture coordinates.
+    pub uvs: Option<usize>,
 }
 
-/// The values that a corner of a face names.
-#[derive(Clone, Copy)]
-pub(super) struct FaceCorner {
-    pub position: Vec3,
-    /// Its normal, if every corner of the face names one that is there.
-    pub normal: Option<Vec3>,
-    /// Its texture coordinates, v down, if every corner of the face names some that are there.
-    pub uv: Option<Vec2>,
-}
-
-/// The content of a file.
+/// The reader that `tobj` reads from.
 #[derive(Default)]
-pub(super) struct Statements<'a> {
+pub(super) struct Guard<'a> {
+    whole: &'a [u8],
+    rest: &'a [u8],
+    turn: Turn,
     leave_out: HashSet<&'a str>,
-    /// Line last read, from 1.
-    line: u32,
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
-    uvs: Vec<Vec2>,
+    handed_on: Vec<u8>,
+    consumed: usize,
+    /// Line last handed on: where `tobj` stands when it fails.
+    pub line: u32,
+    /// Set before an I/O error is returned to `tobj`: the true reason.
+    pub fatal: Option<String>,
     /// Names of the runs of faces, in file order, those left out included.
     pub groups: Vec<String>,
     /// Names of the materials in use, in the order of their first use; the first is none.
     pub materials: Vec<String>,
     /// The files of materials that the file names.
     pub libraries: Vec<String>,
-    /// Corners of the faces, in order.
-    pub corners: Vec<FaceCorner>,
-    /// Faces with three corners at least, in order.
-    pub faces: Vec<Face>,
+    /// Texture coordinates of the corners of faces, v down.
+    pub corner_uvs: Vec<Vec2>,
+    /// Faces handed on, in order.
+    pub faces: Vec<FaceRecord>,
     pub faults: Faults,
     /// Points met.
     pub points: usize,
@@ -71,11 +76,22 @@ pub(super) struct Statements<'a> {
     with_materials: bool,
     /// True if masks are made for materials that may stand in no file.
     makes_masks: bool,
+    uvs: Vec<Vec2>,
     material: u32,
     group_left_out: bool,
     number: u32,
-    /// Those above the face.
+    /// Those above the line.
     above: Counts,
+    /// Those of the whole file, once its vertices are read.
+    total: Counts,
+}
+
+/// The part of the file that is handed on.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+enum Turn {
+    #[default]
+    Vertices,
+    Faces,
 }
 
 /// Faces that cannot be used: the first of them, and how many there are.
@@ -129,63 +145,51 @@ struct Named {
 /// Name of the faces that stand before the first `g` or `o`.
 const UNNAMED: &str = "unnamed";
 
-impl<'a> Statements<'a> {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// [`SceneError::ObjLine`] for a vertex that cannot be read, or a face that is cut off.
-    pub fn read(bytes: &[u8], options: &'a ObjOptions, path: &Path) -> Result<Self, SceneError> {
-        let leave_out: HashSet<&str> = options.leave_out.iter().map(String::as_str).collect();
-        let mut statements = Self {
+impl<'a> Guard<'a> {
+    pub fn new(bytes: &'a [u8], leave_out: &'a [String], materials: &ObjMaterials) -> Self {
+        let leave_out: HashSet<&str> = leave_out.iter().map(String::as_str).collect();
+        Self {
+            whole: bytes,
+            rest: bytes,
             groups: vec![UNNAMED.to_owned()],
             materials: vec![String::new()],
-            with_materials: options.materials != ObjMaterials::Ignore,
-            makes_masks: matches!(options.materials, ObjMaterials::Made(_)),
+            with_materials: *materials != ObjMaterials::Ignore,
+            makes_masks: matches!(materials, ObjMaterials::Made(_)),
             group_left_out: leave_out.contains(UNNAMED),
             leave_out,
             ..Self::default()
-        };
-        let turns: [fn(&mut Self, &str, bool) -> Result<(), String>; 2] =
-            [Self::take_vertex, Self::take];
-        for take in turns {
-            let mut rest = bytes;
-            statements.line = 0;
-            while let Some((statement, ended)) = statements.next_statement(&mut rest) {
-                let taken = take(&mut statements, statement.trim(), ended);
-                taken.map_err(|reason| SceneError::ObjLine {
-                    path: path.to_owned(),
-                    line: statements.line,
-                    reason,
-                })?;
-            }
         }
-        Ok(statements)
+    }
+
+    /// Returns the text that `tobj` was last given to read, shortened to fit a message.
+    pub fn current_line(&self) -> String {
+        beginning(String::from_utf8_lossy(&self.handed_on).trim_end()).into_owned()
     }
 
     /// True if the file has no vertex.
     pub fn is_empty(&self) -> bool {
-        self.positions.is_empty()
+        self.total.vertices == 0
     }
 
-    pub fn face_ref(&self, face: &Face) -> FaceRef {
+    pub fn face_ref(&self, record: &FaceRecord) -> FaceRef {
         FaceRef {
-            group: self.groups[face.group as usize].clone(),
-            number: face.number,
-            line: face.line,
+            group: self.groups[record.group as usize].clone(),
+            number: record.number,
+            line: record.line,
         }
     }
 
     /// Takes the next physical line off the file, without its line end; the flag says whether it
     /// had one.
-    fn next_line<'b>(&mut self, rest: &mut &'b [u8]) -> Option<(Cow<'b, str>, bool)> {
-        let (line, ended) = next_line(rest)?;
+    fn next_line(&mut self) -> Option<(Cow<'a, str>, bool)> {
+        let (line, ended) = next_line(&mut self.rest)?;
         self.line = self.line.saturating_add(1);
         Some((line_text(line.trim_ascii()), ended))
     }
 
     /// Takes the next statement, which may be continued on more lines.
-    fn next_statement<'b>(&mut self, rest: &mut &'b [u8]) -> Option<(Cow<'b, str>, bool)> {
-        let (mut line, mut ended) = self.next_line(rest)?;
+    fn next_statement(&mut self) -> Option<(Cow<'a, str>, bool)> {
+        let (mut line, mut ended) = self.next_line()?;
         // A name or a comment may end in a backslash (a Windows folder); only numbers are
         // continued.
         if !line.starts_with(['v', 'f', 'l', 'p']) || !line.ends_with('\\') {
@@ -195,7 +199,7 @@ impl<'a> Statements<'a> {
         while let Some(start) = line.strip_suffix('\\') {
             joined.push_str(start);
             joined.push(' ');
-            let Some((next, next_ended)) = self.next_line(rest) else {
+            let Some((next, next_ended)) = self.next_line() else {
                 return Some((joined.into(), ended));
             };
             (line, ended) = (next, next_ended);
@@ -204,26 +208,61 @@ impl<'a> Statements<'a> {
         Some((joined.into(), ended))
     }
 
+    /// Prepares the next line for `tobj`; false at the end of the file.
+    fn advance(&mut self) -> Result<bool, String> {
+        self.handed_on.clear();
+        self.consumed = 0;
+        while self.handed_on.is_empty() {
+            match (self.next_statement(), self.turn) {
+                (Some((line, _)), Turn::Vertices) => self.take_vertex(line.trim()),
+                (Some((line, ended)), Turn::Faces) => self.take(line.trim(), ended)?,
+                (None, Turn::Vertices) => self.begin_faces(),
+                (None, Turn::Faces) => return Ok(false),
+            }
+        }
+        Ok(true)
+    }
+
+    fn begin_faces(&mut self) {
+        (self.rest, self.line) = (self.whole, 0);
+        (self.total, self.above) = (self.above, Counts::default());
+        self.turn = Turn::Faces;
+    }
+
     /// Takes what faces name.
-    fn take_vertex(&mut self, line: &str, _ended: bool) -> Result<(), String> {
+    fn take_vertex(&mut self, line: &str) {
         let (keyword, rest) = split(line);
         let numbers = without_comment(rest);
         match keyword {
-            "v" => self.positions.push(position(numbers)?),
-            "vn" => {
-                let words = numbers.split_whitespace().take(3);
-                let read: Vec<f32> = words.filter_map(|word| word.parse().ok()).collect();
-                self.normals_unread += usize::from(read.len() < 3);
-                let normal = <[f32; 3]>::try_from(read).unwrap_or_default();
-                self.normals.push(normal.into());
+            "v" => {
+                self.above.vertices += 1;
+                // Six numbers are a position with a colour: the colour is not ours, and tobj fails
+                // where only some have one.
+                let count = numbers.split_whitespace().count();
+                let taken = if count >= 6 { 3 } else { count };
+                self.hand_on("v", numbers.split_whitespace().take(taken));
             }
-            "vt" if self.with_materials => self.take_uv(numbers),
+            "vn" => {
+                self.above.normals += 1;
+                let words = || numbers.split_whitespace().take(3);
+                let read = words().filter(|word| word.parse::<f32>().is_ok()).count();
+                match read {
+                    3 => self.hand_on("vn", words()),
+                    _ => {
+                        self.normals_unread += 1;
+                        self.hand_on("vn", ["0"; 3].into_iter());
+                    }
+                }
+            }
+            "vt" if self.with_materials => {
+                self.above.uvs += 1;
+                self.take_uv(numbers);
+            }
             "mtllib" if self.with_materials && !rest.trim().is_empty() => {
                 self.libraries.push(rest.trim().to_owned());
             }
             _ => {}
         }
-        Ok(())
     }
 
     fn take(&mut self, line: &str, ended: bool) -> Result<(), String> {
@@ -247,6 +286,7 @@ impl<'a> Statements<'a> {
                 self.group_left_out = self.leave_out.contains(name);
                 self.groups.push(name.to_owned());
                 self.number = 0;
+                self.hand_on("g", [name].into_iter());
             }
             "p" => self.points += 1,
             "l" => self.lines += 1,
@@ -255,6 +295,15 @@ impl<'a> Statements<'a> {
             _ => {}
         }
         Ok(())
+    }
+
+    fn hand_on<'b>(&mut self, keyword: &str, words: impl Iterator<Item = &'b str>) {
+        self.handed_on.extend_from_slice(keyword.as_bytes());
+        for word in words {
+            self.handed_on.push(b' ');
+            self.handed_on.extend_from_slice(word.as_bytes());
+        }
+        self.handed_on.push(b'\n');
     }
 
     /// A number that cannot be read counts as 0, as one that is missing does.
@@ -298,34 +347,40 @@ impl<'a> Statements<'a> {
                 if let Some(problem) = uvs_absent {
                     self.uvs_absent.push((self.faces.len(), problem));
                 }
-                self.add_face(&parsed);
+                self.hand_on_face(&parsed);
             }
         }
         Ok(())
     }
 
-    fn add_face(&mut self, corners: &[Named]) {
+    fn hand_on_face(&mut self, corners: &[Named]) {
         let normals = corners.iter().map(|corner| corner.normal?.ok());
         let normals: Option<Vec<usize>> = normals.collect();
         let uvs = corners
             .iter()
             .map(|corner| corner.uv.as_ref()?.as_ref().ok());
-        let uvs: Option<Vec<&usize>> = uvs.collect();
-        let first = self.corners.len();
-        let corners = corners.iter().enumerate().map(|(at, corner)| FaceCorner {
-            position: self.positions[corner.vertex - 1],
-            normal: normals
-                .as_ref()
-                .map(|normals| self.normals[normals[at] - 1]),
-            uv: uvs.as_ref().map(|uvs| self.uvs[*uvs[at] - 1]),
+        let uvs: Option<Vec<Vec2>> = uvs.map(|uv| Some(self.uvs[*uv? - 1])).collect();
+        let uvs = uvs.map(|uvs| {
+            self.corner_uvs.extend(uvs);
+            self.corner_uvs.len() - corners.len()
         });
-        self.corners.extend(corners);
-        self.faces.push(Face {
-            group: (self.groups.len() - 1) as u32,
+        self.handed_on.push(b'f');
+        for (at, corner) in corners.iter().enumerate() {
+            let text = match &normals {
+                Some(normals) => format!(" {}//{}", corner.vertex, normals[at]),
+                None => format!(" {}", corner.vertex),
+            };
+            self.handed_on.extend_from_slice(text.as_bytes());
+        }
+        self.handed_on.push(b'\n');
+        let group = (self.groups.len() - 1) as u32;
+        self.faces.push(FaceRecord {
+            group,
             number: self.number,
             line: self.line,
+            has_normals: normals.is_some(),
             material: self.material,
-            corners: first..self.corners.len(),
+            uvs,
         });
     }
 
@@ -337,20 +392,17 @@ impl<'a> Statements<'a> {
         if words.next().is_some() {
             return Err(not_a_corner());
         }
-        let find = |word: &str, above: usize, total: usize| {
-            resolve(word, above, total).ok_or_else(not_a_corner)
+        let find = |word: &str, count: fn(&Counts) -> usize| {
+            resolve(word, count(&self.above), count(&self.total)).ok_or_else(not_a_corner)
         };
-        let above = &self.above;
         let written = |word: Option<&'t str>| word.filter(|word| !word.is_empty());
-        let vertex = find(vertex, above.vertices, self.positions.len())?
+        let vertex = find(vertex, |counts| counts.vertices)?
             .map_err(|(written, available)| FaceProblem::NoSuchVertex { written, available })?;
-        let normal = written(normal).map(|word| find(word, above.normals, self.normals.len()));
+        let normal = written(normal).map(|word| find(word, |counts| counts.normals));
         let normal = normal.transpose()?.map(|index| index.map_err(drop));
         // Without a file of materials nothing is looked up by them.
         let uv = written(uv).filter(|_| self.makes_masks || !self.libraries.is_empty());
-        let uv = uv
-            .map(|word| find(word, above.uvs, self.uvs.len()))
-            .transpose()?;
+        let uv = uv.map(|word| find(word, |counts| counts.uvs)).transpose()?;
         let absent = |(written, available)| FaceProblem::NoSuchUv { written, available };
         let uv = uv.map(|index| index.map_err(absent));
         Ok(Named { vertex, normal, uv })
@@ -364,32 +416,6 @@ impl<'a> Statements<'a> {
         };
         self.faults.add(|| face, problem);
     }
-}
-
-/// The place of a vertex: three numbers, or four, of which the last divides the others. Six and
-/// more are a place with a colour, which is passed over.
-fn position(numbers: &str) -> Result<Vec3, String> {
-    let mut words: Vec<&str> = numbers.split_whitespace().collect();
-    if words.len() >= 6 {
-        words.truncate(3);
-    }
-    let number = |at: usize| {
-        let read = words.get(at).and_then(|word| word.parse::<f32>().ok());
-        read.ok_or("position parse error")
-    };
-    let read = || {
-        let place = Vec3::new(number(0)?, number(1)?, number(2)?);
-        match words.len() {
-            3 => Ok(place),
-            4 if number(3)? == 0.0 => Err("scaling (w) by zero"),
-            4 => Ok(place / number(3)?),
-            _ => Err("color parse error (too many or too few components)"),
-        }
-    };
-    read().map_err(|why| {
-        let line = format!("v {}", words.join(" "));
-        format!("{why} in {:?}", beginning(line.trim_end()))
-    })
 }
 
 /// A statement's keyword, and what follows.
@@ -414,4 +440,28 @@ fn resolve(written: &str, above: usize, total: usize) -> Option<Result<usize, (S
     };
     let valid = index.filter(|index| (1..=most).contains(index));
     Some(valid.ok_or_else(|| (written.to_owned(), most)))
+}
+
+impl Read for Guard<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.fill_buf()?.read(buffer)?;
+        self.consume(read);
+        Ok(read)
+    }
+}
+
+impl BufRead for Guard<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.consumed >= self.handed_on.len() {
+            self.advance().map_err(|reason| {
+                self.fatal = Some(reason);
+                io::Error::from(io::ErrorKind::InvalidData)
+            })?;
+        }
+        Ok(&self.handed_on[self.consumed..])
+    }
+
+    fn consume(&mut self, amount: usize) {
+        self.consumed += amount;
+    }
 }

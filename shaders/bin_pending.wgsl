@@ -13,9 +13,7 @@ const ALONE: u32 = 4u;
 // Tiles of a part: four a thread.
 const PART: u32 = 256u;
 
-var<storage, read_write> pending_state: PendingState;
-// Parts from the front, two words each; from the back crowded casters, which always have room.
-var<storage, read_write> pending_casters: array<u32>;
+var<storage, read_write> pending_casters: PendingCasters;
 
 struct Thread {
     @builtin(workgroup_id) group: vec3<u32>,
@@ -50,20 +48,20 @@ fn bin_small(thread: Thread) {
         }
     }
     if most > BLOCK {
-        let slot = atomicAdd(&pending_state.crowded, 1u);
-        pending_casters[arrayLength(&pending_casters) - 1u - slot] = number;
+        let slot = atomicAdd(&pending_casters.crowded, 1u);
+        pending_casters.words[arrayLength(&pending_casters.words) - 1u - slot] = number;
     }
 }
 
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_large(thread: Thread) {
     let number = group_number(thread.group);
-    if number >= min(pending_state.layer_parts, part_limit()) {
+    if number >= min(pending_casters.layer_parts, part_limit()) {
         return;
     }
     block = thread.group.z;
-    let first_tile = pending_casters[2u * number + 1u];
-    let caster = caster_of(pending_casters[2u * number]);
+    let first_tile = pending_casters.words[2u * number + 1u];
+    let caster = caster_of(pending_casters.words[2u * number]);
     let tiles = tiles_of(caster);
     let end = min(tiles.x * tiles.y, first_tile + PART);
     bin(caster, first_tile + thread.lane, end, GROUP_SIZE);
@@ -72,11 +70,11 @@ fn bin_large(thread: Thread) {
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_crowded(thread: Thread) {
     let slot = thread_number(thread.group, thread.lane);
-    if slot >= pending_state.layer_crowded {
+    if slot >= pending_casters.layer_crowded {
         return;
     }
     block = thread.group.z + 1u;
-    let number = pending_casters[arrayLength(&pending_casters) - 1u - slot];
+    let number = pending_casters.words[arrayLength(&pending_casters.words) - 1u - slot];
     if binned_layer == 0u {
         test_placeless(number);
     }
@@ -94,15 +92,15 @@ fn tiles_most(tile: vec2<u32>) -> u32 {
 
 // Behind them there is room for all casters.
 fn part_limit() -> u32 {
-    return (arrayLength(&pending_casters) - caster_count()) / 2u;
+    return (arrayLength(&pending_casters.words) - caster_count()) / 2u;
 }
 
 fn append_parts(number: u32, tiles: u32) {
     let parts = (tiles + PART - 1u) / PART;
-    var slot = atomicAdd(&pending_state.parts, parts);
+    var slot = atomicAdd(&pending_casters.parts, parts);
     for (var part = 0u; part < parts && slot < part_limit(); part++) {
-        pending_casters[2u * slot] = number;
-        pending_casters[2u * slot + 1u] = PART * part;
+        pending_casters.words[2u * slot] = number;
+        pending_casters.words[2u * slot + 1u] = PART * part;
         slot += 1u;
     }
 }

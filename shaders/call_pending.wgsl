@@ -9,19 +9,26 @@ struct Params {
 
 var<uniform> params: Params;
 var<storage, read_write> pending_state: PendingState;
-var<storage, read> pending_casters: array<u32>;
+var<storage, read_write> pending_casters: PendingCasters;
+var<storage, read> is_any_uncertain: u32;
 var<storage, read_write> layer_calls: array<Call>;
 
 @compute @workgroup_size(1)
 fn main() {
     let blocks = atomicLoad(&pending_state.most_blocks);
-    pending_state.layer_parts = atomicExchange(&pending_state.parts, 0u);
-    pending_state.layer_crowded = atomicExchange(&pending_state.crowded, 0u);
-    let crowded = groups_for(pending_state.layer_crowded);
-    let parts = pending_state.layer_parts;
+    // Else nothing has set these counts.
+    if is_any_uncertain == 0u {
+        call(CALL_LARGE, vec3(0u));
+        call(CALL_CROWDED, vec3(0u));
+        return;
+    }
+    pending_casters.layer_parts = atomicExchange(&pending_casters.parts, 0u);
+    pending_casters.layer_crowded = atomicExchange(&pending_casters.crowded, 0u);
+    let crowded = groups_for(pending_casters.layer_crowded);
+    let parts = pending_casters.layer_parts;
     let words = params.casters + 2u * parts;
     pending_state.needed_words = max(pending_state.needed_words, words);
-    if words > arrayLength(&pending_casters) {
+    if words > arrayLength(&pending_casters.words) {
         pending_state.parts_lack = 1u;
     }
     let rows = parts / GROUPS_PER_ROW + select(0u, 1u, parts % GROUPS_PER_ROW != 0u);

@@ -4,7 +4,7 @@
 #import "shared/light_buffer.wgsl"
 
 struct PendingState {
-    // Words that `pending_casters` would have needed.
+    // Words that PendingCasters would have needed.
     needed_words: u32,
     // Receivers that have a place.
     count: atomic<u32>,
@@ -14,17 +14,23 @@ struct PendingState {
     work: atomic<u32>,
     // Blocks of the texel that has most.
     most_blocks: atomic<u32>,
-    // Of the layer that is binned: parts of large casters, those included for which there is no
-    // room, and casters over texels with more than a block.
+    // 1 if a part had no room.
+    parts_lack: u32,
+    // Receivers without an answer.
+    unanswered: atomic<u32>,
+}
+
+// Casters of the layer that is binned which one thread does not do alone.
+struct PendingCasters {
+    // Parts of large ones, those included for which there is no room, and casters over texels with
+    // more than a block.
     parts: atomic<u32>,
     crowded: atomic<u32>,
     // The same, once all are counted.
     layer_parts: u32,
     layer_crowded: u32,
-    // 1 if a part had no room.
-    parts_lack: u32,
-    // Receivers without an answer.
-    unanswered: atomic<u32>,
+    // Parts from the front, two words each; from the back crowded casters, which always have room.
+    words: array<u32>,
 }
 
 // A word for each receiver: the number of its pixel, and this.

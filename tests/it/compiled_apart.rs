@@ -93,7 +93,7 @@ const ALTERED: [(&str, &[(&str, &str)]); 4] = [
         ],
     ),
     (
-        "shaders/shared/ray_triangle.wgsl",
+        "shaders/shared/ray_corners.wgsl",
         &[
             (
                 "vec3(d.xy, 1.0) / d.z",

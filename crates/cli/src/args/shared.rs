@@ -256,8 +256,8 @@ pub struct TimingArgs {
     /// Params of the graphs.
     #[command(flatten)]
     pub sweep: SweepArgs,
-    /// Timed frames of each method on each view. A frame that is judged and pictured is another one,
-    /// so that its readback is not timed.
+    /// Timed frames of each method on each view. A frame that is judged and pictured is another
+    /// one, so that its readback is not timed.
     #[arg(long, default_value_t = 10, value_name = "N",
           value_parser = frames(1), allow_negative_numbers = true)]
     pub frames: u32,

@@ -5,7 +5,6 @@
 //! But each complaint reaches the error scopes of its own device alone. So a thing is made to
 //! complain, which changes nothing of it, and a scope of the device in question hears that or not.
 
-use crate::buffer;
 use skiagraph_graph::caught;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -44,10 +43,13 @@ impl DeviceIdentity {
         }
         // The other device's host has no part in it.
         let _own = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let none = wgpu::BufferUsages::empty();
-        hears(device, || {
-            drop(buffer::make(&self.device, "without usage", 4, none));
-        })
+        let without_usage = wgpu::BufferDescriptor {
+            label: None,
+            size: 4,
+            usage: wgpu::BufferUsages::empty(),
+            mapped_at_creation: false,
+        };
+        hears(device, || drop(self.device.create_buffer(&without_usage)))
     }
 
     /// Returns true if a buffer is of this device. One that is mapped, or may be, is not asked, and

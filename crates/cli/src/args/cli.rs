@@ -282,6 +282,18 @@ mod tests {
     }
 
     #[test]
+    fn shared_options_have_the_defaults_of_their_command() {
+        let Command::Profile(args) = parse("skiagraph profile rt").unwrap().command else {
+            panic!("not profile")
+        };
+        assert_eq!((args.timing.frames, args.timing.warmup), (30, 3));
+        let Command::Stress(args) = parse("skiagraph stress").unwrap().command else {
+            panic!("not stress")
+        };
+        assert_eq!(args.sweep.map_size, [128]);
+    }
+
+    #[test]
     fn the_adapter_may_stand_on_either_side_of_the_command() {
         for line in [
             "skiagraph --adapter x doctor",

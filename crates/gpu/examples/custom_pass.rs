@@ -8,11 +8,11 @@
 use serde::Deserialize;
 use skiagraph_gpu::{Executor, Frame, device};
 use skiagraph_graph::{
-    Code, Diagnostic, Expr, FolderSources, Graph, LayeredSources, Lowering, NoProvider, ParamValue,
-    PassKind, PlanRequest, Reference, Registry, Sources,
+    Code, Diagnostic, Expr, FolderSources, Graph, LayeredSources, Lowering, MemorySources,
+    NoProvider, ParamValue, PassKind, PlanRequest, Reference, Registry,
     step::{Dispatch, Groups, Operand, Program, Step},
 };
-use std::{error::Error, sync::Arc};
+use std::error::Error;
 
 /// The body of an `Equalize` pass: what its RON entry holds beside the fields that every pass has.
 #[derive(Debug, Deserialize)]
@@ -59,22 +59,8 @@ impl PassKind for Equalize {
     }
 }
 
-/// The shaders that come with the host's pass kinds.
-struct Embedded;
-
-impl Sources for Embedded {
-    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
-        let is_ours = path == "shaders/equalize.wgsl";
-        Ok(is_ours.then(|| include_str!("custom_pass/equalize.wgsl").into()))
-    }
-
-    fn list(&self, folder: &str) -> Vec<String> {
-        match folder {
-            "shaders" => vec!["equalize.wgsl".to_owned()],
-            _ => Vec::new(),
-        }
-    }
-}
+/// The shader that comes with the host's pass kind.
+const SHADER: &str = include_str!("custom_pass/equalize.wgsl");
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut registry = Registry::standard();
@@ -82,7 +68,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = FolderSources {
         root: concat!(env!("CARGO_MANIFEST_DIR"), "/examples/custom_pass").into(),
     };
-    let sources = LayeredSources(vec![Box::new(folder), Box::new(Embedded)]);
+    let own = MemorySources::new([("shaders/equalize.wgsl", SHADER)]);
+    let sources = LayeredSources(vec![Box::new(folder), Box::new(own)]);
     let graph = Graph::load("dim.ron", &registry, &sources)?;
 
     // The kind's own mistakes look like all others.

@@ -12,8 +12,8 @@ use egui_wgpu::{
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::watch::Watch;
 use skiagraph_compare::sink::Sink;
+use skiagraph_graph::caught;
 use std::{
-    panic,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -91,18 +91,9 @@ fn no_display(why: &str) -> CompareError {
 
 /// winit panics where a library of X11 is missing.
 fn event_loop() -> Result<EventLoop<Wake>, CompareError> {
-    let quiet = panic::take_hook();
-    panic::set_hook(Box::new(|_| {}));
-    let made = panic::catch_unwind(|| EventLoop::<Wake>::with_user_event().build());
-    panic::set_hook(quiet);
-    match made {
-        Ok(Ok(events)) => Ok(events),
-        Ok(Err(error)) => Err(no_display(&error.to_string())),
-        Err(panicked) => {
-            let text = panicked.downcast_ref::<String>().cloned();
-            let text = text.or_else(|| panicked.downcast_ref::<&str>().map(|it| (*it).to_owned()));
-            Err(no_display(&text.unwrap_or_default()))
-        }
+    match caught(|| EventLoop::<Wake>::with_user_event().build()) {
+        Ok(made) => made.map_err(|error| no_display(&error.to_string())),
+        Err(panicked) => Err(no_display(&panicked.message)),
     }
 }
 

@@ -8,16 +8,18 @@ mod casters;
 mod shadows;
 
 use bevy::{
+    app::PluginGroupBuilder,
     asset::embedded_asset,
     core_pipeline::{Core3dSystems, schedule::Core3d},
     pbr::{ExtendedMaterial, MaterialExtension},
     prelude::*,
     render::{
-        RenderApp,
+        RenderApp, RenderPlugin,
         extract_resource::{ExtractResource, ExtractResourcePlugin},
         render_resource::{AsBindGroup, TextureFormat},
     },
     shader::ShaderRef,
+    window::ExitCondition,
 };
 
 /// Throws shadows.
@@ -77,4 +79,19 @@ impl Plugin for ShadowPlugin {
             .init_resource::<shadows::Shadows>()
             .add_systems(Core3d, between);
     }
+}
+
+/// Returns Bevy's own plug-ins for a program without a window, whose pipelines are compiled before
+/// the frame that uses them.
+pub fn without_window() -> PluginGroupBuilder {
+    DefaultPlugins
+        .set(WindowPlugin {
+            primary_window: None,
+            exit_condition: ExitCondition::DontExit,
+            ..default()
+        })
+        .set(RenderPlugin {
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
 }

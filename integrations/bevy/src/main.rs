@@ -11,14 +11,14 @@ use bevy::{
     light::CascadeShadowConfig,
     prelude::*,
     render::{
-        RenderPlugin,
         render_resource::{PollType, TextureFormat},
         renderer::RenderDevice,
         view::screenshot::{Screenshot, ScreenshotCaptured},
     },
-    window::ExitCondition,
 };
-use skiagraph_bevy::{Caster, ShadowPlugin, Shadowed, ShadowedMaterial, Visibility};
+use skiagraph_bevy::{
+    Caster, ShadowPlugin, Shadowed, ShadowedMaterial, Visibility, without_window,
+};
 use std::sync::{Arc, Mutex};
 
 const SIZE: [u32; 2] = [640, 360];
@@ -39,22 +39,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .nth(1)
         .unwrap_or_else(|| "bevy.png".to_owned());
     let mut app = App::new();
-    app.add_plugins(
-        DefaultPlugins
-            .set(WindowPlugin {
-                primary_window: None,
-                exit_condition: ExitCondition::DontExit,
-                ..default()
-            })
-            .set(RenderPlugin {
-                synchronous_pipeline_compilation: true,
-                ..default()
-            }),
-    )
-    .add_plugins(ShadowPlugin { size: SIZE })
-    .init_resource::<Progress>()
-    .add_systems(Startup, set_up)
-    .add_systems(Update, advance);
+    app.add_plugins((without_window(), ShadowPlugin { size: SIZE }))
+        .init_resource::<Progress>()
+        .add_systems(Startup, set_up)
+        .add_systems(Update, advance);
     app.finish();
     app.cleanup();
 

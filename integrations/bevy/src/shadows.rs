@@ -13,7 +13,7 @@ use bevy::{
 };
 use glam::DMat4;
 use skiagraph_gpu::{Executor, Frame, import};
-use skiagraph_graph::{Graph, LayeredSources, PlanRequest, Sources};
+use skiagraph_graph::{Graph, LayeredSources, MemorySources, PlanRequest};
 use skiagraph_passes::{Depth, EmbeddedSources, Eye, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Movable};
 use std::sync::{Arc, Mutex};
@@ -25,18 +25,6 @@ const DOCUMENT: &str = r#"(
     inputs: [Texture(name: "depth"), Texture(name: "normal")],
     passes: [Change(pass: "gbuffer", graph: "shared/from_depth.ron", set: {"unsigned": true})],
 )"#;
-
-struct Document;
-
-impl Sources for Document {
-    fn read(&self, path: &str) -> std::result::Result<Option<Arc<str>>, String> {
-        Ok((path == "shadows.ron").then(|| DOCUMENT.into()))
-    }
-
-    fn list(&self, _: &str) -> Vec<String> {
-        Vec::new()
-    }
-}
 
 /// The graph once there is something to run it on.
 #[derive(Resource, Default)]
@@ -108,7 +96,8 @@ impl Running {
     ) -> Result<Self> {
         let light = DirectionalLight::new(glam::DVec3::NEG_Y);
         let mut provider = SceneProvider::from_parts(Arc::clone(parts), light);
-        let sources = LayeredSources(vec![Box::new(Document), Box::new(EmbeddedSources)]);
+        let document = MemorySources::new([("shadows.ron", DOCUMENT)]);
+        let sources = LayeredSources(vec![Box::new(document), Box::new(EmbeddedSources)]);
         let graph = Graph::load("shadows.ron", &registry(), &sources)?;
         let size = prepass.depth.size();
         let mut request = PlanRequest::new([size.width, size.height], &provider);

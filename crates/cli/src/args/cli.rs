@@ -259,22 +259,38 @@ mod tests {
             panic!("not compare")
         };
         assert_eq!(args.presets, ["rt", "a.ron"]);
-        assert_eq!(args.size, [Size([8, 4]), Size([16, 9])]);
-        assert_eq!(args.map_size, [512, 1024]);
+        assert_eq!(args.timing.size, [Size([8, 4]), Size([16, 9])]);
+        assert_eq!(args.timing.sweep.map_size, [512, 1024]);
         assert_eq!(args.scene.eye, Some(DVec3::new(-1.0, 2.0, -3.0)));
         let light = LightArgument::Direction(DVec3::new(-0.5, -1.0, 0.0));
         assert_eq!(args.scene.light, Some(light));
         assert_eq!(
-            args.params,
+            args.timing.sweep.params,
             [Assignment {
                 name: "bias".into(),
                 value: "-2".into()
             }]
         );
         assert_eq!(
-            (args.frames, args.warmup, args.oracle),
+            (
+                args.timing.frames,
+                args.timing.warmup,
+                args.reference.oracle
+            ),
             (10, 2, OracleMode::Exact)
         );
+    }
+
+    #[test]
+    fn shared_options_have_the_defaults_of_their_command() {
+        let Command::Profile(args) = parse("skiagraph profile rt").unwrap().command else {
+            panic!("not profile")
+        };
+        assert_eq!((args.timing.frames, args.timing.warmup), (30, 3));
+        let Command::Stress(args) = parse("skiagraph stress").unwrap().command else {
+            panic!("not stress")
+        };
+        assert_eq!(args.sweep.map_size, [128]);
     }
 
     #[test]

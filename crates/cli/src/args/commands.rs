@@ -1,18 +1,16 @@
 //! Arguments of each command.
 
-use crate::args::shared::{MethodArgs, SceneArgs};
+use crate::args::shared::{MethodArgs, ReferenceArgs, SceneArgs, SweepArgs, TimingArgs};
 use crate::args::values::{self, LightArgument, frames, texels};
 use clap::builder::PossibleValuesParser;
 use clap::{ArgAction, Args, ValueEnum};
 use skiagraph_compare::foreign::factor::Reading;
 use skiagraph_compare::graphs::argument::Assignment;
-use skiagraph_compare::measuring::ground_truth::REFERENCE_SAMPLES;
 use skiagraph_compare::pictures::{data::DataFormat, save::Save};
 use skiagraph_compare::quantities::{bytes, milliseconds, percent};
 use skiagraph_compare::records::figures::drawn;
 use skiagraph_compare::records::{published_row::PublishedFile, shard::Shard};
 use skiagraph_compare::size::Size;
-use skiagraph_reference::OracleMode;
 use skiagraph_report::gate::{self, Gate};
 use std::path::PathBuf;
 
@@ -48,54 +46,21 @@ pub struct CompareArgs {
     #[arg(long, value_name = "N", requires = "path",
           value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub jitter: Option<u32>,
-    /// Viewport sizes in pixels, separated by commas.
-    #[arg(
-        long,
-        value_name = "WxH,…",
-        value_delimiter = ',',
-        default_value = "1024x1024"
-    )]
-    pub size: Vec<Size>,
-    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
-    /// graphs that have it.
-    #[arg(long, value_name = "N,…", value_delimiter = ',',
-          value_parser = texels(), allow_negative_numbers = true)]
-    pub map_size: Vec<u32>,
+    /// Viewports, params, and frames to time.
+    #[command(flatten)]
+    pub timing: TimingArgs,
     /// Compare each method that has a shadow map with maps of 256, 512, 1024, 2048 and 4096 texels,
     /// and tell its error at the cost of the fastest exact method.
     #[arg(long, conflicts_with = "map_size")]
     pub map_curve: bool,
-    /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
-    /// semicolons) or a range (bias=0..0.01/5: five values) is compared. May be repeated.
-    #[arg(
-        long = "set",
-        visible_alias = "image",
-        value_name = "NAME=VALUE,…",
-        allow_hyphen_values = true
-    )]
-    pub params: Vec<Assignment>,
-    /// Timed frames of each method on each view. The frame that is judged and pictured is another
-    /// one, so that its readback is not timed.
-    #[arg(long, default_value_t = 10, value_name = "N",
-          value_parser = frames(1), allow_negative_numbers = true)]
-    pub frames: u32,
-    /// Untimed frames before the timed ones.
-    #[arg(long, default_value_t = 2, value_name = "N",
-          value_parser = frames(0), allow_negative_numbers = true)]
-    pub warmup: u32,
     /// Timed frames before each of which the same has moved: nothing, the camera, the light, meshes
     /// (on a path that moves parts). 0 for none. Without it: as many as --frames.
     #[arg(long, value_name = "N", alias = "cached-frames",
           value_parser = frames(0), allow_negative_numbers = true)]
     pub regime_frames: Option<u32>,
-    /// Shadow rays of the reference: `exact` (no offset, the own triangle excluded) or
-    /// `offset:LENGTH` (origin moved towards the light by so many scene units).
-    #[arg(long, default_value = "exact", value_name = "MODE")]
-    pub oracle: OracleMode,
-    /// Shadow rays per pixel that the reference traces to a light with an extent.
-    #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
-          value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
-    pub reference_samples: u32,
+    /// How the reference traces.
+    #[command(flatten)]
+    pub reference: ReferenceArgs,
     /// Recommend no method whose frame takes longer, GPU and CPU together, on any view or in any
     /// frame of a path; for each kind of movement by itself: `3ms`, `800us`.
     #[arg(long, value_name = "TIME", value_parser = milliseconds)]
@@ -344,44 +309,19 @@ pub struct RunArgs {
 
 /// Arguments of `skiagraph profile`.
 #[derive(Args, Clone, Debug)]
+#[command(mut_arg("frames", |frames| frames.default_value("30")))]
+#[command(mut_arg("warmup", |warmup| warmup.default_value("3")))]
 pub struct ProfileArgs {
     /// Presets by name, or graphs (.ron). `crsm@n=1,depth=plane` is a method with params of its
     /// own.
     #[arg(value_name = "PRESET|FILE.ron[@NAME=VALUE,…]", required = true)]
     pub presets: Vec<String>,
-    /// Viewport sizes in pixels, separated by commas.
-    #[arg(
-        long,
-        value_name = "WxH,…",
-        value_delimiter = ',',
-        default_value = "1024x1024"
-    )]
-    pub size: Vec<Size>,
-    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
-    /// graphs that have it.
-    #[arg(long, value_name = "N,…", value_delimiter = ',',
-          value_parser = texels(), allow_negative_numbers = true)]
-    pub map_size: Vec<u32>,
-    /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
-    /// semicolons) or a range (bias=0..0.01/5: five values) is timed. May be repeated.
-    #[arg(
-        long = "set",
-        visible_alias = "image",
-        value_name = "NAME=VALUE,…",
-        allow_hyphen_values = true
-    )]
-    pub params: Vec<Assignment>,
+    /// Viewports, params, and frames to time.
+    #[command(flatten)]
+    pub timing: TimingArgs,
     /// The scene to run the methods on.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Number of timed frames.
-    #[arg(long, default_value_t = 30, value_name = "N",
-          value_parser = frames(1), allow_negative_numbers = true)]
-    pub frames: u32,
-    /// Untimed frames before the timed ones.
-    #[arg(long, default_value_t = 3, value_name = "N",
-          value_parser = frames(0), allow_negative_numbers = true)]
-    pub warmup: u32,
     /// CSV file to write: a line per pass and one for the frame.
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
@@ -399,6 +339,7 @@ pub struct ProfileArgs {
 
 /// Arguments of `skiagraph stress`.
 #[derive(Args, Clone, Debug)]
+#[command(mut_arg("map_size", |edges| edges.default_value("128")))]
 pub struct StressArgs {
     /// Presets by name, or graphs (.ron) with the output `visibility`, and perhaps `status`.
     /// `crsm@n=1,depth=plane` is a method with params of its own. Without any: all presets, those
@@ -414,20 +355,9 @@ pub struct StressArgs {
     /// Viewport size in pixels.
     #[arg(long, value_name = "WxH", default_value = "128x128")]
     pub size: Size,
-    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
-    /// graphs that have it.
-    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "128",
-          value_parser = texels(), allow_negative_numbers = true)]
-    pub map_size: Vec<u32>,
-    /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
-    /// semicolons) or a range (bias=0..0.01/5: five values) is a column. May be repeated.
-    #[arg(
-        long = "set",
-        visible_alias = "image",
-        value_name = "NAME=VALUE,…",
-        allow_hyphen_values = true
-    )]
-    pub params: Vec<Assignment>,
+    /// Params of the graphs.
+    #[command(flatten)]
+    pub sweep: SweepArgs,
     /// Judge this method as an exact one: no pixel may be wrong but those that rounding decides.
     /// May be repeated.
     #[arg(long, value_name = "PRESET|FILE.ron")]
@@ -469,13 +399,9 @@ pub struct TruthArgs {
     /// Viewport size in pixels.
     #[arg(long, value_name = "WxH", default_value = "1024x1024")]
     pub size: Size,
-    /// Shadow rays of the reference: `exact` or `offset:LENGTH`.
-    #[arg(long, default_value = "exact", value_name = "MODE")]
-    pub oracle: OracleMode,
-    /// Shadow rays per pixel that the reference traces to a light with an extent.
-    #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
-          value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
-    pub reference_samples: u32,
+    /// How the reference traces.
+    #[command(flatten)]
+    pub reference: ReferenceArgs,
     /// Format of the arrays.
     #[arg(long, value_name = "npy|exr", default_value = "exr")]
     pub data: DataFormat,
@@ -508,13 +434,9 @@ pub struct JudgeArgs {
     /// The depth that each pixel shows: it tells surfaces within 1/16 of a pixel apart.
     #[arg(long, value_name = "FILE")]
     pub depth: Option<PathBuf>,
-    /// Shadow rays of the reference: `exact` or `offset:LENGTH`.
-    #[arg(long, default_value = "exact", value_name = "MODE")]
-    pub oracle: OracleMode,
-    /// Shadow rays per pixel that the reference traces to a light with an extent.
-    #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
-          value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
-    pub reference_samples: u32,
+    /// How the reference traces.
+    #[command(flatten)]
+    pub reference: ReferenceArgs,
     #[arg(long, value_name = "PICTURE: FIGURE > VALUE", help = format!(
         "End with exit code 4 if a figure of a picture is greater, by its file name without \
          ending: `engine: wrong > 0.1%`. Figures: {}. May be repeated", gate::help(true)

@@ -1,6 +1,6 @@
 //! Arguments that several commands share.
 
-use crate::args::values::{self, LightArgument, texels};
+use crate::args::values::{self, LightArgument, frames, texels};
 use crate::error::CliError;
 use clap::{ArgAction, Args, ValueEnum};
 use glam::DVec3;
@@ -8,12 +8,13 @@ use skiagraph_compare::error::CompareError;
 use skiagraph_compare::graphs::argument::Assignment;
 use skiagraph_compare::graphs::method::{self, ParamValues};
 use skiagraph_compare::graphs::preset::Preset;
-use skiagraph_compare::measuring::device::GpuRequest;
+use skiagraph_compare::measuring::{device::GpuRequest, ground_truth::REFERENCE_SAMPLES};
 use skiagraph_compare::own_camera::OwnCamera;
 use skiagraph_compare::own_scene::MeshSceneOptions;
 use skiagraph_compare::quantities::{bytes, degrees, direction, positive, vector};
 use skiagraph_compare::size::Size;
 use skiagraph_graph::Sources;
+use skiagraph_reference::OracleMode;
 use skiagraph_scene::{Concave, MaterialUse, MeshFileOptions, QuadDiagonal};
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
@@ -220,6 +221,63 @@ impl SceneArgs {
             Some(LightArgument::Direction(_)) | None => None,
         }
     }
+}
+
+/// Params of several graphs: each graph runs with every value.
+#[derive(Args, Clone, Debug)]
+pub struct SweepArgs {
+    /// Widths of square shadow maps in texels, separated by commas: the param `map_size` of the
+    /// graphs that have it.
+    #[arg(long, value_name = "N,…", value_delimiter = ',',
+          value_parser = texels(), allow_negative_numbers = true)]
+    pub map_size: Vec<u32>,
+    /// A param of the graphs that have it. Each value of a list (radius=1,2,4; vectors between
+    /// semicolons) or a range (bias=0..0.01/5: five values) is tried. May be repeated.
+    #[arg(
+        long = "set",
+        visible_alias = "image",
+        value_name = "NAME=VALUE,…",
+        allow_hyphen_values = true
+    )]
+    pub params: Vec<Assignment>,
+}
+
+/// Viewports and params that methods are timed with, and for how many frames.
+#[derive(Args, Clone, Debug)]
+pub struct TimingArgs {
+    /// Viewport sizes in pixels, separated by commas.
+    #[arg(
+        long,
+        value_name = "WxH,…",
+        value_delimiter = ',',
+        default_value = "1024x1024"
+    )]
+    pub size: Vec<Size>,
+    /// Params of the graphs.
+    #[command(flatten)]
+    pub sweep: SweepArgs,
+    /// Timed frames of each method on each view. A frame that is judged and pictured is another
+    /// one, so that its readback is not timed.
+    #[arg(long, default_value_t = 10, value_name = "N",
+          value_parser = frames(1), allow_negative_numbers = true)]
+    pub frames: u32,
+    /// Untimed frames before the timed ones.
+    #[arg(long, default_value_t = 2, value_name = "N",
+          value_parser = frames(0), allow_negative_numbers = true)]
+    pub warmup: u32,
+}
+
+/// How the reference traces.
+#[derive(Args, Clone, Debug)]
+pub struct ReferenceArgs {
+    /// Shadow rays of the reference: `exact` (no offset, the own triangle excluded) or
+    /// `offset:LENGTH` (origin moved towards the light by so many scene units).
+    #[arg(long, default_value = "exact", value_name = "MODE")]
+    pub oracle: OracleMode,
+    /// Shadow rays per pixel that the reference traces to a light with an extent.
+    #[arg(long, value_name = "N", default_value_t = REFERENCE_SAMPLES,
+          value_parser = clap::value_parser!(u32).range(4..=1_048_576))]
+    pub reference_samples: u32,
 }
 
 /// Arguments that name one graph, its viewport and its params.

@@ -30,8 +30,8 @@ pub async fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         unshadowed: args.unshadowed.clone(),
         reading: args.read_as.unwrap_or_default(),
         surfaces,
-        oracle: args.oracle,
-        reference_samples: args.reference_samples,
+        oracle: args.reference.oracle,
+        reference_samples: args.reference.reference_samples,
         draws: args.out.is_some(),
     };
     let files = args.pictures.iter().map(|it| it.display().to_string());
@@ -65,8 +65,8 @@ pub async fn judge(args: &JudgeArgs, gpu: &GpuArgs) -> Result<(), CliError> {
 pub async fn truth(args: &TruthArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let request = TruthRequest {
         viewport: args.size.0,
-        oracle: args.oracle,
-        reference_samples: args.reference_samples,
+        oracle: args.reference.oracle,
+        reference_samples: args.reference.reference_samples,
         format: args.data,
     };
     let (scene, view) = single_view(&args.scene)?;

@@ -2,7 +2,7 @@
 //! folders for results.
 
 use crate::args::commands::{CompareArgs, Images};
-use crate::args::shared::{GpuArgs, SceneArgs};
+use crate::args::shared::{GpuArgs, SceneArgs, SweepArgs};
 use crate::error::CliError;
 use crate::scene_selection::{SceneSelection, paths};
 use crate::terminal::console::note;
@@ -57,14 +57,15 @@ impl Loaded {
             [] if !args.all => preset::shipped_and_own(&sources),
             presets => preset::named_or_all(presets, &sources),
         };
+        let (timing, SweepArgs { map_size, params }) = (&args.timing, &args.timing.sweep);
         let sizes = if args.map_curve {
             &MAP_CURVE[..]
         } else {
-            &args.map_size
+            map_size
         };
-        let (params, load) = (&args.params, shadow_method::load_each);
+        let load = shadow_method::load_each;
         let methods = method::load(&names, params, sizes, &sources, load)?;
-        note_without_map(&methods, &args.map_size);
+        note_without_map(&methods, map_size);
         Gate::check(&args.fail_if, &methods).map_err(CliError::Input)?;
         let primary = PrimaryVisibility::load(&sources)?;
         let loaded = methods.iter().map(|method| &method.preset.graph);
@@ -76,22 +77,22 @@ impl Loaded {
             let mut selection = SceneSelection::load(scene)?;
             let notes = std::mem::take(&mut selection.notes);
             // Without timed frames of regimes the mesh stays in one piece.
-            let regime_frames = args.regime_frames.unwrap_or(args.frames);
+            let regime_frames = args.regime_frames.unwrap_or(timing.frames);
             let moving = (regime_frames > 0).then(|| moving(&selection.paths, &selection.scene));
             let (scene, views) = views(args, scene, selection, &methods, session)?;
             Ok(Comparison {
                 views,
                 moving: moving.flatten(),
-                viewports: unique(args.size.iter().map(|Size(size)| *size)),
+                viewports: unique(timing.size.iter().map(|Size(size)| *size)),
                 methods: methods.clone(),
                 tuned: Default::default(),
                 protocol: Protocol {
-                    frames: args.frames,
-                    warmup: args.warmup,
+                    frames: timing.frames,
+                    warmup: timing.warmup,
                     regime_frames,
                     jitter: args.jitter,
-                    oracle: args.oracle,
-                    reference_samples: args.reference_samples,
+                    oracle: args.reference.oracle,
+                    reference_samples: args.reference.reference_samples,
                     pictures: args.images == Images::All,
                     data: args.data,
                 },

@@ -1,7 +1,7 @@
 //! `skiagraph profile`: times the passes of graphs over many frames.
 
 use crate::args::commands::ProfileArgs;
-use crate::args::shared::GpuArgs;
+use crate::args::shared::{GpuArgs, SweepArgs};
 use crate::commands::loaded::note_without_map;
 use crate::error::CliError;
 use crate::scene_selection::SceneSelection;
@@ -34,15 +34,15 @@ pub async fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> 
     check_writable(&files(args))?;
     let read = |path| Ok::<_, CliError>((path, read_back::profile(path)?));
     let old = args.baseline.as_deref().map(read).transpose()?;
-    let (words, sizes) = (&args.presets, &args.map_size);
+    let (timing, SweepArgs { map_size, params }) = (&args.timing, &args.timing.sweep);
     let sources = preset::sources(&Terminal);
-    let methods = method::load(words, &args.params, sizes, &sources, preset::load_each)?;
-    note_without_map(&methods, &args.map_size);
+    let methods = method::load(&args.presets, params, map_size, &sources, preset::load_each)?;
+    note_without_map(&methods, map_size);
     let graphs = methods.iter().map(|method| &method.preset.graph);
     let gpu = device::open(&gpu.request(), graphs)?;
     let session = Session::new(&gpu, &Terminal);
     let SceneSelection { scene, views, .. } = SceneSelection::load(&args.scene)?;
-    let viewports = unique(args.size.iter().map(|Size(size)| *size));
+    let viewports = unique(timing.size.iter().map(|Size(size)| *size));
     let planned = methods.len() * views.len() * viewports.len();
     check_single(args, planned)?;
     interrupt::install()?;
@@ -54,7 +54,7 @@ pub async fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> 
     let settled = methods.into_iter().map(|method| method.settled(features));
     let places = views.iter().cartesian_product(viewports);
     for (method, (view, viewport)) in settled.collect_vec().iter().cartesian_product(places) {
-        let (method, count) = (method.at(viewport), [args.warmup, args.frames]);
+        let (method, count) = (method.at(viewport), [timing.warmup, timing.frames]);
         let mut profile;
         (profile, timed) = match profiling::profile(session, count, &method, &scene, view).await {
             Err(CompareError::Interrupted { .. }) if !profiles.is_empty() && stop::raised() => {
@@ -72,7 +72,7 @@ pub async fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> 
         };
         let old = old.as_ref();
         profile.baseline = old.map(|(path, old)| profile.against(path, old));
-        let is_whole = timed.len() >= args.frames as usize;
+        let is_whole = timed.len() >= timing.frames as usize;
         profiles.push(profile);
         if is_whole {
             let (args, profiles) = (args.clone(), profiles.clone());
@@ -89,8 +89,8 @@ pub async fn profile(args: &ProfileArgs, gpu: &GpuArgs) -> Result<(), CliError> 
     show(&profiles)?;
     print(&unavailable.concat())?;
     let written = write(args, &profiles, &timed)?;
-    if timed.len() < args.frames as usize {
-        let done = format!("{} of {} frames", timed.len(), args.frames);
+    if timed.len() < timing.frames as usize {
+        let done = format!("{} of {} frames", timed.len(), timing.frames);
         let kept = format!("the figures are of the {done} that were timed{written}");
         return Err(CliError::Interrupted { kept });
     }

@@ -37,7 +37,7 @@ pub async fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
     let sources = preset::sources(&Terminal);
     let names = preset::named_or_all(&args.presets, &sources);
     check_exact(&args.exact, &names)?;
-    let (params, sizes) = (&args.params, &args.map_size);
+    let (params, sizes) = (&args.sweep.params, &args.sweep.map_size);
     let methods = method::load(&names, params, sizes, &sources, shadow_method::load_each)?;
     let primary = PrimaryVisibility::load(&sources)?;
     let viewport = args.size.0;
@@ -155,7 +155,7 @@ fn command_for(args: &StressArgs, column: &Column, case: &str, set: Option<&str>
     if let Some(size) = column.map_size {
         option("--map-size", size.to_string());
     }
-    for param in &args.params {
+    for param in &args.sweep.params {
         option("--set", format!("{}={}", param.name, param.value));
     }
     if let Some(set) = set {

@@ -10,7 +10,7 @@ use skiagraph_compare::wording::or_nothing;
 use skiagraph_graph::{Diagnostic, diagnostics};
 use std::{
     io::{self, IsTerminal},
-    sync::{Mutex, MutexGuard, PoisonError, atomic::AtomicBool},
+    sync::{Mutex, MutexGuard, Once, PoisonError, atomic::AtomicBool},
     thread,
     time::{Duration, Instant},
 };
@@ -96,13 +96,11 @@ struct Now {
     /// All runs of the command.
     runs: Option<Share>,
     step: Option<Running>,
-    has_printer: bool,
 }
 
 static NOW: Mutex<Now> = Mutex::new(Now {
     runs: None,
     step: None,
-    has_printer: false,
 });
 
 fn now() -> MutexGuard<'static, Now> {
@@ -119,21 +117,15 @@ impl Now {
         let left = or_nothing(share.left(), |left| format!(", {left}"));
         Some(format!("{done} of {total} {unit}, {elapsed}{left}: {name}"))
     }
+}
 
-    /// Prints a line each [`PERIOD`] while a step is under way, from now until the program ends.
-    fn print_lines(&mut self) {
-        if self.has_printer {
-            return;
+/// Prints a line each [`PERIOD`] while a step is under way, from now until the program ends.
+fn print_lines() {
+    loop {
+        thread::sleep(PERIOD);
+        if let Some(line) = now().line() {
+            note(&line);
         }
-        self.has_printer = true;
-        thread::spawn(|| {
-            loop {
-                thread::sleep(PERIOD);
-                if let Some(line) = now().line() {
-                    note(&line);
-                }
-            }
-        });
     }
 }
 
@@ -220,7 +212,8 @@ pub fn begin_quietly(name: &str, total: u64, unit: &'static str) {
         bar,
     });
     if style() == Style::Periodic {
-        now.print_lines();
+        static PRINTER: Once = Once::new();
+        PRINTER.call_once(|| drop(thread::spawn(print_lines)));
     }
 }
 
@@ -258,7 +251,6 @@ mod tests {
                 share: Share::begin(5, "frames"),
                 bar: ProgressBar::hidden(),
             }),
-            has_printer: false,
         };
         assert_eq!(
             now.line().unwrap(),

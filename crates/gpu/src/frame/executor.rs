@@ -395,7 +395,7 @@ impl Executor {
     pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
         let of_host = |resource: &Resource| resource.origin == Origin::Host;
         if !self.plan().imports().contains_key(name) {
-            self.runner.host_changes.touch(name);
+            self.runner.host_changes.changed.note(name);
         }
         let live = self.runner.state.live(name);
         if let Some(id) = live.filter(|id| of_host(self.plan().resource(*id))) {

@@ -21,7 +21,7 @@ impl Changed {
     };
 
     /// Sets the flag of the provided resource with this name.
-    fn note(&mut self, name: &str) {
+    pub fn note(&mut self, name: &str) {
         let (list, part) = name.split_once('.').unwrap_or((name, ""));
         let of_light = matches!(list, "light" | "lights" | "light_area" | "light_areas")
             || list == "scene" && part.starts_with("light");
@@ -54,11 +54,6 @@ impl HostChanges {
         self.changed.scene |= changed.scene;
         self.changed.light |= changed.light;
         self.changed.memory |= changed.memory;
-    }
-
-    /// Notes that the host reported a change of this resource.
-    pub fn touch(&mut self, name: &str) {
-        self.changed.note(name);
     }
 
     /// Notes that any provided resource may have changed.

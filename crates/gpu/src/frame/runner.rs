@@ -395,7 +395,9 @@ impl Runner {
             state.touch(id);
             let now = state.memory.host(id);
             if now.is_some() {
-                self.host_changes.touch(&state.plan.resource(id).name);
+                self.host_changes
+                    .changed
+                    .note(&state.plan.resource(id).name);
             }
             if now == before.as_ref() {
                 continue;

@@ -27,12 +27,11 @@ pub(crate) struct Memory {
     aliases: Aliases,
     /// The resource that each `.previous` resource belongs to, if its two allocations alternate.
     bases: BTreeMap<ResourceId, ResourceId>,
-    /// Provided resources, their `.previous` copies, the uniform `frame`, and the imports that the
-    /// host has set.
+    /// Provided resources, their `.previous` copies, the uniform `frame`, samplers, and the imports
+    /// that the host has set.
     host: BTreeMap<ResourceId, Physical>,
     /// Imports by name that no live pass uses; a later plan may use them.
     spare: BTreeMap<String, Physical>,
-    samplers: BTreeMap<ResourceId, wgpu::Sampler>,
     /// Version of each provided resource, or the part that is missing to build it.
     provided: BTreeMap<ResourceId, Result<u64, String>>,
 }
@@ -155,7 +154,7 @@ impl Memory {
             }
             (ResourceKind::Sampler(entry), _) => {
                 let made = sampler(factory.device, &resource.name, entry);
-                self.samplers.insert(id, made);
+                self.host.insert(id, Physical::Sampler(made));
             }
             _ => {}
         }
@@ -243,10 +242,7 @@ impl Memory {
     pub fn sampler(&self, id: ResourceId) -> Result<&wgpu::Sampler, ExecuteError> {
         match self.host.get(&id) {
             Some(Physical::Sampler(sampler)) => Ok(sampler),
-            _ => {
-                let own = self.samplers.get(&id);
-                own.ok_or(Internal("a sampler that a live pass uses was not made"))
-            }
+            _ => Err(Internal("a sampler that a live pass uses was not made")),
         }
     }
 

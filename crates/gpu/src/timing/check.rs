@@ -5,8 +5,8 @@ use crate::{
     error::ExecuteError,
     frame::{Executor, Frame},
 };
-use skiagraph_graph::{Graph, NoProvider, ParamValue, PlanRequest, Registry, Sources};
-use std::{collections::BTreeMap, sync::Arc, time::Duration};
+use skiagraph_graph::{Graph, MemorySources, NoProvider, ParamValue, PlanRequest, Registry};
+use std::{collections::BTreeMap, time::Duration};
 use web_time::Instant;
 
 /// Result of [`check`]: tells if an adapter's GPU timestamps can be believed.
@@ -47,7 +47,13 @@ pub async fn check(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Trust, 
         return Ok(untrusted(reason));
     }
     let internal = |_| ExecuteError::Internal("the timestamp check's own graph is broken");
-    let graph = Graph::load("check.ron", &Registry::standard(), &CheckSources).map_err(internal)?;
+    // A raster pass and a long dispatch after it.
+    let sources = MemorySources::new([
+        ("check.ron", include_str!("check.ron")),
+        ("draw.wgsl", include_str!("draw.wgsl")),
+        ("work.wgsl", include_str!("work.wgsl")),
+    ]);
+    let graph = Graph::load("check.ron", &Registry::standard(), &sources).map_err(internal)?;
     let mut rounds = 64u32;
     let mut compared = 0;
     loop {
@@ -114,25 +120,6 @@ fn judge(frames: &[(Duration, Option<Duration>)]) -> Trust {
 fn untrusted(reason: impl Into<String>) -> Trust {
     let reason = reason.into();
     Trust::Untrusted { reason }
-}
-
-/// A raster pass and a long dispatch after it.
-struct CheckSources;
-
-impl Sources for CheckSources {
-    fn read(&self, path: &str) -> Result<Option<Arc<str>>, String> {
-        let text = match path {
-            "check.ron" => include_str!("check.ron"),
-            "draw.wgsl" => include_str!("draw.wgsl"),
-            "work.wgsl" => include_str!("work.wgsl"),
-            _ => return Ok(None),
-        };
-        Ok(Some(text.into()))
-    }
-
-    fn list(&self, _: &str) -> Vec<String> {
-        Vec::new()
-    }
 }
 
 #[cfg(test)]

@@ -118,10 +118,10 @@ impl Blend {
     /// Returns the state of the pipeline.
     pub fn state(&self, pass: &mut Lowering<'_>) -> BlendState {
         let same = |operation| {
-            let component = component(BlendFactor::One, BlendFactor::One, operation);
+            let color = component([BlendFactor::One; 2], operation);
             BlendState {
-                color: component,
-                alpha: component,
+                color,
+                alpha: color,
             }
         };
         match self {
@@ -158,9 +158,9 @@ impl Blend {
 
 impl BlendFields {
     fn components(&self) -> [BlendComponent; 2] {
-        let color = component(self.source, self.target, self.operation);
+        let color = component([self.source, self.target], self.operation);
         let alpha = self.alpha.as_ref();
-        let alpha = alpha.map(|alpha| component(alpha.source, alpha.target, alpha.operation));
+        let alpha = alpha.map(|alpha| component([alpha.source, alpha.target], alpha.operation));
         [color, alpha.unwrap_or(color)]
     }
 }
@@ -176,27 +176,20 @@ fn checked(fields: &Located<BlendFields>, pass: &mut Lowering<'_>) -> BlendState
         pass.report(DocumentError::BlendFactors(fields.span.clone()));
     }
     let mut used = [color, alpha].into_iter().flat_map(factors);
-    let is_constant = |factor| {
-        matches!(
-            factor,
-            BlendFactor::Constant | BlendFactor::OneMinusConstant
-        )
-    };
-    if fields.constant.is_none() && used.any(is_constant) {
+    let constants = [BlendFactor::Constant, BlendFactor::OneMinusConstant];
+    if fields.constant.is_none() && used.any(|factor| constants.contains(&factor)) {
         let what = "the factor `Constant` has no value";
         pass.report(DocumentError::BlendConstant(fields.span.clone(), what));
     }
     BlendState { color, alpha }
 }
 
-fn component(
-    source: BlendFactor,
-    target: BlendFactor,
-    operation: BlendOperation,
-) -> BlendComponent {
+/// Returns the blending by the factors of what is drawn and of what is there.
+fn component(factors: [BlendFactor; 2], operation: BlendOperation) -> BlendComponent {
+    let [src_factor, dst_factor] = factors;
     BlendComponent {
-        src_factor: source,
-        dst_factor: target,
+        src_factor,
+        dst_factor,
         operation,
     }
 }

@@ -182,27 +182,18 @@ struct FaceEntry {
     #[cfg_attr(feature = "schema", schemars(with = "Compare"))]
     compare: wgt::CompareFunction,
     /// Operation where the test fails; `Keep` without it, as below.
-    #[serde(
-        default,
-        rename = "fail",
-        deserialize_with = "StencilOperation::deserialize"
-    )]
+    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[serde(rename = "fail")]
     #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
     fail_op: wgt::StencilOperation,
     /// Where it passes and that of depth fails.
-    #[serde(
-        default,
-        rename = "depth_fail",
-        deserialize_with = "StencilOperation::deserialize"
-    )]
+    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[serde(rename = "depth_fail")]
     #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
     depth_fail_op: wgt::StencilOperation,
     /// Where both pass.
-    #[serde(
-        default,
-        rename = "pass",
-        deserialize_with = "StencilOperation::deserialize"
-    )]
+    #[serde(default, deserialize_with = "StencilOperation::deserialize")]
+    #[serde(rename = "pass")]
     #[cfg_attr(feature = "schema", schemars(with = "StencilOperation"))]
     pass_op: wgt::StencilOperation,
 }

@@ -73,15 +73,14 @@ impl Renderer {
             let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
             self.depth = texture(device, moment.size, DEPTH, usage);
         }
-        let resources = [
-            uniform.as_entire_binding(),
-            wgpu::BindingResource::TextureView(visibility),
-        ];
-        let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+        let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
         let bound = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.pipeline.get_bind_group_layout(0),
-            entries: &[0, 1].map(|at| entry((at, resources[at as usize].clone()))),
+            entries: &[
+                entry(0, uniform.as_entire_binding()),
+                entry(1, wgpu::BindingResource::TextureView(visibility)),
+            ],
         });
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {

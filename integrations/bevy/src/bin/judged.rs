@@ -10,14 +10,13 @@ use bevy::{
     mesh::PrimitiveTopology,
     prelude::*,
     render::{
-        RenderApp, RenderPlugin,
+        RenderApp,
         render_asset::RenderAssets,
         render_resource::{PollType, TextureFormat, TextureUsages},
         renderer::{RenderDevice, RenderQueue},
         texture::GpuImage,
         view::ViewDepthStencilTexture,
     },
-    window::ExitCondition,
 };
 use skiagraph_scene::{Scene, SceneLibrary, View};
 use std::{error::Error, fs, path::Path, process::ExitCode};
@@ -54,20 +53,9 @@ fn run() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
 
     let mut app = App::new();
-    app.add_plugins(
-        DefaultPlugins
-            .set(WindowPlugin {
-                primary_window: None,
-                exit_condition: ExitCondition::DontExit,
-                ..default()
-            })
-            .set(RenderPlugin {
-                synchronous_pipeline_compilation: true,
-                ..default()
-            }),
-    )
-    // Light from everywhere would stand in the quotient.
-    .insert_resource(GlobalAmbientLight::NONE);
+    app.add_plugins(skiagraph_bevy::without_window())
+        // Light from everywhere would stand in the quotient.
+        .insert_resource(GlobalAmbientLight::NONE);
     app.finish();
     app.cleanup();
     let target = spawn(app.world_mut(), &scene, view, size)?;

@@ -70,9 +70,8 @@ impl<'a> FuzzyRay<'a> {
         towards: Towards,
         uncertainty: &'a Uncertainty,
     ) -> Self {
-        let sheared_segments = uncertainty
-            .segments
-            .map(|segment| ray.sheared_vector(segment.to_array()));
+        let sheared = |segment: DVec3| ray.sheared_vector(segment.to_array());
+        let sheared_segments = uncertainty.segments.map(sheared);
         Self {
             ray,
             origin,

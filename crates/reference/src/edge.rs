@@ -161,9 +161,8 @@ impl<'a> Edges<'a> {
             class.faces_light() && nearby.any(|other| is_other(truth.classes[other]))
         };
         let edges: Vec<usize> = (0..truth.classes.len()).filter(is_edge).collect();
-        let screen = edges
-            .iter()
-            .map(|&pixel| place(pixel, seen.camera.viewport).map(f64::from));
+        let on_screen = |&pixel: &usize| place(pixel, seen.camera.viewport).map(f64::from);
+        let screen = edges.iter().map(on_screen);
         let scene = edges.iter().filter_map(|&pixel| receiver(seen, pixel));
         Self {
             seen,

@@ -206,7 +206,9 @@ fn along(
     convolved
 }
 
-fn linear(srgb: f64) -> f64 {
+/// Returns the linear share of a number that is encoded by the transfer function of sRGB (IEC
+/// 61966-2-1).
+pub fn linear(srgb: f64) -> f64 {
     if srgb <= 0.04045 {
         srgb / 12.92
     } else {

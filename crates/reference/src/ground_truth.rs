@@ -115,10 +115,8 @@ impl GroundTruthPixels {
             Class::Lit | Class::Unshadowed => status::CERTAIN_LIGHT,
             Class::Shadow => status::CERTAIN_SHADOW,
         };
-        self.classes
-            .iter()
-            .map(|class| status(class) as u8)
-            .collect()
+        let codes = self.classes.iter().map(status);
+        codes.map(|code| code as u8).collect()
     }
 }
 

@@ -55,9 +55,8 @@ impl FromStr for OracleMode {
         if text == "exact" {
             return Ok(Self::Exact);
         }
-        let length = text
-            .strip_prefix("offset:")
-            .and_then(|length| length.parse().ok());
+        let length = text.strip_prefix("offset:");
+        let length = length.and_then(|length| length.parse().ok());
         match length {
             Some(length) if f64::is_finite(length) && length >= 0.0 => Ok(Self::Offset(length)),
             _ => Err(Error::Mode(text.to_owned())),
@@ -283,12 +282,8 @@ impl<'a> Oracle<'a> {
             Some((_, true)) => (true, true),
             Some((error, false)) => {
                 let displaced = uncertainty.displacements(way.direction, error);
-                (
-                    true,
-                    !displaced
-                        .iter()
-                        .all(|&by| self.occluded(origin + by, way, excluded, stack)),
-                )
+                let is_blocked = |by| self.occluded(origin + by, way, excluded, stack);
+                (true, !displaced.into_iter().all(is_blocked))
             }
         }
     }

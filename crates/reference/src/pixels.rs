@@ -70,9 +70,8 @@ pub fn per_pixel<T: Send>(
             if progress.interrupted.load(Ordering::Relaxed) {
                 return Err(Error::Interrupted);
             }
-            let row = (0..width)
-                .map(|x| pixel(x, y, stack))
-                .collect::<Result<Vec<T>, Error>>()?;
+            let row = (0..width).map(|x| pixel(x, y, stack));
+            let row = row.collect::<Result<Vec<T>, Error>>()?;
             (progress.rows_done)(done.fetch_add(1, Ordering::Relaxed) + 1);
             Ok(row)
         })
@@ -107,9 +106,8 @@ pub(crate) fn existing(primitive: u32, [x, y]: [u32; 2], count: u64) -> Result<u
         primitive,
         count,
     };
-    (u64::from(primitive) < count)
-        .then_some(primitive)
-        .ok_or(unknown)
+    let is_there = u64::from(primitive) < count;
+    is_there.then_some(primitive).ok_or(unknown)
 }
 
 /// Checks that the buffer `name`, which has `actual` values, holds one value per pixel.

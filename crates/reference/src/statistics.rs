@@ -365,9 +365,8 @@ pub(crate) fn for_each_verdict(
 
 /// Refuses pixels without an answer.
 fn check_answers(visibility: &[impl Copy + Into<u32>], viewport: [u32; 2]) -> Result<(), Error> {
-    let mut unanswered = (0u32..)
-        .zip(visibility)
-        .filter(|(_, shown)| (**shown).into() == UNANSWERED);
+    let shown = (0u32..).zip(visibility);
+    let mut unanswered = shown.filter(|(_, shown)| (**shown).into() == UNANSWERED);
     let Some((first, _)) = unanswered.next() else {
         return Ok(());
     };

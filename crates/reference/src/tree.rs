@@ -162,10 +162,8 @@ impl<'a> Tree<'a> {
         let nodes = &self.bvh.nodes;
         let mut t_max = ray.far_side();
         stack.clear();
-        if nodes
-            .first()
-            .is_some_and(|root| ray.slab_test(root, t_max).is_some())
-        {
+        let root = nodes.first();
+        if root.is_some_and(|root| ray.slab_test(root, t_max).is_some()) {
             stack.push(0);
         }
         while let Some(index) = stack.pop() {
@@ -208,10 +206,8 @@ fn open_edges(mesh: &Mesh) -> Vec<[bool; 3]> {
         let first = edges.partition_point(|other| *other < key);
         edges.get(first + 1) != Some(&key)
     };
-    let triangles = mesh.triangles.par_iter();
-    triangles
-        .map(|triangle| keys(triangle).map(alone))
-        .collect()
+    let are_alone = |triangle| keys(triangle).map(alone);
+    mesh.triangles.par_iter().map(are_alone).collect()
 }
 
 #[cfg(test)]

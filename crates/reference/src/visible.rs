@@ -87,12 +87,8 @@ pub fn candidates(
         let direction = camera.pixel_direction(x, y);
         let sample = Sample::new(camera, direction, max_distance);
         let (mut candidates, mut nearest) = (Vec::new(), [f64::INFINITY; 5]);
-        let ray = Ray::new(
-            camera.eye,
-            direction,
-            max_distance,
-            sample.reach(max_distance),
-        );
+        let reach = sample.reach(max_distance);
+        let ray = Ray::new(camera.eye, direction, max_distance, reach);
         oracle.tree.walk(&ray, stack, |caster, t_max| {
             candidates.extend(sample.candidate(caster));
             for (nearest, end) in nearest.iter_mut().zip(sample.hides_from(caster)) {
@@ -202,14 +198,9 @@ impl<'a> Sample<'a> {
             return depths.iter().all(|depth| *depth <= 0.0);
         }
         [camera.right, camera.up].into_iter().any(|axis| {
-            let bounds = |values: &[f64]| {
-                let (least, greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-                values
-                    .iter()
-                    .fold([least, greatest], |[least, greatest], value| {
-                        [least.min(*value), greatest.max(*value)]
-                    })
-            };
+            let none = [f64::INFINITY, f64::NEG_INFINITY];
+            let with = |[low, high]: [f64; 2], value: &f64| [low.min(*value), high.max(*value)];
+            let bounds = |values: &[f64]| values.iter().fold(none, with);
             let square = bounds(&self.directions.map(|direction| axis.dot(direction)));
             let places: [f64; 3] = std::array::from_fn(|at| axis.dot(relative[at]) / depths[at]);
             let [least, greatest] = bounds(&places);

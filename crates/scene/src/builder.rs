@@ -97,9 +97,8 @@ impl MeshBuilder {
         let mut opaque: BTreeMap<u32, (u32, usize, u32)> = BTreeMap::new();
         for primitive in std::mem::take(&mut self.without_uvs) {
             let masked = self.mesh.surfaces.of[primitive as usize];
-            let mask = materials
-                .get(masked as usize)
-                .and_then(|material| material.mask.as_ref());
+            let material = materials.get(masked as usize);
+            let mask = material.and_then(|material| material.mask.as_ref());
             if mask.is_none_or(|mask| mask.is_uniform()) {
                 continue;
             }

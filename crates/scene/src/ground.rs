@@ -73,13 +73,8 @@ pub fn has_ground(mesh: &Mesh, up: DVec3) -> bool {
     let size = max - min;
     let width = size.x.min(size.z);
     let is_wide = width >= WIDE * size.y;
-    let thick = LOWEST[0] * size.y;
-    let below = min.y
-        + if is_wide {
-            thick.max(LOWEST[1] * width)
-        } else {
-            thick
-        };
+    let least = if is_wide { LOWEST[1] * width } else { 0.0 };
+    let below = min.y + least.max(LOWEST[0] * size.y);
     let (mut covered, mut low, mut high) = (0.0, max, min);
     for primitive in 0..mesh.triangles.len() as u32 {
         let [a, b, c] = mesh.corners(primitive);

@@ -28,10 +28,8 @@ pub(crate) fn spline<K>(
     };
     // The slope at a key is that between its neighbours.
     let slope = |key: usize| {
-        let (before, after) = (
-            &keys[key.saturating_sub(1)],
-            &keys[(key + 1).min(keys.len() - 1)],
-        );
+        let before = &keys[key.saturating_sub(1)];
+        let after = &keys[(key + 1).min(keys.len() - 1)];
         (vector(after) - vector(before)) / (time(after) - time(before))
     };
     let (before, after) = (slope(from), slope(from + 1));

@@ -5,15 +5,19 @@ use crate::{
     gltf::load_gltf,
     ground::add_ground,
     limit::Limit,
-    mesh_file::{MeshFile, MeshFileOptions, has_extension},
+    mesh_file::{MeshFile, MeshFileOptions},
     obj::{options::ObjOptions, read::load_obj},
     path::CameraPath,
     report::ImportReport,
     scene::Scene,
     scene_file::{MeshSource, SceneFile},
+    text::has_extension,
 };
 use skiagraph_located_ron::diagnostics::Diagnostic;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeSet,
+    path::{Path, PathBuf},
+};
 
 /// Name of the environment variable that lists folders of meshes, separated as in `PATH`.
 pub const ASSETS_VARIABLE: &str = "SKIAGRAPH_ASSETS";
@@ -170,23 +174,13 @@ impl SceneLibrary {
     /// Lists all scenes that can be named, sorted by name: files of the scenes folder and built-in
     /// scenes.
     pub fn list(&self) -> Vec<SceneListing> {
-        let mut names: Vec<String> = BUILT_IN
-            .iter()
-            .map(|(name, _)| (*name).to_owned())
-            .collect();
         // A folder that is not there, or cannot be listed, holds no scenes.
-        for entry in std::fs::read_dir(&self.scenes)
-            .into_iter()
-            .flatten()
-            .flatten()
-        {
-            let path = entry.path();
-            if let (true, Some(stem)) = (has_extension(&path, "ron"), path.file_stem()) {
-                names.push(stem.to_string_lossy().into_owned());
-            }
-        }
-        names.sort();
-        names.dedup();
+        let entries = std::fs::read_dir(&self.scenes).into_iter().flatten();
+        let paths = entries.flatten().map(|entry| entry.path());
+        let files = paths.filter(|path| has_extension(path, "ron"));
+        let stem = |path: PathBuf| Some(path.file_stem()?.to_string_lossy().into_owned());
+        let built_in = BUILT_IN.iter().map(|(name, _)| (*name).to_owned());
+        let names: BTreeSet<String> = built_in.chain(files.filter_map(stem)).collect();
         names.into_iter().map(|name| self.describe(name)).collect()
     }
 
@@ -286,15 +280,12 @@ impl SceneLibrary {
         };
         let places = self.mesh_places(mesh, file);
         // A path that is neither file nor folder is there as well; reading it tells the error.
-        let place = places.iter().find(|place| place.is_file()).or_else(|| {
-            places
-                .iter()
-                .find(|place| place.exists() && !place.is_dir())
-        });
-        if let Some(place) = place {
+        let find = |is: fn(&Path) -> bool| places.iter().find(|place| is(place));
+        let other = || find(|place| place.exists() && !place.is_dir());
+        if let Some(place) = find(Path::is_file).or_else(other) {
             return Ok(Some(place.clone()));
         }
-        if let Some(folder) = places.iter().find(|place| place.is_dir()) {
+        if let Some(folder) = find(Path::is_dir) {
             return Err(SceneError::MeshIsFolder {
                 scene: scene.name.clone(),
                 path: folder.clone(),

@@ -112,11 +112,8 @@ impl DirectionalLight {
         let forward = self.direction.normalize();
         let (right, up) = across(forward);
         let point = Outline::of_the_origin();
-        let outline = if outline.hull.is_empty() {
-            &point
-        } else {
-            outline
-        };
+        let is_empty = outline.hull.is_empty();
+        let outline = if is_empty { &point } else { outline };
         let (turn, low, high) = least_rectangle(&outline.hull);
         let (right, up) = (right * turn.x + up * turn.y, up * turn.x - right * turn.y);
         let (low, high) = (low.extend(outline.nearest), high.extend(outline.farthest));
@@ -144,11 +141,8 @@ impl DirectionalLight {
 /// Returns two unit vectors at right angles to the unit vector `forward` and to each other: right
 /// and up. Up is as near to +y as it can be, or to +z if |y| of `forward` is 0.9 or more.
 pub fn across(forward: DVec3) -> (DVec3, DVec3) {
-    let helper = if forward.y.abs() < 0.9 {
-        DVec3::Y
-    } else {
-        DVec3::Z
-    };
+    let is_level = forward.y.abs() < 0.9;
+    let helper = if is_level { DVec3::Y } else { DVec3::Z };
     let right = forward.cross(helper).normalize();
     (right, right.cross(forward))
 }
@@ -163,9 +157,8 @@ pub(crate) fn onto_axes(axes: [DVec3; 3]) -> DMat4 {
 /// corner in its own axes. An upright one that is as small to a thousandth is preferred.
 fn least_rectangle(hull: &[DVec2]) -> (DVec2, DVec2, DVec2) {
     let around = |axis: DVec2| {
-        let turned = hull
-            .iter()
-            .map(|p| DVec2::new(axis.dot(*p), axis.perp_dot(*p)));
+        let turn = |p: &DVec2| DVec2::new(axis.dot(*p), axis.perp_dot(*p));
+        let turned = hull.iter().map(turn);
         let empty = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (low, high) = turned.fold(empty, |(low, high), p| (low.min(p), high.max(p)));
         (axis, low, high)

@@ -144,12 +144,9 @@ impl Surfaces {
     pub fn mask(&self, primitive: u32) -> Option<&Mask> {
         let mask = self.material(primitive)?.mask.as_deref()?;
         let indices = self.uv_indices.get(primitive as usize);
-        let is_placed = indices.is_some_and(|indices| {
-            let uv = |index: &u32| self.uvs.get(*index as usize);
-            indices
-                .iter()
-                .all(|index| uv(index).is_some_and(|uv| uv.is_finite()))
-        });
+        let uv = |index: &u32| self.uvs.get(*index as usize);
+        let is_finite = |index: &u32| uv(index).is_some_and(|uv| uv.is_finite());
+        let is_placed = indices.is_some_and(|indices| indices.iter().all(is_finite));
         (is_placed || mask.is_uniform()).then_some(mask)
     }
 

@@ -111,9 +111,7 @@ impl Mesh {
     /// Returns the primitive ids of all triangles that cast a shadow, ascending.
     pub fn casters(&self) -> Vec<u32> {
         let primitives = 0..self.triangles.len() as u32;
-        primitives
-            .filter(|primitive| self.casts(*primitive))
-            .collect()
+        primitives.filter(|id| self.casts(*id)).collect()
     }
 
     /// Iterates over the corner positions of all triangles, in the order of `triangles`, three for
@@ -131,9 +129,7 @@ impl Mesh {
             is_used[index as usize] = true;
         }
         let positions = self.positions.iter().zip(is_used);
-        positions
-            .filter(|(_, is_used)| *is_used)
-            .map(|(place, _)| *place)
+        positions.filter_map(|(place, is_used)| is_used.then_some(*place))
     }
 
     /// Returns the smallest axis-aligned box, in world space, around all positions that triangles

@@ -13,6 +13,7 @@ use crate::{
     },
     report::{ImportReport, nothing_casts},
     scene_file::MeshSource,
+    text::has_extension,
 };
 use std::path::Path;
 
@@ -107,9 +108,4 @@ impl MeshFile {
         let mut extensions = ["obj", "gltf", "glb"].iter();
         extensions.any(|extension| has_extension(path, extension))
     }
-}
-
-pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
-    path.extension()
-        .is_some_and(|suffix| suffix.eq_ignore_ascii_case(extension))
 }

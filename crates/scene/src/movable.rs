@@ -162,9 +162,8 @@ impl Movable {
             return Err(format!("the part `{name}` is given twice"));
         }
         let mut rest = mesh.clone();
-        let parts = (0..)
-            .zip(parts)
-            .map(|(part, name)| Part::cut(&mut rest, name, part));
+        let parts = parts.iter().enumerate();
+        let parts = parts.map(|(part, name)| Part::cut(&mut rest, name, part));
         let parts = parts.collect::<Result<_, _>>()?;
         Ok(Self {
             rest,
@@ -328,10 +327,8 @@ impl Movable {
         let moved = |&(normal, position): &(u32, u32)| {
             let normal = across(position) * self.rest.normals[normal as usize].as_dvec3();
             let normal = normal.normalize_or_zero().as_vec3();
-            let is_finite = normal.is_finite();
-            is_finite
-                .then_some(normal)
-                .ok_or(MoveError::Singular { part })
+            let normal = Some(normal).filter(|normal| normal.is_finite());
+            normal.ok_or(MoveError::Singular { part })
         };
         self.parts[part].normals.iter().map(moved).collect()
     }
@@ -538,8 +535,6 @@ impl Part {
 
 /// New normals, each with the position at which it stands.
 fn at_positions(own: &BTreeMap<(u32, u32), u32>) -> Vec<(u32, u32)> {
-    let normals = own.iter();
-    normals
-        .map(|(&(_, position), &normal)| (normal, position))
-        .collect()
+    let pair = |(&(_, position), &normal): (&(u32, u32), &u32)| (normal, position);
+    own.iter().map(pair).collect()
 }

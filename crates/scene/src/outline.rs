@@ -68,9 +68,7 @@ impl Outline {
 /// Triangles of a cube seen from its middle: a corner, the middle of a face, and the next corner of
 /// that face. Each axis is 0 or a side.
 fn cones() -> impl Iterator<Item = [DVec3; 3]> {
-    let faces = [0, 1, 2]
-        .into_iter()
-        .flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
+    let faces = (0..3).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
     faces.flat_map(|(axis, side)| {
         let round = [
             (1.0, 1.0),

@@ -255,10 +255,8 @@ impl CameraPath {
         let (Some(light), Some(_)) = (&self.view.light, self.light_keys.first()) else {
             return Ok(());
         };
-        let has = (
-            light.kind.position().is_some(),
-            light.kind.direction().is_some(),
-        );
+        let (position, direction) = (light.kind.position(), light.kind.direction());
+        let has = (position.is_some(), direction.is_some());
         let needs = match has {
             (true, true) => "`position` and `direction`",
             (true, false) => "`position` alone",

@@ -44,16 +44,11 @@ fn is_leaf(u: f64, v: f64) -> bool {
         let across = around((f64::from(column) + 0.5) / f64::from(ROWS), u);
         let shift = if column.is_multiple_of(2) { 0.0 } else { 0.5 };
         let along = around((f64::from(row) + shift) / f64::from(ROWS), v);
-        let side = if (row + column).is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        };
+        let is_even = (row + column).is_multiple_of(2);
+        let side = if is_even { 1.0 } else { -1.0 };
         // Turned by the angle of the Pythagorean triangle 3, 4, 5.
-        let (p, q) = (
-            0.8 * across + side * 0.6 * along,
-            0.8 * along - side * 0.6 * across,
-        );
+        let p = 0.8 * across + side * 0.6 * along;
+        let q = 0.8 * along - side * 0.6 * across;
         (p / 0.15).powi(2) + (q / 0.07).powi(2) < 1.0
     };
     twig || (0..ROWS).any(|row| (0..ROWS).any(|column| leaf(row, column)))

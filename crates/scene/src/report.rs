@@ -62,17 +62,12 @@ impl Degenerate {
         if self.triangles == 0 {
             return Ok(());
         }
-        let faces: Vec<String> = self.first.iter().map(FaceRef::to_string).collect();
-        let more = if self.triangles > faces.len() {
-            ", …"
-        } else {
-            ""
-        };
-        let (triangles, faces) = (
-            plural(self.triangles, "triangle", "triangles"),
-            faces.join(", "),
-        );
-        writeln!(f, "{triangles} {what}: {faces}{more}")
+        let mut faces: Vec<String> = self.first.iter().map(FaceRef::to_string).collect();
+        if self.triangles > faces.len() {
+            faces.push("…".to_owned());
+        }
+        let triangles = plural(self.triangles, "triangle", "triangles");
+        writeln!(f, "{triangles} {what}: {}", faces.join(", "))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Text of files that other programs wrote: byte order marks and encodings.
+//! Text and names of files that other programs wrote: byte order marks and encodings.
 
 use crate::handed::is_file;
 use std::{
@@ -20,21 +20,14 @@ const WINDOWS_1252: [char; 32] = [
 /// A file's bytes without a byte order mark; those of UTF-16 become UTF-8. UTF-16 without a mark is
 /// known by the zero byte of its first character.
 pub(crate) fn without_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let (rest, is_big_endian) = match bytes {
-        [0xff, 0xfe, rest @ ..] => (rest, false),
-        [0xfe, 0xff, rest @ ..] => (rest, true),
-        [1..=255, 0, 1..=255, 0, ..] => (bytes, false),
-        [0, 1..=255, 0, 1..=255, ..] => (bytes, true),
+    let (rest, word): (_, fn([u8; 2]) -> u16) = match bytes {
+        [0xff, 0xfe, rest @ ..] => (rest, u16::from_le_bytes),
+        [0xfe, 0xff, rest @ ..] => (rest, u16::from_be_bytes),
+        [1..=255, 0, 1..=255, 0, ..] => (bytes, u16::from_le_bytes),
+        [0, 1..=255, 0, 1..=255, ..] => (bytes, u16::from_be_bytes),
         _ => return bytes.strip_prefix(UTF8_MARK).unwrap_or(bytes).into(),
     };
-    let word = |pair: &[u8; 2]| {
-        if is_big_endian {
-            u16::from_be_bytes(*pair)
-        } else {
-            u16::from_le_bytes(*pair)
-        }
-    };
-    let words = rest.as_chunks::<2>().0.iter().map(word);
+    let words = rest.as_chunks::<2>().0.iter().map(|pair| word(*pair));
     let text: String = char::decode_utf16(words)
         .map(|read| read.unwrap_or(char::REPLACEMENT_CHARACTER))
         .collect();
@@ -99,6 +92,12 @@ pub(crate) fn file_in(folder: &Path, name: &str) -> PathBuf {
     let bytes = windows_1252(name).filter(|_| !name.is_ascii() && !is_file(&path));
     let other = bytes.map(|bytes| folder.join(file_name(bytes)));
     other.filter(|other| is_file(other)).unwrap_or(path)
+}
+
+/// True if the name of a file ends in `.extension`, in small letters or capitals.
+pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
+    let own = path.extension();
+    own.is_some_and(|own| own.eq_ignore_ascii_case(extension))
 }
 
 /// The part of a statement before a comment.

@@ -1,6 +1,6 @@
 //! Textures of files.
 
-use crate::{border::caught, limit::Limit, texels::Texels};
+use crate::{border::caught, limit::Limit, texels::Texels, text::has_extension};
 use image::{ImageFormat, ImageReader, Limits};
 use std::{io::Cursor, path::Path};
 
@@ -17,10 +17,8 @@ const LONGEST_EDGE: u32 = 16384;
 /// Reads the texels of a file.
 pub(crate) fn read(path: &Path) -> Result<Texels, String> {
     let bytes = TEXTURE_FILE.read(path).map_err(|why| why.to_string())?;
-    let tga = path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("tga"));
-    decode(&bytes, tga.then_some(ImageFormat::Tga))
+    let is_tga = has_extension(path, "tga");
+    decode(&bytes, is_tga.then_some(ImageFormat::Tga))
 }
 
 /// Checks that the first bytes of a picture are those of a kind that can be read. TGA has none.

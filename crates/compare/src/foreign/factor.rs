@@ -16,6 +16,7 @@
 
 use crate::error::{CompareError, Result};
 use crate::foreign::raster::{self, Raster, check_size};
+use skiagraph_reference::flip::linear;
 use std::{path::Path, str::FromStr};
 
 /// Conventions of a picture of the light factor that differ from the default: first row at the top,
@@ -146,16 +147,6 @@ fn light(raster: &Raster, reading: Reading) -> Result<Vec<f64>> {
         sums = flipped(&sums, raster.size);
     }
     Ok(sums)
-}
-
-/// Returns the linear share of a number that is encoded by the transfer function of sRGB (IEC
-/// 61966-2-1).
-pub fn linear(encoded: f64) -> f64 {
-    if encoded <= 0.04045 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
 }
 
 /// Returns the values of pixels, row by row, with the rows in reverse order: the last row first.

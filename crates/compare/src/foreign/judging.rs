@@ -385,9 +385,8 @@ fn one(
     let has_blockers = judgement.is_hard && wrong.certain > 0;
     let blockers = has_blockers.then(|| truth.view.blockers(&outputs, pixels));
     let answers = (&outputs, &judgement);
-    let drawn = judging
-        .draws
-        .then(|| draw(factor, &answered_truth, answers));
+    let drawn = || draw(factor, &answered_truth, answers);
+    let drawn = judging.draws.then(drawn);
     let (images, files) = drawn.transpose()?.unzip();
     let answer = outputs.shares.as_ref().map(|_| Answer::Graded);
     let picture = JudgedPicture {

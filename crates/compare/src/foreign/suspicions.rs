@@ -1,10 +1,10 @@
 //! Suspects a mistake in a foreign picture: it would agree much better with the truth if it were
 //! read in another way, its surfaces shade themselves, or it hardly agrees at all.
 
-use crate::foreign::factor::{flipped, linear};
+use crate::foreign::factor::flipped;
 use crate::records::judged_pictures::MOST_WITHOUT_ANSWER;
 use crate::wording::percent;
-use skiagraph_reference::GroundTruth;
+use skiagraph_reference::{GroundTruth, flip::linear};
 
 /// Share of the error that another reading must leave at most to be named.
 const MUCH_BETTER: f64 = 0.5;

@@ -335,9 +335,7 @@ impl<'a> GroundTruthFrames<'a> {
     /// is hidden behind another one by more than rounding.
     pub fn wrong_surfaces(&self) -> u64 {
         let truth_views = self.truth_views.iter();
-        truth_views
-            .map(|truth_view| truth_view.wrong_surfaces)
-            .sum()
+        truth_views.map(|view| view.wrong_surfaces).sum()
     }
 
     /// Counts the pixels of the [reference](crate#terms) itself over all frames, as [`own_counts`]

@@ -42,10 +42,8 @@ pub fn find(method: &Method, exact: &[String]) -> Result<Option<(Guarantee, Stri
     let claims = preset.graph.claims(&method.params, viewport, features);
     let claims = claims.map_err(|faults| CompareError::Input(reasons(faults.iter())))?;
     let words = CLAIMS.map(Guarantee::word);
-    let mut unknown = claims
-        .iter()
-        .filter(|it| !words.contains(&it.name.as_str()));
-    if let Some(unknown) = unknown.next() {
+    let mut each = claims.iter();
+    if let Some(unknown) = each.find(|it| !words.contains(&it.name.as_str())) {
         let (preset, name) = (&preset.name, &unknown.name);
         let (hint, words) = (did_you_mean(name, words.into_iter()), words.join(" or "));
         return Err(CompareError::Input(format!(

@@ -5,7 +5,6 @@ use crate::support::{NOWHERE, comparison, gpu, park, scene};
 use image::{GrayImage, ImageBuffer, ImageFormat, Luma, RgbImage, Rgba, RgbaImage};
 use skiagraph_compare::{
     foreign::{
-        factor::linear,
         judging::{Judging, Surfaces, judge},
         raster,
         truth::{TruthRequest, write_truth},
@@ -20,7 +19,7 @@ use skiagraph_compare::{
     sink::{Session, Silent},
 };
 use skiagraph_gpu::block_on;
-use skiagraph_reference::WrongCounts;
+use skiagraph_reference::{WrongCounts, flip::linear};
 use skiagraph_scene::Scene;
 use std::{fs, path::PathBuf, sync::Arc};
 use tempfile::TempDir;

@@ -179,9 +179,8 @@ impl TwoLevelBvh {
         let empty = (Bvh::default(), Arc::default());
         for piece in pieces {
             let tree = trees.get(&piece.copy_of);
-            let (tree, order) = tree
-                .filter(|_| !piece.triangles.is_empty())
-                .unwrap_or(&empty);
+            let tree = tree.filter(|_| !piece.triangles.is_empty());
+            let (tree, order) = tree.unwrap_or(&empty);
             built.append(tree, Arc::clone(order), piece.triangles);
         }
         built

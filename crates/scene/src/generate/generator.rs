@@ -58,11 +58,9 @@ impl Generator {
     pub fn with_triangles(self, text: &str) -> Result<Self, String> {
         let (least, most) = TRIANGLES.into_inner();
         let number = text.replace('_', "").parse().ok();
-        let triangles = number
-            .filter(|number| TRIANGLES.contains(number))
-            .ok_or_else(|| {
-                format!("{text:?} is not a number of triangles from {least} to {most}")
-            })?;
+        let fits = number.filter(|number| TRIANGLES.contains(number));
+        let wrong = || format!("{text:?} is not a number of triangles from {least} to {most}");
+        let triangles = fits.ok_or_else(wrong)?;
         match self {
             Self::City { .. } => Ok(Self::City { triangles }),
             Self::Forest { .. } => Ok(Self::Forest { triangles }),

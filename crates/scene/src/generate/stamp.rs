@@ -34,10 +34,8 @@ impl Stamp {
                 mesh.normals.index(normal)
             };
             let places: Vec<u32> = part.normals.iter().map(|&normal| place(normal)).collect();
-            let indices = part.normal_indices.iter();
-            indices
-                .map(|corners| corners.map(|index| places[index as usize]))
-                .collect()
+            let placed = |corners: &[u32; 3]| corners.map(|index| places[index as usize]);
+            part.normal_indices.iter().map(placed).collect()
         });
         Self {
             positions: part.positions.iter().map(|p| p.as_dvec3()).collect(),

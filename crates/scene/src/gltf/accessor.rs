@@ -32,15 +32,10 @@ fn unnamed_floats<const N: usize>(
         std::array::from_fn(|at| number(&bytes[at * ty.size()..], ty, normalized) as f32)
     };
     let mut items: Vec<[f32; N]> = match accessor.view() {
-        Some(view) => raw(
-            &view,
-            accessor.offset(),
-            accessor.size(),
-            accessor.count(),
-            buffers,
-        )?
-        .map(item)
-        .collect(),
+        Some(view) => {
+            let places = [accessor.offset(), accessor.size(), accessor.count()];
+            raw(&view, places, buffers)?.map(item).collect()
+        }
         None => {
             // Zeros that no buffer holds: a damaged count must not take memory without bound.
             let limit = 1 << 26;
@@ -60,9 +55,9 @@ fn unnamed_floats<const N: usize>(
         gltf::accessor::sparse::IndexType::U32 => DataType::U32,
     };
     let (view, count) = (indices.view(), sparse.count());
-    let places = raw(&view, indices.offset(), index_type.size(), count, buffers)?;
+    let places = raw(&view, [indices.offset(), index_type.size(), count], buffers)?;
     let view = values.view();
-    let values = raw(&view, values.offset(), accessor.size(), count, buffers)?;
+    let values = raw(&view, [values.offset(), accessor.size(), count], buffers)?;
     let total = items.len();
     for (place, value) in places.zip(values) {
         let place = whole(place, index_type) as usize;
@@ -86,25 +81,16 @@ pub(super) fn indices(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<
     if !matches!(ty, DataType::U8 | DataType::U16 | DataType::U32) {
         return Err(format!("indices are unsigned whole numbers, not {ty:?}"));
     }
-    let view = accessor
-        .view()
-        .ok_or_else(|| "indices without a buffer view".to_owned())?;
-    let items = raw(
-        &view,
-        accessor.offset(),
-        ty.size(),
-        accessor.count(),
-        buffers,
-    )?;
+    let view = accessor.view().ok_or("indices without a buffer view")?;
+    let places = [accessor.offset(), ty.size(), accessor.count()];
+    let items = raw(&view, places, buffers)?;
     Ok(items.map(|bytes| whole(bytes, ty)).collect())
 }
 
-/// The bytes of `count` items of `size` bytes each.
+/// The bytes of `count` items of `size` bytes each, of which the first begins at `offset`.
 fn raw<'b>(
     view: &gltf::buffer::View<'_>,
-    offset: usize,
-    size: usize,
-    count: usize,
+    [offset, size, count]: [usize; 3],
     buffers: &'b Buffers,
 ) -> Result<impl Iterator<Item = &'b [u8]> + use<'b>, String> {
     let bytes = buffers.view(view).ok_or_else(|| {
@@ -114,10 +100,8 @@ fn raw<'b>(
             view.buffer().index()
         )
     })?;
-    let own = view
-        .stride()
-        .or(buffers.strides.get(&view.index()).copied());
-    let stride = own.unwrap_or(size).max(1);
+    let read = buffers.strides.get(&view.index()).copied();
+    let stride = view.stride().or(read).unwrap_or(size).max(1);
     let end = end_of(count, stride, size, offset);
     if count > 0 && end.is_none_or(|end| end > bytes.len()) {
         return Err(format!(

@@ -79,9 +79,8 @@ impl Animations {
     /// Nodes that any of them moves.
     pub fn nodes(&self) -> HashSet<usize> {
         let channels = self.list.iter().flat_map(|clip| items(clip, "channels"));
-        channels
-            .filter_map(|channel| index(channel.pointer("/target/node")))
-            .collect()
+        let nodes = channels.map(|channel| channel.pointer("/target/node"));
+        nodes.filter_map(index).collect()
     }
 
     /// The tracks of an animation, and what of it is not followed; `name` names nodes.
@@ -234,9 +233,8 @@ impl Animations {
         let items = (0..count).map(|item| offset + item * stride);
         let places = items.flat_map(|at| (0..width).map(move |axis| at + axis * ty.size()));
         // Whole numbers are normalised ones, which is what keys may be.
-        Ok(places
-            .map(|at| accessor::number(&data[at..], ty, true))
-            .collect())
+        let numbers = places.map(|at| accessor::number(&data[at..], ty, true));
+        Ok(numbers.collect())
     }
 
     /// The bytes of a buffer: those that the mesh needs are there, others are read.

@@ -152,12 +152,8 @@ pub(super) fn clips(source: &Source<'_>, placed: &Placed<'_>) -> (Vec<Clip>, Vec
         remarks.extend(notes);
         match clip {
             Ok(clip) => {
-                let name = names.unlike(&plain);
-                if name != plain {
-                    remarks.push(format!(
-                        "{place}: another animation has that name: its path is called {name}"
-                    ));
-                }
+                let (name, note) = names.noted(&plain, "animation", "its path is");
+                remarks.extend(note.map(|note| format!("{place}: {note}")));
                 clips.push(Clip { name, ..clip });
             }
             Err(why) => remarks.push(format!("{place} is left out: {why}")),
@@ -348,10 +344,8 @@ fn camera_keys(worlds: &[DMat4], place: &str, notes: &mut Vec<String>) -> (DVec3
         direction: (-world.z_axis.truncate()).normalize_or_zero(),
     });
     let keys: Vec<CameraKey> = keys.collect();
-    let ups = worlds
-        .iter()
-        .map(|world| world.y_axis.truncate().normalize_or_zero());
-    let ups: Vec<DVec3> = ups.collect();
+    let own_up = |world: &DMat4| world.y_axis.truncate().normalize_or_zero();
+    let ups: Vec<DVec3> = worlds.iter().map(own_up).collect();
     // How far the pictures are rolled with a constant direction up.
     let roll = |up: DVec3| {
         let rolls = keys.iter().zip(&ups).map(|(key, own)| {

@@ -78,16 +78,11 @@ fn check_version(root: &mut Value) -> Result<(), Fault> {
         _ => None,
     };
     let is_two = |version: &String| version == "2" || version.starts_with("2.");
+    let is_one = ["nodes", "meshes"].iter().any(|it| root[*it].is_object());
     match (value_at("/asset/version"), value_at("/asset/minVersion")) {
         (Some(version), _) if !is_two(&version) => return fail(&version),
         (_, Some(least)) if least != "2.0" => return fail(&least),
-        (None, _)
-            if ["nodes", "meshes"]
-                .iter()
-                .any(|list| root[*list].is_object()) =>
-        {
-            return fail("1.0");
-        }
+        (None, _) if is_one => return fail("1.0"),
         (None, _) => return Ok(()),
         (Some(_), _) => {}
     }
@@ -98,9 +93,8 @@ fn check_version(root: &mut Value) -> Result<(), Fault> {
 fn check(root: &Root) -> Result<(), Fault> {
     for (index, mesh) in root.meshes.iter().enumerate() {
         for (number, primitive) in mesh.primitives.iter().enumerate() {
-            let positions = primitive
-                .attributes
-                .get(&Checked::Valid(Semantic::Positions));
+            let attributes = &primitive.attributes;
+            let positions = attributes.get(&Checked::Valid(Semantic::Positions));
             let count = root.accessors.len();
             if let Some(named) = positions.filter(|named| named.value() >= count) {
                 let place = format!("mesh {index}, primitive {number}");

@@ -61,14 +61,12 @@ const LOOKS: [&str; 23] = [
 
 pub(super) fn kind(name: &str) -> Kind {
     let lower = name.to_ascii_lowercase();
+    let is_named = |word: &&str| lower.contains(&word.to_ascii_lowercase());
     if FOLLOWED.contains(&name) {
         Kind::Followed
     } else if PACKED.contains(&name) {
         Kind::Packed
-    } else if LOOKS
-        .iter()
-        .any(|word| lower.contains(&word.to_ascii_lowercase()))
-    {
+    } else if LOOKS.iter().any(is_named) {
         Kind::Looks
     } else {
         Kind::Unknown

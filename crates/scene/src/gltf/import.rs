@@ -244,9 +244,8 @@ impl<'a> Import<'a> {
         mesh: &gltf::Mesh<'a>,
         nodes: &Nodes<'_>,
     ) -> Result<Placing<'a>, String> {
-        let joints = node
-            .skin()
-            .map(|skin| pose::joints(&skin, nodes, self.buffers));
+        let skin = node.skin();
+        let joints = skin.map(|skin| pose::joints(&skin, nodes, self.buffers));
         let instances = match self.beside.instances.get(&node.index()) {
             Some(numbers) => {
                 let (instances, is_none) = pose::instances(*numbers, self.document, self.buffers)?;
@@ -258,19 +257,15 @@ impl<'a> Import<'a> {
             }
             None => vec![DMat4::IDENTITY],
         };
-        let Beside {
-            roles, mesh_roles, ..
-        } = self.beside;
+        let role = self.beside.roles.get(&node.index());
+        let role = role.or(self.beside.mesh_roles.get(&mesh.index()));
         Ok(Placing {
             group: group(mesh, node.name()),
             weights: node.weights().or(mesh.weights()).unwrap_or_default(),
             joints: joints.transpose()?,
             node: nodes.worlds.get(&node.index()).copied().unwrap_or_default(),
             instances,
-            role: roles
-                .get(&node.index())
-                .or(mesh_roles.get(&mesh.index()))
-                .copied(),
+            role: role.copied(),
         })
     }
 
@@ -316,13 +311,8 @@ impl<'a> Import<'a> {
         };
         let triangles = self.triangles(primitive.mode(), &arrays.indices, arrays.restart);
         for instance in &placing.instances {
-            self.place(
-                &arrays,
-                &triangles,
-                material,
-                node * *instance,
-                &placing.group,
-            )?;
+            let transform = node * *instance;
+            self.place(&arrays, &triangles, material, transform, &placing.group)?;
         }
         Ok(())
     }
@@ -433,18 +423,16 @@ impl<'a> Import<'a> {
     /// Contents of a primitive's accessors.
     fn arrays(&self, primitive: &gltf::Primitive<'_>, material: usize) -> Result<Arrays, String> {
         let material = &self.materials.all[material];
-        let positions = primitive
-            .get(&Semantic::Positions)
-            .ok_or_else(|| "it has no POSITION, so nothing can be drawn of it".to_owned())?;
+        let positions = primitive.get(&Semantic::Positions);
+        let positions = positions.ok_or("it has no POSITION, so nothing can be drawn of it")?;
         let read = |accessor: gltf::Accessor<'_>| vectors(&accessor, self.buffers);
         let positions = read(positions)?;
         let normals = primitive.get(&Semantic::Normals).map(read).transpose()?;
         let uvs = primitive.get(&Semantic::TexCoords(material.uv_set));
         let uvs = uvs.map(|accessor| accessor::floats::<2>(&accessor, self.buffers));
         let uvs = uvs.transpose()?;
-        let colours = primitive
-            .get(&Semantic::Colors(0))
-            .filter(|_| material.cut.is_some());
+        let colours = primitive.get(&Semantic::Colors(0));
+        let colours = colours.filter(|_| material.cut.is_some());
         let colours = colours.filter(|accessor| accessor.dimensions().multiplicity() == 4);
         let colours = colours.map(|accessor| accessor::floats::<4>(&accessor, self.buffers));
         let alphas = colours

@@ -103,9 +103,7 @@ impl Reader<'_> {
             None => None,
         };
         let transform = info.as_ref().and_then(|info| info.texture_transform());
-        let uv_set = transform
-            .as_ref()
-            .and_then(|transform| transform.tex_coord());
+        let uv_set = transform.as_ref().and_then(|it| it.tex_coord());
         let uv_transform = transform.map_or((Mat2::IDENTITY, Vec2::ZERO), |transform| {
             let turn = Mat2::from_angle(-transform.rotation());
             let scale = Mat2::from_diagonal(transform.scale().into());

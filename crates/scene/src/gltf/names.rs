@@ -45,6 +45,14 @@ impl Names {
         let free = names.find(|name| self.taken.insert(name.clone()));
         free.unwrap_or_else(|| name.to_owned())
     }
+
+    /// The same, and a remark if another `what` has the name; `its` says what is called.
+    pub fn noted(&mut self, plain: &str, what: &str, its: &str) -> (String, Option<String>) {
+        let name = self.unlike(plain);
+        let remark = format!("another {what} has that name: {its} called {name}");
+        let remark = (name != plain).then_some(remark);
+        (name, remark)
+    }
 }
 
 /// Names an item of a file for messages: by its number, and by its name if it has one.

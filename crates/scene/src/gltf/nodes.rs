@@ -44,10 +44,8 @@ impl<'a> Nodes<'a> {
         }
         nodes.walk(scene.nodes().collect(), beside, true)?;
         // A joint may stand outside of the scene.
-        let joints = document
-            .skins()
-            .flat_map(|skin| skin.joints().map(|joint| joint.index()));
-        let mut joints = joints.peekable();
+        let skins = document.skins();
+        let mut joints = skins.flat_map(|skin| skin.joints().map(|joint| joint.index()));
         if joints.any(|joint| !nodes.worlds.contains_key(&joint)) {
             let mut has_parent = vec![false; document.nodes().len()];
             for child in document.nodes().flat_map(|node| node.children()) {

@@ -33,12 +33,11 @@ impl Placements {
         let named = |value: &Value| index(Some(value)).unwrap_or(usize::MAX);
         let mut nodes = BTreeMap::new();
         for (number, node) in items(root, "nodes").enumerate() {
+            let light = node.pointer("/extensions/KHR_lights_punctual/light");
             let placement = Placement {
                 name: node.get("name").and_then(Value::as_str).map(str::to_owned),
                 camera: node.get("camera").map(named),
-                light: node
-                    .pointer("/extensions/KHR_lights_punctual/light")
-                    .map(named),
+                light: light.map(named),
             };
             if placement.camera.is_some() || placement.light.is_some() {
                 nodes.insert(number, placement);

@@ -199,12 +199,10 @@ pub(super) fn instances(
         return Err("its instances have attributes of different counts".to_owned());
     }
     let at = |item: usize| {
+        let turn = rotation.as_ref().and_then(|list| list[item]);
         DMat4::from_scale_rotation_translation(
             scale.as_ref().map_or(DVec3::ONE, |list| list[item]),
-            rotation
-                .as_ref()
-                .and_then(|list| list[item])
-                .unwrap_or_default(),
+            turn.unwrap_or_default(),
             translation.as_ref().map_or(DVec3::ZERO, |list| list[item]),
         )
     };

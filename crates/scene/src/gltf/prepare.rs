@@ -38,9 +38,7 @@ pub(super) fn prepare(root: &mut Value, materials: MaterialUse) -> Result<Beside
         }
     }
     each(root, "scenes", |_, scene| {
-        scene
-            .entry("nodes")
-            .or_insert_with(|| Vec::<Value>::new().into());
+        scene.entry("nodes").or_insert(Value::Array(Vec::new()));
     });
     nodes(root, &mut beside);
     meshes(root, &mut beside, materials)?;
@@ -95,10 +93,8 @@ fn nodes(root: &mut Value, beside: &mut Beside) {
         if extensions.get("KHR_node_visibility").and_then(visible) == Some(false) {
             beside.hidden.insert(number);
         }
-        let attributes = extensions
-            .get("EXT_mesh_gpu_instancing")
-            .and_then(|extension| extension.get("attributes"));
-        if let Some(attributes) = attributes {
+        let instancing = extensions.get("EXT_mesh_gpu_instancing");
+        if let Some(attributes) = instancing.and_then(|it| it.get("attributes")) {
             let accessor = |name| index(attributes.get(name));
             let instances: Instances = ["TRANSLATION", "ROTATION", "SCALE"].map(accessor);
             // Without any there is no number of instances.
@@ -111,19 +107,16 @@ fn nodes(root: &mut Value, beside: &mut Beside) {
 
 /// True for attributes that move a vertex, or by which a mask is looked up.
 fn is_read(attribute: &str) -> bool {
-    let numbered = ["TEXCOORD_", "JOINTS_", "WEIGHTS_"];
-    let number = numbered
-        .iter()
-        .find_map(|name| attribute.strip_prefix(name));
+    let mut numbered = ["TEXCOORD_", "JOINTS_", "WEIGHTS_"].iter();
+    let number = numbered.find_map(|name| attribute.strip_prefix(name));
     matches!(attribute, "POSITION" | "NORMAL" | "COLOR_0")
         || number.is_some_and(|number| number.parse::<u32>().is_ok())
 }
 
 /// True for attributes of glTF that are not read, and for those of the application's own.
 fn is_known(attribute: &str) -> bool {
-    ["_", "TANGENT", "COLOR_"]
-        .iter()
-        .any(|name| attribute.starts_with(name))
+    let mut beginnings = ["_", "TANGENT", "COLOR_"].iter();
+    beginnings.any(|name| attribute.starts_with(name))
 }
 
 fn meshes(root: &mut Value, beside: &mut Beside, materials: MaterialUse) -> Result<(), Fault> {

@@ -44,9 +44,8 @@ pub(super) fn materials(root: &mut Value, beside: &mut Beside) {
 /// Numbers of the textures that materials take.
 fn used_textures(root: &Value) -> HashSet<usize> {
     let texture = "/pbrMetallicRoughness/baseColorTexture/index";
-    items(root, "materials")
-        .filter_map(|material| index(material.pointer(texture)))
-        .collect()
+    let textures = items(root, "materials").map(|it| it.pointer(texture));
+    textures.filter_map(index).collect()
 }
 
 /// The `gltf` crate wants a picture of every texture, and a kind of every picture.

@@ -21,9 +21,8 @@ pub(super) fn storage(root: &mut Value, beside: &mut Beside) -> Result<(), Fault
 
 /// The buffer views of pictures that are read.
 fn used_images(root: &Value) -> Vec<usize> {
-    items(root, "images")
-        .filter_map(|image| index(image.get("bufferView")))
-        .collect()
+    let views = items(root, "images").map(|image| image.get("bufferView"));
+    views.filter_map(index).collect()
 }
 
 fn used_accessors(root: &Value, beside: &Beside) -> HashSet<usize> {

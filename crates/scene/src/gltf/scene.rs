@@ -164,13 +164,9 @@ impl Reader<'_> {
         let place = &placed.place;
         match self.view(number, placed) {
             Ok((view, remarks)) => {
-                let name = self.names_of_views.unlike(&view.name);
-                if name != view.name {
-                    self.remark(format!(
-                        "{place}: another camera has that name: its view is called {name}"
-                    ));
-                }
-                for remark in remarks {
+                let names = &mut self.names_of_views;
+                let (name, note) = names.noted(&view.name, "camera", "its view is");
+                for remark in note.into_iter().chain(remarks) {
                     self.remark(format!("{place}: {remark}"));
                 }
                 self.scene.nodes_of_views.push(placed.node);
@@ -240,13 +236,9 @@ impl Reader<'_> {
         };
         match read {
             Ok((light, remarks)) => {
-                let name = self.names_of_lights.unlike(&light.name);
-                if name != light.name {
-                    self.remark(format!(
-                        "{place}: another light has that name: it is called {name}"
-                    ));
-                }
-                for remark in remarks {
+                let names = &mut self.names_of_lights;
+                let (name, note) = names.noted(&light.name, "light", "it is");
+                for remark in note.into_iter().chain(remarks) {
                     self.remark(format!("{place}: {remark}"));
                 }
                 let has_range = self.placements.lights[number].get("range").is_some();
@@ -268,9 +260,8 @@ impl Reader<'_> {
         let kind: LightKind = match light.get("type").and_then(Value::as_str) {
             Some("directional") => DirectionalLight::new(direction).into(),
             Some("spot") => {
-                let cone = light
-                    .get("spot")
-                    .and_then(|spot| number(spot, "outerConeAngle"));
+                let spot = light.get("spot");
+                let cone = spot.and_then(|spot| number(spot, "outerConeAngle"));
                 let cone = cone.unwrap_or(std::f64::consts::FRAC_PI_4);
                 // A right angle that was rounded to f32 is one.
                 if !(cone > 0.0 && cone < std::f64::consts::FRAC_PI_2 + 1e-6) {

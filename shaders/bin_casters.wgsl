@@ -1,7 +1,7 @@
 // Stage to append each caster to the lists of the texels that it overlaps and in which some
 // receiver is not nearer to the light. `bin_small`: one thread per caster, which leaves those over
-// many tiles to `bin_large`: a workgroup for one or two parts of large ones. So no thread looks at more than
-// 2,048 texels, however large a triangle is.
+// many tiles to `bin_large`: a workgroup for one or two parts of large ones. So no thread looks at
+// more than 2,048 texels, however large a triangle is.
 
 #import "shared/numbered_casters.wgsl"
 #import "shared/groups.wgsl"

@@ -56,10 +56,11 @@ fn intersect_corners(
     // Divided first: the product of a small area and a small distance would underflow.
     let barycentric = weights / sum;
     let t = dot(barycentric, vec3(a.z, b.z, c.z));
-    if !(t > t_min && t <= (*hit).t) || !is_opaque(corners.primitive, barycentric.y, barycentric.z) {
+    let id = corners.primitive;
+    if !(t > t_min && t <= (*hit).t) || !is_opaque(id, barycentric.y, barycentric.z) {
         return false;
     }
-    *hit = Hit(t, corners.primitive, barycentric.y, barycentric.z);
+    *hit = Hit(t, id, barycentric.y, barycentric.z);
     return true;
 }
 

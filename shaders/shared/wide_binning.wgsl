@@ -15,7 +15,7 @@ const LANES: u32 = 32u;
 // Parts of a caster that its thread stores alone.
 const FEW_PARTS: u32 = 8u;
 
-// What the workgroup's threads need, and the first slot of it.
+// Parts and entries of the workgroup's threads, and the first slots of them.
 var<workgroup> part_total: atomic<u32>;
 var<workgroup> entry_total: atomic<u32>;
 var<workgroup> first_part: u32;

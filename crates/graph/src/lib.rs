@@ -59,6 +59,7 @@
 //! - *Executor*: the type of `skiagraph-gpu` that runs a plan on a device.
 //! - *`.previous`*: the content of a material at the end of the frame before.
 
+mod adapter_facts;
 mod compose;
 pub mod diagnostics;
 mod document;
@@ -86,6 +87,7 @@ mod source;
 #[cfg(feature = "schema")]
 mod written;
 
+pub use adapter_facts::AdapterFacts;
 pub use diagnostics::{Code, Diagnostic, Diagnostics, Label, Severity};
 pub use document::{Address, Filter};
 pub use fields::Chosen;
@@ -106,7 +108,7 @@ pub use picture::Picture;
 pub use plan::{CulledPass, MemoryEntry, OutputSummary, PartSummary, PassSummary, Plan, text};
 pub use provided_kind::ProvidedKind;
 pub use provider::{Describe, Import, NoProvider, Provided, ProvidedBinding};
-pub use request::{AdapterFacts, Capture, PartialBackend, PlanRequest, Request};
+pub use request::{Capture, PartialBackend, PlanRequest, Request};
 pub use resource::{
     Buffer, FRAME_BYTES, Growth, Origin, Resource, ResourceId, ResourceKind, Sampler,
     SubresourceRange, Target, Texture,

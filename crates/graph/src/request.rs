@@ -1,6 +1,7 @@
 //! Requests for plans.
 
 use crate::{
+    adapter_facts::AdapterFacts,
     instantiate::params::Surroundings,
     param::ParamValue,
     provider::{Describe, Import},
@@ -17,17 +18,6 @@ pub struct PartialBackend {
     /// Abilities that the backend lacks, as text for error messages, such as "no 32-bit float
     /// targets".
     pub lacks: String,
-}
-
-/// Facts about an adapter, by which a document may choose how it does its work; its results must not
-/// depend on them. Expressions read them as `adapter.software` and `adapter.subgroup_size`. The
-/// default is a GPU of which nothing else is known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct AdapterFacts {
-    /// True if the adapter runs shaders on the CPU.
-    pub is_software: bool,
-    /// Least number of threads of a subgroup, 0 if that is not known.
-    pub subgroup_size: u32,
 }
 
 /// A [`Request`] with a borrowed provider, which [`Graph::plan`](crate::Graph::plan) takes. Create

@@ -1,6 +1,6 @@
 //! How many rounds binning takes, one after the other, on adapters that run 32 threads in step:
-//! counted by the shaders of `light_buffer` themselves, on any adapter. By these counts ten times of
-//! a GPU are told (docs/light_buffer.md).
+//! counted by the shaders of `light_buffer` themselves, on any adapter. These counts give ten times
+//! of a GPU (docs/light_buffer.md).
 
 use crate::support::{
     graphs::{open, provider, run_on, values},
@@ -91,9 +91,12 @@ fn rounds_tell_the_times_of_a_gpu() {
             return;
         };
         for ([slowest, sum], measured) in rounds.into_iter().zip(measured) {
-            let told = DEPENDENT * f64::from(slowest) + ANY * f64::from(sum);
-            println!("{alone}, {part}: {slowest}, {sum}: {told:.3} ms, measured {measured} ms");
-            assert!((0.75..1.25).contains(&(told / measured)), "{alone}, {part}");
+            let reckoned = DEPENDENT * f64::from(slowest) + ANY * f64::from(sum);
+            println!("{alone}, {part}: {slowest}, {sum}: {reckoned:.3} ms, measured {measured} ms");
+            assert!(
+                (0.75..1.25).contains(&(reckoned / measured)),
+                "{alone}, {part}"
+            );
         }
     }
 }

@@ -2,13 +2,13 @@
 //! document from the document that includes it.
 
 use crate::{
+    adapter_facts::AdapterFacts,
     diagnostics::{ErrorGuaranteed, Reported, Reports},
     document::{ClaimEntry, Document},
     errors::{evaluation::EvaluationError, instantiate::ParamError},
     expressions::{Environment, eval},
     language::{AdapterFact, Attribute, Expr, Name, Reference, Value, wgsl_identifier},
     param::{Param, ParamValue, find},
-    request::AdapterFacts,
     source::{Located, Span},
 };
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `light_buffer` takes where a texel of its grid is crowded, as a share of `rt` in the same run.
+"""What `light_buffer` (unlisted=rays) takes where a texel of its grid is crowded, as a share of `rt`.
 
     scripts/crowded_texel.py                                # a minute on a software adapter
     scripts/crowded_texel.py --size 256x256 --frames 1
@@ -67,7 +67,7 @@ def main():
     write_scene(args.out)
     program = [args.program] if args.program else ["cargo", "run", "--quiet", "--release", "--locked", "--bin", "skiagraph", "--"]
     status = subprocess.run([
-        *program, "compare", "rt", "light_buffer", "--set", f"map_size={args.map_size}", "--set", "fit=scene,receivers",
+        *program, "compare", "rt", "light_buffer@unlisted=rays", "--set", f"map_size={args.map_size}", "--set", "fit=scene,receivers",
         "--scene", str(args.out / "crowded_texel.ron"), "--view", "all", "--size", args.size,
         "--frames", str(args.frames), "--warmup", "1", "--regime-frames", "0", "--images", "none",
         "--out", str(args.out / "results"),

@@ -304,7 +304,7 @@ impl Writer {
         let output = |(index, name)| format!("(name: \"output_{index}\", material: \"{name}\")");
         let outputs: Vec<String> = open.iter().enumerate().map(output).collect();
         let param = "F32(name: \"strength\", default: 0.5)";
-        let params = self.has_param.then_some(param).unwrap_or_default();
+        let params = if self.has_param { param } else { "" };
         let text = format!(
             "(\n    format: 3,\n    params: [{params}],\n    \
              materials: [\n{}    ],\n    passes: [\n{}    ],\n    outputs: [{}],\n)\n",

@@ -102,8 +102,6 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// True if there are limits of memory or frame time.
-
     /// Tries the method with `params` on all views, and returns its error: the share of wrong
     /// pixels, or under lights with an extent the mean square error. Returns [`Trial::Worse`] as
     /// soon as it must be greater than `best`.

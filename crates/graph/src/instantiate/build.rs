@@ -49,14 +49,16 @@ pub(super) struct Builder<'a> {
     asks: HashMap<*const Document, Asks>,
     pub(super) merged: Vec<Merge>,
     waiting: WaitingModules<'a>,
-    /// Settings of groups by address of their names: name of the group, name of the setting, and
-    /// true if an entry in the group uses it.
-    said: BTreeMap<*const Located<String>, (&'a Located<Name>, &'a Located<String>, bool)>,
+    /// Settings of groups by address of their names.
+    said: BTreeMap<*const Located<String>, GroupSetting<'a>>,
     spent: usize,
     full: Option<ErrorGuaranteed>,
     /// Number of frames after which all run conditions so far repeat.
     period: u64,
 }
+
+/// Name of a group, name of its setting, and true if an entry in the group uses it.
+pub(super) type GroupSetting<'a> = (&'a Located<Name>, &'a Located<String>, bool);
 
 /// Flattens a document with all that it includes. `merges`: includes of the same content are
 /// merged.

@@ -188,18 +188,16 @@ fn schedule(
         return None;
     }
     let is_constant = |id: &&ResourceId| view.resource(**id).origin == Origin::Constant;
-    let constants = lifetimes.keys().filter(is_constant);
-    let kept: BTreeSet<ResourceId> = conditions
-        .kept
-        .iter()
-        .chain(constants)
+    let kept = conditions.kept.iter();
+    let kept: BTreeSet<ResourceId> = kept
+        .chain(lifetimes.keys().filter(is_constant))
         .copied()
         .chain(readable.iter().map(|(_, target)| target.id))
         .chain(previous.values().copied())
         .chain(counters(&lifetimes, view))
         .collect();
-    let largest = request.limits.max_buffer_size;
-    let aliases = aliases(view, &sequence, &lifetimes, &kept, largest);
+    let most = request.limits.max_buffer_size;
+    let aliases = aliases(view, &sequence, &lifetimes, &kept, most);
     let culled = culled(view, &live);
     // Not those that live passes bind.
     let used = lifetimes.keys().map(|id| view.resource(*id));
@@ -207,9 +205,8 @@ fn schedule(
         asked.remove(&resource.name);
     }
     let is_own = |base: &&ResourceId| view.resource(**base).origin == Origin::Own;
-    let own = previous.values().filter(is_own);
     let schedule = Schedule {
-        ping_pong: own.copied().collect(),
+        ping_pong: previous.values().filter(is_own).copied().collect(),
         passes: sequence,
         lifetimes,
         conditions,

@@ -6,8 +6,11 @@ use crate::link::{LinkedPass, pass::block_mut};
 /// entry for each pass: true if its bytes changed.
 pub(super) fn write(passes: &mut [LinkedPass], name: &str, words: &[u32]) -> Vec<bool> {
     let write = |pass: &mut LinkedPass| {
-        let blocks = pass.steps.iter_mut().filter_map(block_mut);
-        blocks.fold(false, |changed, block| block.set(name, words) || changed)
+        let mut changed = false;
+        for block in pass.steps.iter_mut().filter_map(block_mut) {
+            changed |= block.set(name, words);
+        }
+        changed
     };
     passes.iter_mut().map(write).collect()
 }

@@ -91,8 +91,6 @@ fn named(maps: &[u32], least: usize) -> Vec<String> {
     named.map(|map| format!("map {map}²")).collect()
 }
 
-/// Names of the sizes of marks, where there are several.
-
 /// Size of the marks of a run: the place of its map among these.
 fn mark_size(map: Option<u32>, maps: &[u32]) -> usize {
     let place = map.and_then(|map| maps.iter().position(|size| *size == map));

@@ -17,9 +17,6 @@ const MAX_BAND: f64 = 0.01;
 /// verdict says so first.
 const LARGE: f64 = 0.25;
 
-/// True if rounding decides the right answer of more than 1 % of the pixels facing the light. A
-/// verdict then holds only for the rest of the pixels.
-
 /// The pixels that a verdict is of, where it is not of nearly all that face the light.
 #[derive(Clone, Copy, Debug)]
 pub struct Condition {

@@ -208,8 +208,6 @@ fn published(value: f64, quantity: &str) -> String {
     }
 }
 
-/// A number in small raised digits.
-
 /// Which methods could not run, each reason once.
 fn unavailable(runs: &[Run]) -> Vec<String> {
     let mut reasons: Vec<((&str, &str), Vec<String>)> = Vec::new();

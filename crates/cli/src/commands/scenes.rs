@@ -22,6 +22,6 @@ pub fn scenes() -> Result<(), CliError> {
     let heads = ["scene", "mesh", "views", "paths", "description"];
     let table = terminal(&Table::new(heads, 5, listings.into_iter().map(row)));
     let hint = "\n`skiagraph doctor` says where missing meshes are searched.\n";
-    let hint = missing.then_some(hint).unwrap_or_default();
+    let hint = if missing { hint } else { "" };
     print(&format!("{table}\n{hint}"))
 }

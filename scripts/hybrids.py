@@ -23,7 +23,7 @@ def require(holds, fault, failed):
 
 
 def check_run(run, where, failed):
-    require(run["rays"] == run["uncertain"], f"{where}: an uncertain pixel is not traced", failed)
+    require((run["rays"] or 0) == run["uncertain"], f"{where}: an uncertain pixel is not traced", failed)
     wrong, facing = run["wrong"], run["pixels"]["facing_light"]
     traced = wrong["total"] - wrong["in_band"] - wrong["certain"]
     require(traced == 0, f"{where}: {traced} wrong pixels among those traced", failed)

@@ -7,12 +7,6 @@
 #import "shared/groups.wgsl"
 #import "shared/binning.wgsl"
 
-struct Thread {
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-}
-
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_small(thread: Thread) {
     start_rounds(thread.lane);

@@ -15,12 +15,6 @@ const PART: u32 = 256u;
 
 var<storage, read_write> pending_casters: PendingCasters;
 
-struct Thread {
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-}
-
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_small(thread: Thread) {
     let number = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;

@@ -9,6 +9,12 @@ var<storage, read_write> texels: array<PendingTexel>;
 var<storage, read_write> tiles: array<vec4<u32>>;
 var<storage, read_write> pending_state: PendingState;
 
+struct Params {
+    casters: u32,
+}
+
+var<uniform> params: Params;
+
 struct Sum {
     count: u32,
     most: u32,
@@ -27,6 +33,8 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         if thread == columns * columns * map_layers {
             let last = arrayLength(&texels) - 1u;
             add(last, &sum);
+            // They are tested for all casters, and in no list.
+            sum.tests = f32(sum.count) * f32(params.casters);
             var place = claimed(sum);
             take(last, &place);
         }
@@ -73,8 +81,12 @@ fn add(texel: u32, sum: ptr<function, Sum>) -> bool {
 // of them do not overflow.
 fn claimed(sum: Sum) -> u32 {
     let work = u32(min(sum.tests / TESTS, f32(MOST_WORK)));
-    let is_too_much = atomicAdd(&pending_state.work, work) + work > MOST_WORK;
-    if is_too_much || blocks_of(sum.most) > MOST_BLOCKS {
+    if work == MOST_WORK || blocks_of(sum.most) > MOST_BLOCKS {
+        return NO_PLACE;
+    }
+    if atomicAdd(&pending_state.work, work) + work > MOST_WORK {
+        // Smaller ones may still fit.
+        atomicSub(&pending_state.work, work);
         return NO_PLACE;
     }
     atomicMax(&pending_state.most_blocks, blocks_of(sum.most));

@@ -2,6 +2,7 @@
 // to compact them for an indirect draw; one thread per corner, which answers for the edge that
 // begins there, 64 triangles per workgroup.
 
+#import "shared/groups.wgsl"
 #import "shared/all_cast.wgsl"
 #import "shared/light_triangle.wgsl"
 #import "shared/light_edges.wgsl"
@@ -35,12 +36,6 @@ var<workgroup> texels: array<vec3<f32>, CORNERS>;
 // One bit per triangle that is in the map, and the place of the group's first.
 var<workgroup> taken: array<atomic<u32>, 2>;
 var<workgroup> group_first: u32;
-
-struct Thread {
-    @builtin(workgroup_id) group: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) lane: u32,
-}
 
 // For layers that need no adjacency.
 @compute @workgroup_size(CORNERS)

@@ -4,6 +4,13 @@
 const GROUP_SIZE: u32 = 64u;
 const GROUPS_PER_ROW: u32 = 65535u;
 
+// A thread of a stage.
+struct Thread {
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) lane: u32,
+}
+
 fn group_number(group: vec3<u32>) -> u32 {
     return group.y * GROUPS_PER_ROW + group.x;
 }

@@ -165,7 +165,9 @@ type Outputs = Vec<(String, Content)>;
 
 fn outputs(plan: Plan, provider: &mut SceneProvider) -> Outputs {
     let readable = plan.readable().iter();
-    let names: Vec<String> = readable.map(|(name, _)| name.clone()).collect();
+    let names = readable.map(|(name, _)| name.clone());
+    // Casters that are behind what covers a texel are listed or not, as threads come.
+    let names: Vec<String> = names.filter(|name| name != "entry_count").collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let readbacks = run(plan, provider, &names).readbacks.into_iter();
     readbacks.map(|it| (it.name, it.content)).collect()
@@ -222,8 +224,17 @@ fn holds(preset: &str, seeds: std::ops::Range<u64>) -> usize {
             "{preset}, seed {seed}\n{text}"
         );
         moved += usize::from(in_order != in_file || text != flat);
-        let is_equal = run(shuffled) == expected;
-        assert!(is_equal, "{preset}, seed {seed}: another frame by\n{text}");
+        let outputs = run(shuffled);
+        let pairs = outputs.iter().flatten().zip(expected.iter().flatten());
+        let others: Vec<&str> = pairs
+            .filter(|(one, other)| one != other)
+            .map(|(one, _)| one.0.as_str())
+            .collect();
+        assert!(
+            others.is_empty(),
+            "{preset}, seed {seed}: another {} by\n{text}",
+            others.join(", ")
+        );
     }
     moved
 }

@@ -4,6 +4,7 @@
 // Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013.
 
 #import "shared/ray_triangle.wgsl"
+#import "shared/steps.wgsl"
 #import "shared/trace_entries.wgsl"
 
 struct Node {
@@ -49,10 +50,10 @@ fn prepare(ray: Ray) -> Prepared {
     return prepared;
 }
 
-// Where the ray enters the padded box, or MISSED.
 const MISSED: f32 = 3.0e38;
 
-fn slab_test(ray: Prepared, box: Node, t_min: f32, t_max: f32) -> f32 {
+// Where the ray enters the padded box, or MISSED; and where it leaves it.
+fn slab_test(ray: Prepared, box: Node, t_min: f32, t_max: f32) -> vec2<f32> {
     // Padding the difference, not the box: a pad below one ulp of a far-off box's coordinates would
     // be lost.
     let to_low = ((box.low - ray.sheared.origin) - ray.pad) * ray.inverse;
@@ -61,7 +62,7 @@ fn slab_test(ray: Prepared, box: Node, t_min: f32, t_max: f32) -> f32 {
     let far = max(to_low, to_high);
     let entry = max(max(near.x, near.y), max(near.z, t_min));
     let exit = min(min(far.x, far.y), min(far.z, t_max));
-    return select(MISSED, entry, entry <= exit);
+    return vec2(select(MISSED, entry, entry <= exit), exit);
 }
 
 fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
@@ -74,10 +75,11 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
     var stack: array<u32, STACK_SIZE>;
     var height = 0u;
     var node = scene_bvh_nodes[0];
-    if slab_test(prepared, node, ray.t_min, hit.t) == MISSED {
+    if slab_test(prepared, node, ray.t_min, hit.t).x == MISSED {
         return hit;
     }
     loop {
+        begin_round();
         // Down to the next leaf, all threads of a group together: a thread that tests triangles
         // here would hold up the others.
         while node.primitives == 0u {
@@ -86,9 +88,14 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
             let right = scene_bvh_nodes[first + 1u];
             let to_left = slab_test(prepared, left, ray.t_min, hit.t);
             let to_right = slab_test(prepared, right, ray.t_min, hit.t);
-            if min(to_left, to_right) != MISSED {
-                let swap = to_right < to_left;
-                if max(to_left, to_right) != MISSED {
+            count_step(NODE_STEP);
+            if min(to_left.x, to_right.x) != MISSED {
+                let is_both = max(to_left.x, to_right.x) != MISSED;
+                // The nearer child first; where any hit will do, the one whose middle is farther:
+                // what is next to a receiver seldom hides the light from it.
+                let is_farther = to_right.x + to_right.y > to_left.x + to_left.y;
+                let swap = select((to_right.x < to_left.x), is_farther, first_found && is_both);
+                if is_both {
                     stack[height] = select(first + 1u, first, swap);
                     height += 1u;
                 }
@@ -106,6 +113,7 @@ fn trace(ray: Ray, skipped: u32, first_found: bool) -> Hit {
         }
         for (var slot = node.first; slot < node.first + node.primitives; slot++) {
             let primitive = scene_bvh_primitives[slot];
+            count_step(TRIANGLE_STEP);
             if primitive != skipped
                 && intersect(prepared.sheared, primitive, ray.t_min, &hit)
                 && first_found {

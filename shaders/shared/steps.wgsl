@@ -7,6 +7,9 @@ const ENTRY_STEP: u32 = 2u;
 const PART_STEP: u32 = 3u;
 // Barriers and atomics of a workgroup.
 const GROUP_STEP: u32 = 4u;
+// Nodes and triangles of a hierarchy.
+const NODE_STEP: u32 = 5u;
+const TRIANGLE_STEP: u32 = 6u;
 
 fn start_rounds(lane: u32) {
 }

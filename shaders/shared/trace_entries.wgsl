@@ -7,6 +7,7 @@
 #import "shared/ids.wgsl"
 #import "shared/ray_buffers.wgsl"
 #import "shared/ray_total.wgsl"
+#import "shared/steps.wgsl"
 
 // As `MAX_DEPTH` in crates/scene/src/bvh/tree.rs, which builds no deeper hierarchy: a level adds
 // one entry to an engine's stack at most.
@@ -14,10 +15,12 @@ const STACK_SIZE: u32 = 64u;
 
 @compute @workgroup_size(GROUP_SIZE)
 fn any_hit(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
+    start_rounds(lane);
     let index = thread_number(group, lane);
     if index < ray_total() {
         answer(index, true);
     }
+    store_rounds();
 }
 
 @compute @workgroup_size(GROUP_SIZE)

@@ -6,8 +6,10 @@ const TEXEL_STEP: u32 = 1u;
 const ENTRY_STEP: u32 = 2u;
 const PART_STEP: u32 = 3u;
 const GROUP_STEP: u32 = 4u;
-const KINDS: u32 = 5u;
-const ROUNDS: u32 = 64u;
+const NODE_STEP: u32 = 5u;
+const TRIANGLE_STEP: u32 = 6u;
+const KINDS: u32 = 7u;
+const ROUNDS: u32 = 128u;
 
 // Steps of the warp with most; of all warps; rounds that were too many to count.
 struct Rounds {
@@ -18,9 +20,9 @@ struct Rounds {
 
 var<storage, read_write> rounds: Rounds;
 var<private> own_round: u32 = 0u;
-var<private> steps: array<u32, 5>;
+var<private> steps: array<u32, 7>;
 var<private> own_lane: u32 = 0u;
-var<workgroup> most: array<atomic<u32>, 640>;
+var<workgroup> most: array<atomic<u32>, 1792>;
 
 fn flush() {
     if own_round >= ROUNDS {

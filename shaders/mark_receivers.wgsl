@@ -5,14 +5,7 @@
 #import "shared/pixel_blocks.wgsl"
 #import "shared/receiver.wgsl"
 
-struct MarkedTexel {
-    max_receiver_depth: atomic<u32>,
-    length: u32,
-    head: u32,
-    full_coverage_depth: u32,
-}
-
-var<storage, read_write> texels: array<MarkedTexel>;
+var<storage, read_write> texels: array<BinnedTexel>;
 
 @compute @workgroup_size(8, 8)
 fn main(

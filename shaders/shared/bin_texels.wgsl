@@ -9,13 +9,6 @@ struct Params {
     longest_list: u32,
 }
 
-struct BinnedTexel {
-    max_receiver_depth: atomic<u32>,
-    length: atomic<u32>,
-    head: atomic<u32>,
-    full_coverage_depth: atomic<u32>,
-}
-
 var<uniform> params: Params;
 // As mark_tiles.wgsl has them.
 var<storage, read> tiles: array<vec4<u32>>;
@@ -153,22 +146,10 @@ fn texels_in(caster: Binned, tile: vec2<u32>) -> vec2<u32> {
     let depth = nearest - caster.depth_tolerance;
     let max_depth = bitcast<f32>(marked.x);
     let shading = shading_functions(caster, middle, max_depth);
-    let corner = tile * TILE;
     let box = shaded_texels(caster, max_depth);
     let may_shade = depth_bits(depth) <= marked.x && is_tile_wanted(marked)
-        && all(shading >= -f32(TILE) * caster.edge_threshold)
-        && all(box.xy < corner + TILE) && all(box.zw >= max(corner, box.xy));
-    let low = max(box.xy, corner) - corner;
-    let high = min(max(box.zw, corner) - corner, vec2(TILE - 1u));
-    let columns = (0xffu << low.x) & (0xffu >> (TILE - 1u - high.x));
-    let rows = (0xffu << low.y) & (0xffu >> (TILE - 1u - high.y));
-    let bits = vec2(bytes_of(rows & 0xfu), bytes_of(rows >> 4u)) * columns;
-    return select(vec2(0u), bits & marked.yz, may_shade);
-}
-
-// 1 in each byte whose bit is set in a number of four bits.
-fn bytes_of(bits: u32) -> u32 {
-    return (bits * 0x204081u) & 0x1010101u;
+        && all(shading >= -f32(TILE) * caster.edge_threshold);
+    return select(vec2(0u), tile_bits(box.xy, box.zw, tile) & marked.yz, may_shade);
 }
 
 fn append(caster: Binned, texel: vec2<u32>, slot: u32, lines: Lines) {

@@ -112,16 +112,11 @@ fn caster_of_face(number: u32) -> Binned {
     let least = saturate(min(a.z, min(b.z, c.z)));
     let greatest = saturate(max(a.z, max(b.z, c.z)));
     let nearest = min(a.w, min(b.w, c.w));
-    // Projected rounding, and the projected difference of the tracer's view, seen from the nearest
-    // corner.
     let projected_ratio = max(
         max_projected_ratio(a),
         max(max_projected_ratio(b), max_projected_ratio(c)),
     );
-    let spread = light_spread();
-    let rounding = traced() * light.max_distance * (1.0 + spread) / nearest
-        + CLIP_ROUNDING * (2.0 + 4.0 * spread) * (1.0 + projected_ratio) * (1.0 + projected_ratio);
-    let dilation = SLACK + map_fit.scale * rounding;
+    let dilation = face_dilation(nearest, projected_ratio);
     let depth_tolerance = traced() * light.max_distance / light.range;
     if !(nearest > 0.0 && dilation < 0.125 * map_fit.size) {
         let plane = DepthPlane(vec3(0.0), vec2(0.0), -1.0, least, greatest, 0.0);
@@ -133,6 +128,15 @@ fn caster_of_face(number: u32) -> Binned {
     let triangle = LightTriangle(p, q, r, cross_2d(q.xy - p.xy, r.xy - p.xy));
     let plane = DepthPlane(p, vec2(0.0), -1.0, least, greatest, 0.0);
     return caster_over(number, triangle, plane, dilation, depth_tolerance);
+}
+
+// For a caster whose nearest corner is so far before the light: projected rounding, and the
+// projected difference of the tracer's view, seen from there.
+fn face_dilation(nearest: f32, projected_ratio: f32) -> f32 {
+    let spread = light_spread();
+    let rounding = traced() * light.max_distance * (1.0 + spread) / nearest
+        + CLIP_ROUNDING * (2.0 + 4.0 * spread) * (1.0 + projected_ratio) * (1.0 + projected_ratio);
+    return SLACK + map_fit.scale * rounding;
 }
 
 fn face_texel(seen: vec4<f32>) -> vec3<f32> {

@@ -30,6 +30,11 @@ fn light_beyond() -> f32 {
     return 0.0;
 }
 
+// How many texels beyond their box casters shade receivers, none of them nearer to the light.
+fn cluster_reach(nearest: f32) -> vec2<f32> {
+    return vec2(0.0);
+}
+
 // Returns true if the depth of the plane at a receiver's own place tells whether it is before it.
 fn has_usable_plane(plane: DepthPlane) -> bool {
     return true;

@@ -116,8 +116,7 @@ fn reach_of(triangle: LightTriangle, plane: DepthPlane, tolerance: f32) -> Reach
     let most = spread * select(1.0, MOST_POINT_SPREAD, light_kind == LIGHT_POINT);
     let opposite = depths.zxy + vec3(triangle.area) / max(most, vec3(1e-30));
     let own = min(depths, depths.yzx);
-    let box = vec2(length(vec2(rim.right.x, rim.up.x)), length(vec2(rim.right.y, rim.up.y)))
-        * select(1.0, 1.7321, light_kind == LIGHT_POINT);
+    let box = reach_box(rim);
     let low = min(a + depths.x * box, min(b + depths.y * box, c + depths.z * box));
     let high = max(a - depths.x * box, max(b - depths.y * box, c - depths.z * box));
     let least = min(depths.x, min(depths.y, depths.z));
@@ -126,6 +125,27 @@ fn reach_of(triangle: LightTriangle, plane: DepthPlane, tolerance: f32) -> Reach
 
 fn reach_of_whole_face() -> Reach {
     return Reach(vec3(0.0), vec3(0.0), vec2(-1e30), vec2(1e30), vec2(0.0), 0.0, 0.0);
+}
+
+fn cluster_reach(nearest: f32) -> vec2<f32> {
+    let depth = map_depths(vec3(nearest)).x;
+    let box = reach_box(rim_shifts());
+    return 1.001 * box * max(shift_of(depth, bitcast<f32>(max_depth_bits)) - depth, 0.0);
+}
+
+// Across the light, of what is a depth of 1 nearer to it.
+fn reach_box(rim: Rim) -> vec2<f32> {
+    return vec2(length(vec2(rim.right.x, rim.up.x)), length(vec2(rim.right.y, rim.up.y)))
+        * select(1.0, 1.7321, light_kind == LIGHT_POINT);
+}
+
+// The depth of the farthest receivers, deeper where they see more of the light.
+fn shift_of(least: f32, max_depth: f32) -> f32 {
+    let depth = map_depth_of_receiver(max_depth);
+    if light_kind != LIGHT_POINT {
+        return depth;
+    }
+    return depth + (near_spread(max_depth) - 1.0) * max(depth - least, 0.0);
 }
 
 fn spread_of(edge: vec2<f32>, rim: Rim) -> f32 {
@@ -137,11 +157,7 @@ fn shaded_box(triangle: LightTriangle, reach: Reach) -> vec4<f32> {
 }
 
 fn box_at(reach: Reach, max_depth: f32) -> vec4<f32> {
-    let depth = map_depth_of_receiver(max_depth);
-    var shift = depth;
-    if light_kind == LIGHT_POINT {
-        shift += (near_spread(max_depth) - 1.0) * max(depth - reach.least, 0.0);
-    }
+    let shift = shift_of(reach.least, max_depth);
     return vec4(reach.low - shift * reach.box_spread, reach.high + shift * reach.box_spread);
 }
 

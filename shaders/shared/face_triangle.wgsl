@@ -4,17 +4,23 @@
 
 #import "shared/light_triangle.wgsl"
 
-// Returns true if all of it is beyond one of the planes x = w, x = -w, y = w, y = -w, or behind the
-// light, by more than that and rounding.
-fn is_beside(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, beyond: f32) -> bool {
+// Returns a bit for each of the planes x = w, x = -w, y = w, y = -w that a corner is beyond, and
+// one if it is behind the light, by more than that and rounding.
+fn sides_beyond(seen: vec4<f32>, beyond: f32) -> u32 {
     let spread = light_spread();
     let tolerance = beyond + 2.0 * CLIP_ROUNDING * (1.0 + spread) * light.range
         + 8.0 * HALF_ULP * light.max_distance * spread;
-    let wide = (1.0 + 2.0 / map_fit.size) * vec3(a.w, b.w, c.w) + tolerance;
-    let x = vec3(a.x, b.x, c.x);
-    let y = vec3(a.y, b.y, c.y);
-    return all(x > wide) || all(-x > wide) || all(y > wide) || all(-y > wide)
-        || all(vec3(a.w, b.w, c.w) < vec3(-tolerance));
+    let wide = (1.0 + 2.0 / map_fit.size) * seen.w + tolerance;
+    let beside = select(vec4(0u), vec4(1u, 2u, 4u, 8u), vec4(seen.xy, -seen.xy) > vec4(wide));
+    let behind = select(0u, 16u, seen.w < -tolerance);
+    return beside.x | beside.y | beside.z | beside.w | behind;
+}
+
+const ALL_SIDES: u32 = 31u;
+
+// Returns true if all of a triangle is beyond one of them.
+fn is_beside(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, beyond: f32) -> bool {
+    return (sides_beyond(a, beyond) & sides_beyond(b, beyond) & sides_beyond(c, beyond)) != 0u;
 }
 
 struct FaceTriangle {

@@ -2,6 +2,7 @@
 
 #import "shared/groups.wgsl"
 #import "shared/bin_texels.wgsl"
+#import "shared/clusters.wgsl"
 
 struct Large {
     // Those included for which there is no room.
@@ -10,8 +11,7 @@ struct Large {
 }
 
 var<storage, read_write> large: Large;
-// Workgroups in x, y, z: one for each PARTS_PER_GROUP parts.
-var<storage, read_write> large_groups: array<atomic<u32>, 3>;
+var<storage, read_write> live_clusters: LiveClusters;
 
 // Returns the first slot of as many parts, and has workgroups run for them.
 fn reserved_parts(count: u32) -> u32 {
@@ -21,9 +21,9 @@ fn reserved_parts(count: u32) -> u32 {
         atomicStore(&texels[arrayLength(&texels) - 1u].length, LIST_LACKS);
     }
     let groups = (end + PARTS_PER_GROUP - 1u) / PARTS_PER_GROUP;
-    atomicMax(&large_groups[0], min(groups, GROUPS_PER_ROW));
-    atomicMax(&large_groups[1], (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
-    atomicMax(&large_groups[2], 1u);
+    atomicMax(&live_clusters.large_groups[0], min(groups, GROUPS_PER_ROW));
+    atomicMax(&live_clusters.large_groups[1], (groups + GROUPS_PER_ROW - 1u) / GROUPS_PER_ROW);
+    atomicMax(&live_clusters.large_groups[2], 1u);
     return slot;
 }
 

@@ -19,6 +19,14 @@ struct Texel {
     full_coverage_depth: u32,
 }
 
+// The same while receivers and casters are sought.
+struct BinnedTexel {
+    max_receiver_depth: atomic<u32>,
+    length: atomic<u32>,
+    head: atomic<u32>,
+    full_coverage_depth: atomic<u32>,
+}
+
 const LIST_LACKS: u32 = 0x80000000u;
 // An entry is a vec4: the number of the next one, the caster, and whom it cannot shade, see
 // `entry_key`. Entries count from 1, so that a cleared buffer holds empty lists.
@@ -37,6 +45,23 @@ const TILE: u32 = 8u;
 
 // The layer of the grid whose lists a pass makes; `map_fit` is its.
 override binned_layer: u32 = 0u;
+
+// A bit for each texel of a tile from the first of some to the last, none if that is before it.
+fn tile_bits(first: vec2<u32>, last: vec2<u32>, tile: vec2<u32>) -> vec2<u32> {
+    let corner = tile * TILE;
+    let is_one = all(first < corner + TILE) && all(last >= max(corner, first));
+    let low = max(first, corner) - corner;
+    let high = min(max(last, corner) - corner, vec2(TILE - 1u));
+    let columns = (0xffu << low.x) & (0xffu >> (TILE - 1u - high.x));
+    let rows = (0xffu << low.y) & (0xffu >> (TILE - 1u - high.y));
+    let bits = vec2(bytes_of(rows & 0xfu), bytes_of(rows >> 4u)) * columns;
+    return select(vec2(0u), bits, is_one);
+}
+
+// 1 in each byte whose bit is set in a number of four bits.
+fn bytes_of(bits: u32) -> u32 {
+    return (bits * 0x204081u) & 0x1010101u;
+}
 
 // Where a receiver is in the grid.
 struct Place {

@@ -21,6 +21,7 @@ mod support;
 mod area;
 mod cascades;
 mod changes;
+mod clusters;
 mod compiled_apart;
 mod contact;
 mod cpu_one_rings;

@@ -226,14 +226,14 @@ fn holds(preset: &str, seeds: std::ops::Range<u64>) -> usize {
         moved += usize::from(in_order != in_file || text != flat);
         let outputs = run(shuffled);
         let pairs = outputs.iter().flatten().zip(expected.iter().flatten());
-        let others: Vec<&str> = pairs
+        let differing: Vec<&str> = pairs
             .filter(|(one, other)| one != other)
             .map(|(one, _)| one.0.as_str())
             .collect();
         assert!(
-            others.is_empty(),
+            differing.is_empty(),
             "{preset}, seed {seed}: another {} by\n{text}",
-            others.join(", ")
+            differing.join(", ")
         );
     }
     moved

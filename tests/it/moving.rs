@@ -267,6 +267,42 @@ fn the_work_follows_the_parts_that_move() {
     }
 }
 
+/// A mesh that is deformed has only the list uploaded that has others, and is shown with both.
+#[test]
+fn of_positions_and_normals_those_that_stay_are_not_uploaded_again() {
+    let (gpu, count) = (open(), 6);
+    let rest = stones(count).moved(&rows(count)).unwrap();
+    let parts = Movable::new(&rest, &[]).unwrap();
+    for mut provider in [
+        SceneProvider::from_mesh(rest.clone(), sun()),
+        SceneProvider::from_parts(parts, sun()),
+    ] {
+        provider.set_camera(&view().camera(VIEWPORT));
+        let mut executor = start(&gpu, "light_buffer", &mut provider);
+        let shifted: Vec<Vec3> = rest.positions.iter().map(|at| *at + Vec3::Y).collect();
+        let turned: Vec<Vec3> = rest.normals.iter().map(|normal| -*normal).collect();
+        let [places, directions] = [&shifted, &turned].map(|list| 16 * list.len() as u64);
+        let changes = [
+            (&shifted, &turned, places + directions),
+            (&rest.positions, &turned, places),
+            (&rest.positions, &rest.normals, directions),
+        ];
+        for (positions, normals, expected) in changes {
+            let work = work(&mut provider, &mut executor, |provider| {
+                provider.deform(positions.clone(), normals.clone()).unwrap();
+            });
+            // And the light's.
+            assert_eq!(work.uploaded, expected + 144);
+            let mut mesh = rest.clone();
+            (mesh.positions, mesh.normals) = (positions.clone(), normals.clone());
+            let mut apart = SceneProvider::from_mesh(mesh, sun());
+            apart.set_camera(&view().camera(VIEWPORT));
+            let mut anew = start(&gpu, "light_buffer", &mut apart);
+            assert_eq!(shown(&gpu, &mut executor), shown(&gpu, &mut anew));
+        }
+    }
+}
+
 /// The program of docs/embedding.md says in each frame where all of the scene is; that is the same
 /// work as to move the parts one by one that are elsewhere.
 #[test]

@@ -164,21 +164,45 @@ impl Buffers {
     }
 
     /// Makes the buffer of that name with these items, one zero item if there are none.
-    pub fn make<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    pub fn make<T: bytemuck::NoUninit>(
         &mut self,
         name: &str,
         items: &[T],
         version: u64,
         on: On,
     ) -> Result<(), Error> {
-        let dummy = [T::zeroed()];
-        let items = if items.is_empty() { &dummy } else { items };
-        let content: &[u8] = bytemuck::cast_slice(items);
-        let bytes = content.len() as u64;
+        let append = |range: Range<usize>, to: &mut Vec<T>| to.extend_from_slice(&items[range]);
+        self.fill(name, (items.len(), append), version, on)
+    }
+
+    /// Does what [`make`](Self::make) does with a number of items, of which a function appends
+    /// those of a range.
+    fn fill<T: bytemuck::NoUninit>(
+        &mut self,
+        name: &str,
+        (count, items): (usize, impl Fn(Range<usize>, &mut Vec<T>)),
+        version: u64,
+        on: On,
+    ) -> Result<(), Error> {
+        /// Items that are brought at once, so that no list of all is made.
+        const PIECE: usize = 4096;
+        let stride = size_of::<T>();
+        let bytes = (count.max(1) * stride) as u64;
         check_binding(name, bytes, on.device)?;
         let buffer = self.create(name, bytes, on.device);
-        // Nothing that was encoded reads it yet.
-        on.queue.write_buffer(&buffer, 0, content);
+        // Nothing that was encoded reads it yet; without items it stays zero.
+        let size = wgpu::BufferSize::new((count * stride) as u64);
+        let view = size.and_then(|size| on.queue.write_buffer_with(&buffer, 0, size));
+        if let Some(mut view) = view {
+            let mut piece = Vec::with_capacity(PIECE.min(count));
+            for first in (0..count).step_by(PIECE) {
+                let range = first..count.min(first + PIECE);
+                piece.clear();
+                items(range.clone(), &mut piece);
+                let mut to = view.slice(stride * range.start..stride * range.end);
+                to.copy_from_slice(bytemuck::cast_slice(&piece));
+            }
+        }
         self.work.uploaded += bytes;
         self.hold(name, buffer, version);
         Ok(())
@@ -224,7 +248,7 @@ impl Buffers {
     }
 
     /// Does what [`patch`](Self::patch) does, with items that are there as a list.
-    pub fn patch_list<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    pub fn patch_list<T: bytemuck::NoUninit>(
         &mut self,
         name: &str,
         items: &[T],
@@ -232,19 +256,13 @@ impl Buffers {
         version: u64,
         on: On,
     ) -> Result<Patched, Error> {
-        let written: usize = changed.iter().map(Range::len).sum();
-        if !self.held.contains_key(name) || written >= items.len() {
-            // Without a copy of the list.
-            self.make(name, items, version, on)?;
-            return Ok(Patched::All);
-        }
         let append = |range: Range<usize>, to: &mut Vec<T>| to.extend_from_slice(&items[range]);
         self.patch(name, (items.len(), changed), append, version, on)
     }
 
     /// Makes the buffer of that name with some items of the one that there is, and these at the
     /// `changed` ranges: `items` appends those of a range of all `count`.
-    pub fn patch<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    pub fn patch<T: bytemuck::NoUninit>(
         &mut self,
         name: &str,
         (count, changed): (usize, &[Range<usize>]),
@@ -263,9 +281,7 @@ impl Buffers {
             return Ok(Patched::Nothing);
         }
         let Some(last) = last.filter(|_| 2 * written <= count) else {
-            let mut content = Vec::with_capacity(count);
-            items(0..count, &mut content);
-            self.make(name, &content, version, on)?;
+            self.fill(name, (count, items), version, on)?;
             return Ok(Patched::All);
         };
         let mut content = Vec::with_capacity(written);
@@ -278,7 +294,7 @@ impl Buffers {
 
     /// Makes the buffer of that name with these items, of which the first ones are those of the one
     /// that there is.
-    pub fn extend<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    pub fn extend<T: bytemuck::NoUninit>(
         &mut self,
         name: &str,
         items: &[T],

@@ -211,7 +211,7 @@ impl Geometry {
             let positions = part.positions();
             self.maps[piece] = Some(map);
             if put.is_elsewhere || is_host {
-                self.pieces[piece].moved = version;
+                (self.pieces[piece].moved, self.pieces[piece].leaned) = (version, version);
                 self.work.moved += positions as u64;
             }
             if put.is_turned {
@@ -247,17 +247,20 @@ impl Geometry {
         let version = next_version();
         for piece in &mut self.pieces {
             let [places, directions] = piece.ranges(mesh);
-            let is_elsewhere = match &piece.content {
+            let [is_elsewhere, is_leaning] = match &piece.content {
                 // Its range holds those of parts, too.
-                Content::Outside(outside) => outside.is_elsewhere(mesh, positions, normals),
-                _ => {
-                    mesh.positions[places.clone()] != positions[places.clone()]
-                        || mesh.normals[directions.clone()] != normals[directions]
-                }
+                Content::Outside(outside) => outside.is_bent(mesh, positions, normals),
+                _ => [
+                    mesh.positions[places.clone()] != positions[places.clone()],
+                    mesh.normals[directions.clone()] != normals[directions],
+                ],
             };
             if is_elsewhere {
                 piece.moved = version;
                 self.work.moved += places.len() as u64;
+            }
+            if is_leaning {
+                piece.leaned = version;
             }
         }
         true
@@ -520,9 +523,9 @@ impl Geometry {
         if self.is_begun_after(version) {
             return all(count);
         }
-        let moved = self.pieces.iter();
-        let moved = moved.filter(|piece| piece.moved > version && piece.host().is_none());
         let list = usize::from(name == NORMALS);
+        let moved = self.pieces.iter().filter(|piece| piece.host().is_none());
+        let moved = moved.filter(|piece| [piece.moved, piece.leaned][list] > version);
         moved
             .map(|piece| piece.ranges(mesh)[list].clone())
             .collect()

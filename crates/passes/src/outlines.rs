@@ -4,6 +4,7 @@
 use crate::{names::remember, part::box_corners, uniforms::LightUniform};
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{DirectionalLight, LightKind, Outline, outline::border};
+use std::collections::BTreeMap;
 
 /// Number of directions of light whose outlines are kept: those of lights that take turns, or of a
 /// scene with many.
@@ -48,15 +49,16 @@ struct Direction {
 }
 
 impl Outlines {
-    /// Returns the uniform of a light around pieces, each with the number of its last move and
-    /// its `corners`, and the number of corners that were looked at.
+    /// Returns the uniform of a light around pieces, each with the number of its last move, and the
+    /// number of corners that were looked at. `corners` are the number of a piece's, and those that
+    /// may be on its box or outline.
     pub fn lay(
         &mut self,
         light: LightKind,
         moved: &[u64],
-        corners: impl Fn(usize) -> Vec<Vec3>,
+        corners: impl Fn(usize) -> (usize, Vec<Vec3>),
     ) -> (LightUniform, u64) {
-        let mut laid = self.lay_boxes(moved, &corners);
+        let (mut laid, mut looked_at) = self.lay_boxes(moved, &corners);
         self.borders.resize_with(moved.len(), Of::default);
         let (boxes, borders) = (&self.boxes, &mut self.borders);
         let bounds = boxes.iter().filter_map(|entry| entry.made);
@@ -80,8 +82,11 @@ impl Outlines {
                     laid += border.len() as u64;
                     return sun.outline(border.iter().copied());
                 }
-                let corners = corners(piece);
-                laid += corners.len() as u64;
+                let corners = looked_at.remove(&piece).unwrap_or_else(|| {
+                    let (count, corners) = corners(piece);
+                    laid += count as u64;
+                    corners
+                });
                 entry.made = match entry.made {
                     Border::Unasked => Border::AskedOnce,
                     _ => Border::Found(border(&corners)),
@@ -97,20 +102,26 @@ impl Outlines {
         (uniform, laid)
     }
 
-    /// Makes the boxes of pieces that have moved; the number of corners that were looked at.
-    fn lay_boxes(&mut self, moved: &[u64], corners: impl Fn(usize) -> Vec<Vec3>) -> u64 {
-        let mut laid = 0;
+    /// Makes the boxes of pieces that have moved; the number of corners that were looked at, and
+    /// those of each that may be on its outline.
+    fn lay_boxes(
+        &mut self,
+        moved: &[u64],
+        corners: impl Fn(usize) -> (usize, Vec<Vec3>),
+    ) -> (u64, BTreeMap<usize, Vec<Vec3>>) {
+        let (mut laid, mut looked_at) = (0, BTreeMap::new());
         self.boxes.resize_with(moved.len(), Of::default);
         for (piece, (entry, &moved)) in self.boxes.iter_mut().zip(moved).enumerate() {
             if entry.moved != moved {
-                let corners = corners(piece);
-                laid += corners.len() as u64;
-                let corners = corners.into_iter().map(|corner| [corner; 2]);
-                let made = corners.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+                let (count, corners) = corners(piece);
+                laid += count as u64;
+                let ends = corners.iter().map(|corner| [*corner; 2]);
+                let made = ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
                 *entry = Of { made, moved };
+                looked_at.insert(piece, corners);
             }
         }
-        laid
+        (laid, looked_at)
     }
 }
 

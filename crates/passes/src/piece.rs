@@ -5,7 +5,7 @@ use crate::{
     part::{HostPart, Part, box_corners, range_of},
 };
 use glam::Vec3;
-use skiagraph_scene::{Mesh, Movable, TwoLevelBvh};
+use skiagraph_scene::{Mesh, Movable, TwoLevelBvh, outline::outer};
 use std::{ops::Range, sync::Arc};
 
 /// A piece, with the numbers of the changes that made it as it is.
@@ -14,6 +14,8 @@ pub(crate) struct Piece {
     pub content: Content,
     /// Number of the change that brought it to where it is.
     pub moved: u64,
+    /// Number of the change that gave it its normals.
+    pub leaned: u64,
     /// Number of the change that gave its triangles their corners.
     pub turned: u64,
     /// Number of the change that gave it another tree.
@@ -45,6 +47,7 @@ impl Piece {
         Self {
             content,
             moved: version,
+            leaned: version,
             turned: version,
             built: version,
         }
@@ -122,33 +125,40 @@ impl Piece {
         }
     }
 
-    /// The positions that its triangles use.
-    pub fn corners(&self, mesh: &Mesh) -> Vec<Vec3> {
+    /// The number of positions that its triangles use, and those of them that may be on its box or
+    /// outline.
+    pub fn corners(&self, mesh: &Mesh) -> (usize, Vec<Vec3>) {
         let places = |corners: &[u32], first: usize| {
-            let corners = corners.iter().map(|corner| first + *corner as usize);
-            corners.map(|corner| mesh.positions[corner]).collect()
+            let place = |at: usize| mesh.positions[first + corners[at] as usize];
+            (corners.len(), outer(corners.len(), place))
         };
         if let Some(host) = self.host() {
-            return box_corners(host.placed).collect();
+            return (8, box_corners(host.placed).collect());
         }
         match &self.content {
             Content::Part(part) => places(part.of.corners(part.number), part.at.position),
             Content::Outside(outside) => places(&outside.corners, 0),
-            Content::Gone => Vec::new(),
-            Content::Whole => mesh.used_positions().collect(),
+            Content::Gone => (0, Vec::new()),
+            Content::Whole => {
+                let used: Vec<Vec3> = mesh.used_positions().collect();
+                (used.len(), outer(used.len(), |at| used[at]))
+            }
         }
     }
 }
 
 impl Outside {
-    /// True if a corner of its triangles would have another place or normal than in `mesh`.
-    pub fn is_elsewhere(&self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> bool {
+    /// True if a corner of its triangles would have another place than in `mesh`, and if one would
+    /// have another normal.
+    pub fn is_bent(&self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> [bool; 2] {
         let mut corners = self.corners.iter().map(|&corner| corner as usize);
         let triangles = self.triangles.iter();
         let directions = triangles.flat_map(|&id| mesh.normal_indices[id as usize]);
         let mut directions = directions.map(|normal| normal as usize);
-        corners.any(|at| mesh.positions[at] != positions[at])
-            || directions.any(|at| mesh.normals[at] != normals[at])
+        [
+            corners.any(|at| mesh.positions[at] != positions[at]),
+            directions.any(|at| mesh.normals[at] != normals[at]),
+        ]
     }
 
     pub fn new(parts: &Movable) -> Self {

@@ -1,5 +1,6 @@
 //! Outlines of points as a directional light sees them: what its box is fitted to.
 
+use crate::mesh::bounds;
 use glam::{DMat3, DVec2, DVec3, Vec3};
 
 /// Outline of points as a directional light sees them: their convex hull across the light, and
@@ -123,6 +124,48 @@ pub fn border(points: &[Vec3]) -> Vec<Vec3> {
     border.copied().collect()
 }
 
+/// Returns those of `count` points, each the `point` of its number, that may be corners of the box
+/// around all of them or of their [`Outline`], whatever the direction of the light: all but those
+/// well within a box in their convex hull. Each point is looked at once or twice.
+pub fn outer(count: usize, point: impl Fn(usize) -> Vec3) -> Vec<Vec3> {
+    /// Points by which the box is chosen.
+    const SAMPLES: usize = 1 << 16;
+    let samples = (0..count).step_by(count / SAMPLES + 1);
+    let [low, high] = inner_box(&samples.map(&point).collect::<Vec<_>>());
+    let is_outer = |point: &Vec3| point.cmple(low).any() || point.cmpge(high).any();
+    (0..count).map(point).filter(is_outer).collect()
+}
+
+/// A box in the convex hull of some points; none if its low corner is not below its high one. For
+/// each corner there is a point beyond it in all three axes, so that no plane parts the corner from
+/// all of these points.
+fn inner_box(points: &[Vec3]) -> [Vec3; 2] {
+    /// The box is smaller by this share on each side, which is far more than f64 errs by.
+    const MARGIN: f32 = 1e-3;
+    let (low, high) = bounds(points.iter().copied()).unwrap_or_default();
+    let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
+    let mut octants = [(Vec3::ZERO, 0.0); 8];
+    for &point in points {
+        let from_middle = point - middle;
+        let share = (from_middle.abs() / half).min_element();
+        let (corner, most) = &mut octants[from_middle.is_negative_bitmask() as usize];
+        if share > *most {
+            (*corner, *most) = (point, share);
+        }
+    }
+    if octants.iter().any(|(_, share)| *share == 0.0) {
+        return [Vec3::INFINITY, Vec3::NEG_INFINITY];
+    }
+    let [mut low, mut high] = [Vec3::NEG_INFINITY, Vec3::INFINITY];
+    for (octant, &(corner, _)) in octants.iter().enumerate() {
+        let is_low = [1, 2, 4].map(|axis| octant & axis != 0).into();
+        low = Vec3::select(is_low, low.max(corner), low);
+        high = Vec3::select(is_low, high, high.min(corner));
+    }
+    let margin = (high - low) * MARGIN;
+    [low + margin, high - margin]
+}
+
 /// Directions across the light, counter-clockwise.
 const DIRECTIONS: [DVec2; 8] = [
     DVec2::new(1.0, 0.0),
@@ -162,40 +205,58 @@ fn farthest_of(outlines: &[Option<Outline>], open: &[(usize, Outline)]) -> Vec<u
     parts
 }
 
-/// Polygon of the points that lie farthest in eight directions, and the depths of all: what is in
-/// it is not on the border (Akl and Toussaint, "A fast convex hull algorithm", IPL 7(5), 1978).
-struct Within {
-    corners: Vec<DVec2>,
+/// Polygon of the points that lie farthest in eight directions: what is in it is not on the border
+/// (Akl and Toussaint, "A fast convex hull algorithm", IPL 7(5), 1978).
+struct Octagon {
+    /// Where each edge begins, and its way to the next corner; none around a point.
+    edges: Vec<[DVec2; 2]>,
     /// A point so near to an edge, in areas, counts as outside.
     margin: f64,
+}
+
+impl Octagon {
+    fn new<'a>(places: impl Iterator<Item = &'a DVec2>) -> Self {
+        let mut corners = [(DVec2::ZERO, f64::NEG_INFINITY); 8];
+        for place in places {
+            for ((corner, reach), along) in corners.iter_mut().zip(DIRECTIONS) {
+                let own = along.dot(*place);
+                if own > *reach {
+                    (*corner, *reach) = (*place, own);
+                }
+            }
+        }
+        let mut corners = corners.map(|(corner, _)| corner).to_vec();
+        corners.dedup();
+        let size = corners.iter().map(|corner| corner.abs().max_element());
+        let size = size.fold(0.0, f64::max);
+        let next = corners.iter().cycle().skip(1);
+        let edges = corners.iter().zip(next).filter(|(a, b)| a != b);
+        Self {
+            edges: edges.map(|(a, b)| [*a, *b - *a]).collect(),
+            margin: 1e-12 * size * size,
+        }
+    }
+
+    fn contains(&self, place: DVec2) -> bool {
+        let is_left = |[from, way]: &[DVec2; 2]| way.perp_dot(place - *from) > self.margin;
+        !self.edges.is_empty() && self.edges.iter().all(is_left)
+    }
+}
+
+/// Region within some outlines, off their border.
+struct Within {
+    octagon: Octagon,
     nearest: f64,
     farthest: f64,
 }
 
 impl Within {
     fn new(outlines: &[Option<Outline>]) -> Self {
-        let mut corners: [Option<DVec2>; 8] = [None; 8];
-        let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for outline in outlines.iter().flatten() {
-            nearest = nearest.min(outline.nearest);
-            farthest = farthest.max(outline.farthest);
-            for &place in &outline.hull {
-                for (corner, along) in corners.iter_mut().zip(DIRECTIONS) {
-                    if corner.is_none_or(|former| along.dot(former) < along.dot(place)) {
-                        *corner = Some(place);
-                    }
-                }
-            }
-        }
-        let mut corners: Vec<DVec2> = corners.into_iter().flatten().collect();
-        corners.dedup();
-        let size = corners.iter().map(|corner| corner.abs().max_element());
-        let size = size.fold(0.0, f64::max);
+        let there = || outlines.iter().flatten();
         Self {
-            corners,
-            margin: 1e-12 * size * size,
-            nearest,
-            farthest,
+            octagon: Octagon::new(there().flat_map(|outline| &outline.hull)),
+            nearest: there().fold(f64::INFINITY, |at, outline| at.min(outline.nearest)),
+            farthest: there().fold(f64::NEG_INFINITY, |at, outline| at.max(outline.farthest)),
         }
     }
 
@@ -209,20 +270,20 @@ impl Within {
             high,
             DVec2::new(low.x, high.y),
         ];
-        let next = self.corners.iter().cycle().skip(1);
-        let mut edges = self.corners.iter().zip(next).filter(|(a, b)| a != b);
-        self.corners.len() > 2
-            && self.nearest <= outline.nearest
+        self.nearest <= outline.nearest
             && outline.farthest <= self.farthest
-            && edges.all(|(a, b)| {
-                let is_left = |corner: &DVec2| (*b - *a).perp_dot(*corner - *a) > self.margin;
-                corners.iter().all(is_left)
-            })
+            && corners.iter().all(|corner| self.octagon.contains(*corner))
     }
 }
 
 /// The corners of the convex hull, counter-clockwise (Andrew's monotone chain).
 pub(crate) fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    /// Number of points beyond which it pays to leave out those that are not on it.
+    const MANY: usize = 256;
+    if points.len() > MANY {
+        let octagon = Octagon::new(points.iter());
+        points.retain(|point| !octagon.contains(*point));
+    }
     points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     points.dedup();
     let mut hull: Vec<DVec2> = Vec::new();

@@ -174,7 +174,7 @@ impl Uploads {
         }
     }
 
-    pub fn upload_items<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    pub fn upload_items<T: bytemuck::NoUninit>(
         &mut self,
         name: &str,
         items: &[T],
@@ -330,7 +330,7 @@ impl Uploads {
     }
 
     /// Uploads the items behind those that were there, of a list that only grows.
-    pub fn upload_appended<T: bytemuck::NoUninit + bytemuck::Zeroable>(
+    pub fn upload_appended<T: bytemuck::NoUninit>(
         &mut self,
         name: &str,
         items: &[T],

@@ -1,7 +1,10 @@
 //! The light's box around parts is that around all their points, of which few are looked at.
 
 use glam::{DVec3, Vec3};
-use skiagraph_scene::{DirectionalLight, LightFit, Outline, outline::border};
+use skiagraph_scene::{
+    DirectionalLight, LightFit, Outline,
+    outline::{border, outer},
+};
 
 /// Clouds of points in rows, some of which are nothing.
 fn clouds(count: usize) -> Vec<Vec<Vec3>> {
@@ -69,7 +72,8 @@ fn the_box_of_parts_is_that_of_their_points() {
     }
 }
 
-/// The border of points gives the outlines of all of them, and of most meshes it is few.
+/// The outer points, and the border, give the outlines of all points, and of most meshes they are
+/// few.
 #[test]
 fn outlines_of_the_border_are_those_of_all_points() {
     let mut clouds: Vec<Vec<Vec3>> = clouds(60);
@@ -80,9 +84,22 @@ fn outlines_of_the_border_are_those_of_all_points() {
     let on_a_grid: Vec<Vec3> = whole.iter().map(|p| (4.0 * *p).round()).collect();
     assert!(border(&whole).len() < whole.len());
     println!("{} of {}", border(&whole).len(), whole.len());
-    clouds.extend([whole, far, flat, thin, on_a_grid]);
+    // So many that the box within them is chosen by some, in an order that those follow.
+    let many: Vec<Vec3> = (0..70_000)
+        .map(|at| whole[at % whole.len()] * (1.0 + (at / whole.len()) as f32))
+        .collect();
+    let outside = |points: &[Vec3]| outer(points.len(), |at| points[at]);
+    for points in [&whole, &far, &many] {
+        assert!(outside(points).len() < points.len());
+    }
+    clouds.extend([whole, far, flat, thin, on_a_grid, many]);
     for points in &clouds {
-        let border = border(points);
+        let outer = outside(points);
+        for op in [Vec3::min, Vec3::max] {
+            let end = |points: &[Vec3]| points.iter().copied().reduce(op);
+            assert_eq!(end(&outer), end(points));
+        }
+        let border = border(&outer);
         for turn in 0..200 {
             let angle = 0.37 * f64::from(turn);
             let direction = match turn {
@@ -94,12 +111,10 @@ fn outlines_of_the_border_are_those_of_all_points() {
             };
             let light = DirectionalLight::new(direction);
             let outline = |points: &[Vec3]| light.outline(points.iter().copied());
-            assert_eq!(
-                outline(&border),
-                outline(points),
-                "{direction}, {}",
-                points.len()
-            );
+            for some in [&outer, &border] {
+                let count = [some.len(), points.len()];
+                assert_eq!(outline(some), outline(points), "{direction}, {count:?}");
+            }
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Experimental features of wgpu. This is the only place with `unsafe` code, except for the
+//! Experimental features of wgpu. There is `unsafe` code here, in `pipelines/kept.rs` and in the
 //! allocator of a test.
 
 #![allow(unsafe_code)]

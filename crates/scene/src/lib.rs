@@ -118,7 +118,7 @@ pub use self::{
     gltf::load_gltf,
     ground::{Ground, add_ground, has_ground},
     handed::{forget_handed, hand_over},
-    library::{SceneLibrary, SceneListing},
+    library::{SceneLibrary, SceneListing, cache_folder},
     limit::Limit,
     material_use::MaterialUse,
     mesh_file::{MeshFile, MeshFileOptions},

@@ -70,6 +70,13 @@ pub struct SceneLibrary {
     pub assets: Vec<PathBuf>,
 }
 
+/// Returns Skiagraph's folder of the user's cache, on Linux `~/.cache/skiagraph`, which need not
+/// exist. `None` if the user has no home.
+pub fn cache_folder() -> Option<PathBuf> {
+    let folders = directories::ProjectDirs::from("", "", "skiagraph")?;
+    Some(folders.cache_dir().to_owned())
+}
+
 impl SceneLibrary {
     /// Returns the default folders. Scenes are in `scenes/` below the working directory. Meshes are
     /// in the folders of `SKIAGRAPH_ASSETS` ([`ASSETS_VARIABLE`]), then in Skiagraph's folder of
@@ -82,10 +89,7 @@ impl SceneLibrary {
             let folders = std::env::split_paths(&variable);
             assets.extend(folders.filter(|path| !path.as_os_str().is_empty()));
         }
-        assets.extend(
-            directories::ProjectDirs::from("", "", "skiagraph")
-                .map(|folders| folders.cache_dir().to_owned()),
-        );
+        assets.extend(cache_folder());
         Self {
             scenes: PathBuf::from("scenes"),
             assets,

@@ -21,6 +21,8 @@ use clap::{Parser, Subcommand};
     after_help = "Example:\n  skiagraph compare rt nsm --scene park --size 512x512\n\n\
         Progress goes to standard error: a bar on a terminal, a line every five seconds in a \
         pipe, or with SKIAGRAPH_PROGRESS=lines one at the begin and the end of each step.\n\n\
+        Compiled shaders are kept for the next start in the user's cache folder, or in the \
+        folder of SKIAGRAPH_SHADER_CACHE; an empty one keeps none.\n\n\
         Exit codes: 0 fine, 1 the input is wrong, 2 wrong usage, 3 no usable GPU, \
         or it was lost or hangs, 4 a condition of --fail-if does not hold, 5 worse than \
         --baseline, 130 stopped by Ctrl-C."

@@ -15,7 +15,7 @@ use skiagraph_compare::quantities::{bytes, degrees, direction, positive, vector}
 use skiagraph_compare::size::Size;
 use skiagraph_graph::Sources;
 use skiagraph_reference::OracleMode;
-use skiagraph_scene::{Concave, MaterialUse, MeshFileOptions, QuadDiagonal};
+use skiagraph_scene::{Concave, MaterialUse, MeshFileOptions, QuadDiagonal, cache_folder};
 use std::{path::PathBuf, sync::Arc, time::Duration};
 
 /// The GPU, and how much of it and of our time a graph may take.
@@ -51,6 +51,10 @@ impl GpuArgs {
         request.backends = self.backend.as_deref().map(wgpu::Backends::from_comma_list);
         request.memory_limit = self.memory_limit;
         request.timeout = (self.timeout > 0).then(|| Duration::from_secs(self.timeout));
+        request.shaders = match std::env::var_os("SKIAGRAPH_SHADER_CACHE") {
+            Some(folder) => Some(folder.into()).filter(|it: &PathBuf| *it != PathBuf::new()),
+            None => cache_folder().map(|folder| folder.join("shaders")),
+        };
         request
     }
 }

@@ -23,6 +23,7 @@ mod profile;
 mod recording;
 mod report;
 mod several_scenes;
+mod shader_cache;
 mod stress;
 mod teams;
 mod together;

@@ -20,15 +20,17 @@
 //! ```
 
 use crate::error::{CompareError, Result, with_causes};
+use crate::files::write::{folder_of, write_whole};
 use crate::records::results::{Adapter, Machine};
 use crate::wording::or_nothing;
 use skiagraph_gpu::{
-    block_on,
+    Pipelines, block_on,
     device::{self, Gpu, GpuError, Wanted},
     timing::{self, Trust},
 };
 use skiagraph_graph::Graph;
-use std::time::Duration;
+use skiagraph_scene::Limit;
+use std::{path::PathBuf, time::Duration};
 use sysinfo::{CpuRefreshKind, System};
 
 /// Request for a GPU, with limits on the memory and time that a graph may take on it.
@@ -47,7 +49,17 @@ pub struct GpuRequest {
     /// Time after which an unfinished frame is abandoned, and the device with it; `None` to wait
     /// without limit.
     pub timeout: Option<Duration>,
+    /// Folder in which compiled shaders are kept from one run of the program to the next, in a file
+    /// for each adapter; `None` keeps none.
+    pub shaders: Option<PathBuf>,
 }
+
+/// Compiled shaders that are taken over: those of shaders that are edited would pile up.
+const SHADERS: Limit = Limit {
+    of: "a file of compiled shaders",
+    mib: 256,
+    way_out: "delete it",
+};
 
 /// Opens the requested adapter, with those features that `graphs` need or can use and that it has.
 ///
@@ -66,7 +78,8 @@ pub async fn request<'a>(
     graphs: impl IntoIterator<Item = &'a Graph>,
 ) -> Result<Gpu> {
     let union = |features, graph: &Graph| features | graph.features();
-    let features = graphs.into_iter().fold(wgpu::Features::empty(), union);
+    let mut features = graphs.into_iter().fold(wgpu::Features::empty(), union);
+    features.set(wgpu::Features::PIPELINE_CACHE, request.shaders.is_some());
     let mut wanted = Wanted::default().with_features(features);
     wanted.adapter = request.adapter.as_deref();
     wanted.backends = request.backends;
@@ -76,7 +89,22 @@ pub async fn request<'a>(
     let memory = || is_software.then(free_memory).flatten();
     gpu.memory = request.memory_limit.or_else(memory);
     gpu.timeout = request.timeout;
+    let key = wgpu::util::pipeline_cache_key(&gpu.adapter.get_info());
+    if let (Some(folder), Some(key)) = (&request.shaders, key) {
+        gpu.pipelines = kept_in(folder.join(key), &gpu.device);
+    }
     Ok(gpu)
+}
+
+/// Creates an object without pipelines whose compiled shaders are kept in a file. Without a file
+/// that can be read and written, shaders are compiled again.
+fn kept_in(file: PathBuf, device: &wgpu::Device) -> Pipelines {
+    let kept = SHADERS.read(&file).unwrap_or_default();
+    Pipelines::with_kept(device, kept, move |bytes| {
+        if std::fs::create_dir_all(folder_of(&file)).is_ok() {
+            let _ = write_whole(&file, &bytes);
+        }
+    })
 }
 
 /// Memory that the machine has free: a software adapter's. What it has besides is lent out by most

@@ -35,14 +35,8 @@ impl Preparer {
     /// and its place in the graph document.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
         Presence::new(self.pipelines.device()).map_err(|error| with_table(error, &plan))?;
-        let mut pipelines = Vec::new();
-        for pass in plan.live() {
-            for step in &pass.steps {
-                let made = self.pipelines.get_or_make(pass, step);
-                let made = made.map_err(|error| with_table(error, &plan));
-                pipelines.extend(made?);
-            }
-        }
+        let made = self.pipelines.of_passes(plan.live());
+        let pipelines = made.map_err(|error| with_table(error, &plan))?;
         Ok(Prepared { plan, pipelines })
     }
 }

@@ -1,7 +1,9 @@
 //! Pipelines and bindings of the live passes.
 
 pub(crate) mod bind;
+mod cores;
 pub(crate) mod handles;
+mod kept;
 pub(crate) mod key;
 #[expect(
     clippy::module_inception,

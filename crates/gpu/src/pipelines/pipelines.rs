@@ -1,12 +1,17 @@
 //! Shader modules and pipelines of a device: each is made once, for all executors that share it.
 
-use super::{handles::PipelineKind, key::PipelineKey};
+use super::{
+    cores::on_all_cores,
+    handles::PipelineKind,
+    kept::{self, Keeper},
+    key::PipelineKey,
+};
 use crate::error::{ExecuteError, named, scoped};
 use naga::ShaderStage;
 use skiagraph_graph::{Ids, LinkedPass, Shader, step::Step};
 use std::{
     borrow::Cow,
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
@@ -50,7 +55,19 @@ pub struct Pipelines(Arc<Shared>);
 struct Shared {
     device: wgpu::Device,
     cache: Option<wgpu::PipelineCache>,
+    keeper: Option<Keeper>,
     store: Mutex<Store>,
+}
+
+impl Drop for Shared {
+    fn drop(&mut self) {
+        let data = self.cache.as_ref().and_then(wgpu::PipelineCache::get_data);
+        if let (Some(keeper), Some(data)) = (self.keeper.take(), data.map(kept::sealed))
+            && data != keeper.before
+        {
+            (keeper.keep)(data);
+        }
+    }
 }
 
 #[derive(Default)]
@@ -74,7 +91,7 @@ const FULLSCREEN: &str =
 impl Pipelines {
     /// Creates an object without pipelines for a device.
     pub fn new(device: &wgpu::Device) -> Self {
-        Self::of(device, None)
+        Self::of(device, None, None)
     }
 
     /// Creates an object without pipelines whose pipelines are made with wgpu's pipeline cache,
@@ -89,13 +106,37 @@ impl Pipelines {
     /// another device, executors fail to be made with
     /// [`ExecuteError::Gpu`](crate::ExecuteError::Gpu), which names the first pass.
     pub fn with_cache(device: &wgpu::Device, cache: wgpu::PipelineCache) -> Self {
-        Self::of(device, Some(cache))
+        Self::of(device, Some(cache), None)
     }
 
-    fn of(device: &wgpu::Device, cache: Option<wgpu::PipelineCache>) -> Self {
+    /// Creates an object without pipelines whose compiled shaders last from one run of a program to
+    /// the next: [`with_cache`](Self::with_cache), with a cache of its own. `kept` are the bytes
+    /// that `keep` was given in an earlier run; broken ones, those of another driver and none at
+    /// all do no harm. `keep` is called when the last handle is dropped, with the bytes to be
+    /// written to a file, unless they are those of before. Nothing is kept if the device lacks
+    /// `PIPELINE_CACHE`.
+    pub fn with_kept(
+        device: &wgpu::Device,
+        kept: Vec<u8>,
+        keep: impl FnOnce(Vec<u8>) + Send + Sync + 'static,
+    ) -> Self {
+        let cache = kept::cache(device, &kept);
+        let keeper = Keeper {
+            before: kept,
+            keep: Box::new(keep),
+        };
+        Self::of(device, cache, Some(keeper))
+    }
+
+    fn of(
+        device: &wgpu::Device,
+        cache: Option<wgpu::PipelineCache>,
+        keeper: Option<Keeper>,
+    ) -> Self {
         Self(Arc::new(Shared {
             device: device.clone(),
             cache,
+            keeper,
             store: Mutex::default(),
         }))
     }
@@ -105,7 +146,7 @@ impl Pipelines {
         &self.0.device
     }
 
-    /// Returns the cache given to [`with_cache`](Self::with_cache); `None` if the object was
+    /// Returns the cache that pipelines are made with; `None` if there is none, as in an object
     /// created by [`new`](Self::new).
     pub fn cache(&self) -> Option<&wgpu::PipelineCache> {
         self.0.cache.as_ref()
@@ -141,24 +182,63 @@ impl Pipelines {
             return Ok(Some(pipeline));
         }
         let device = self.device();
-        let module = self.store().modules.get(&key.shader).cloned();
+        let module = self.module(pass, &key.shader)?;
         let fullscreen = self.store().fullscreen.clone();
         let needs_fullscreen = key.draw.as_ref().is_some_and(|draw| draw.fullscreen);
         // The store gets nothing that the device refuses.
         let made = scoped(device, &pass.name, || {
-            let module = module.unwrap_or_else(|| module_of(device, &key.shader));
             let fullscreen =
                 fullscreen.or_else(|| needs_fullscreen.then(|| fullscreen_module(device)));
             let modules = (&module, fullscreen.as_ref().filter(|_| needs_fullscreen));
             let pipeline = make(device, &pass.name, &key, modules, self.cache());
-            (module, fullscreen, Arc::new(pipeline))
+            (fullscreen, Arc::new(pipeline))
         });
-        let (module, fullscreen, pipeline) = made.map_err(|error| named(error, pass))?;
+        let (fullscreen, pipeline) = made.map_err(|error| named(error, pass))?;
         let mut store = self.store();
-        store.modules.insert(Arc::clone(&key.shader), module);
-        store.fullscreen = fullscreen;
+        store.fullscreen = fullscreen.or(store.fullscreen.take());
         store.insert(key, &pipeline);
         Ok(Some(pipeline))
+    }
+
+    /// Returns the module of a pass's shader, which is made if there is none yet.
+    fn module(
+        &self,
+        pass: &LinkedPass,
+        shader: &Arc<Shader>,
+    ) -> Result<wgpu::ShaderModule, ExecuteError> {
+        if let Some(module) = self.store().modules.get(shader) {
+            return Ok(module.clone());
+        }
+        let device = self.device();
+        let made = scoped(device, &pass.name, || module_of(device, shader));
+        let module = made.map_err(|error| named(error, pass))?;
+        let mut store = self.store();
+        store.modules.insert(Arc::clone(shader), module.clone());
+        Ok(module)
+    }
+
+    /// Returns the pipelines of some passes; those that are missing are made on all cores. They are
+    /// not dropped before the list is.
+    pub(crate) fn of_passes<'p>(
+        &self,
+        passes: impl Iterator<Item = &'p LinkedPass>,
+    ) -> Result<Vec<Arc<Pipeline>>, ExecuteError> {
+        let (mut keys, mut shaders) = (HashSet::new(), HashSet::new());
+        let (mut steps, mut modules) = (Vec::new(), Vec::new());
+        let each = passes.flat_map(|pass| pass.steps.iter().map(move |step| (pass, step)));
+        let keyed = each.filter_map(|(pass, step)| Some((pass, step, PipelineKey::new(step)?)));
+        for (pass, step, key) in keyed {
+            if shaders.insert(Arc::clone(&key.shader)) {
+                modules.push((pass, Arc::clone(&key.shader)));
+            }
+            if keys.insert(key) {
+                steps.push((pass, step));
+            }
+        }
+        let made = on_all_cores(&modules, |(pass, shader)| self.module(pass, shader));
+        made.into_iter().try_for_each(|module| module.map(drop))?;
+        let made = on_all_cores(&steps, |(pass, step)| self.get_or_make(pass, step));
+        made.into_iter().filter_map(Result::transpose).collect()
     }
 }
 

@@ -7,7 +7,10 @@ use skiagraph_gpu::{
     device::{self, Gpu, Wanted},
 };
 use skiagraph_graph::{NoProvider, ParamValue, Plan};
-use std::sync::LazyLock;
+use std::{
+    hash::{DefaultHasher, Hasher},
+    sync::LazyLock,
+};
 
 /// A draw, a full-screen pass and a dispatch, each with the override `add`.
 fn graph(image: &str) -> Files {
@@ -243,6 +246,84 @@ fn data_of_another_driver_make_an_empty_cache() {
     assert!(error.to_string().contains("different device"), "{error}");
     // A host that goes on with it hears of it again, by the pass.
     assert_refused(&Pipelines::with_cache(&CACHING.device, refused));
+}
+
+/// An object with kept shaders, after a frame; returns what it hands out when all handles are gone.
+fn keeps(gpu: &Gpu, kept: Vec<u8>) -> Option<Vec<u8>> {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let keep = move |bytes| sender.send(bytes).unwrap();
+    let pipelines = Pipelines::with_kept(&gpu.device, kept, keep);
+    let executor = Executor::with_pipelines(&pipelines, &gpu.queue, plan(), &mut NoProvider);
+    let mut executor = executor.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(pipelines.made(), 3);
+    drop(pipelines);
+    assert_eq!(firsts(&mut executor, gpu), [11, 21, 1]);
+    assert!(receiver.try_recv().is_err(), "the executor has a handle");
+    drop(executor);
+    receiver.try_recv().ok()
+}
+
+#[test]
+fn kept_shaders_are_handed_out_at_the_end_and_taken_again() {
+    let first = keeps(&CACHING, Vec::new()).expect("there was nothing before");
+    let again = keeps(&CACHING, first.clone());
+    // A driver may order them anew.
+    assert!(again.is_none_or(|again| again != first && again.len() == first.len()));
+    let torn = first[..first.len() - 1].to_vec();
+    let longer = [&first[..], &[0]].concat();
+    for broken in [torn, longer, b"no shaders".to_vec()] {
+        assert!(keeps(&CACHING, broken).is_some(), "they are made anew");
+    }
+    // A device without the feature keeps nothing.
+    assert_eq!(keeps(&GPU, Vec::new()), None);
+}
+
+/// Shaders of another adapter are whole, and wgpu refuses them: as if there were none.
+#[test]
+fn kept_shaders_of_another_adapter_do_no_harm() {
+    let first = keeps(&CACHING, Vec::new()).expect("there was nothing before");
+    let mut other = first[..first.len() - 8].to_vec();
+    other[20] ^= 0xff;
+    let mut hasher = DefaultHasher::new();
+    hasher.write(&other);
+    other.extend(hasher.finish().to_le_bytes());
+    assert!(keeps(&CACHING, other).is_some());
+}
+
+/// They are made at the same time, and each once: modules that several use, too.
+#[test]
+fn many_pipelines_are_made_once_each() {
+    let passes = (0..90).map(|at| {
+        let dispatch = "dispatch: Groups(1, 1, 1)";
+        let (shader, entry) = (at / 2 % 40, ["main", "other"][at % 2]);
+        format!(r#"Compute(name: "p{at}", shader: "s{shader}", entry: "{entry}", {dispatch}),"#)
+    });
+    let document = format!(
+        r#"
+    materials: [Buffer(name: "list", count: 4)],
+    passes: [{}],
+    outputs: ["list"],
+"#,
+        passes.collect::<String>()
+    );
+    let shader = |files: Files, at: u32| {
+        let text = format!(
+            "var<storage, read_write> list: array<u32>;
+             @compute @workgroup_size(1) fn main() {{ list[{}] += {at}u; }}
+             @compute @workgroup_size(1) fn other() {{ list[{}] += 1u; }}",
+            at % 4,
+            at % 2,
+        );
+        files.with(&format!("s{at}.wgsl"), &text)
+    };
+    let files = (0..40).fold(Files::graph(&document), shader);
+    let pipelines = Pipelines::new(&GPU.device);
+    let plan = planned(&files, &request(&NoProvider));
+    let preparer = sharing(&pipelines, plan.clone()).preparer();
+    assert_eq!((pipelines.made(), pipelines.kept()), (80, 80));
+    preparer.prepare(plan.clone()).unwrap();
+    drop(sharing(&pipelines, plan));
+    assert_eq!(pipelines.made(), 80);
 }
 
 #[test]

@@ -1,13 +1,12 @@
 // Stage to test each caster for the pending receivers in the texels that it overlaps. `bin_small`:
-// one thread per caster of the live clusters, for the first block of each texel's receivers; it
-// leaves casters over many tiles to `bin_large`, a workgroup for each part of one and block, and
-// further blocks to `bin_crowded`, a thread for each caster and block.
+// one thread per caster, for the first block of each texel's receivers; it leaves casters over many
+// tiles to `bin_large`, a workgroup for each part of one and block, and further blocks to
+// `bin_crowded`, a thread for each caster and block.
 
 #import "shared/numbered_casters.wgsl"
 #import "shared/pending_lists.wgsl" instead "shared/linked_lists.wgsl"
 #import "shared/groups.wgsl"
 #import "shared/bin_texels.wgsl"
-#import "shared/clusters.wgsl"
 
 // Tiles under the box of a caster that one thread does alone.
 const ALONE: u32 = 4u;
@@ -15,15 +14,10 @@ const ALONE: u32 = 4u;
 const PART: u32 = 256u;
 
 var<storage, read_write> pending_casters: PendingCasters;
-var<storage, read_write> live_clusters: LiveClusters;
 
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_small(thread: Thread) {
-    let group = group_number(thread.group);
-    if group >= atomicLoad(&live_clusters.count) {
-        return;
-    }
-    let number = live_clusters.numbers[group] * GROUP_SIZE + thread.lane;
+    let number = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
     if number >= caster_count() {
         return;
     }

@@ -14,10 +14,6 @@ var<storage, read_write> texels: array<BinnedTexel>;
 var<storage, read_write> live_clusters: LiveClusters;
 var<storage, read_write> live_groups: array<atomic<u32>, 3>;
 
-// True where texels list receivers: those of the last one, which have no texel, are tested for all
-// casters, with the first layer.
-override lists_receivers: bool = false;
-
 // Over more tiles a cluster counts as live.
 const MOST_TILES: u32 = 64u;
 
@@ -38,10 +34,10 @@ var<workgroup> first_slot: u32;
 fn main(thread: Thread) {
     start_rounds(thread.lane);
     let cluster = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
-    let rest = atomicLoad(&texels[arrayLength(&texels) - 1u].length);
     // Lists that all lack a caster are read by none.
-    var is_one = cluster < arrayLength(&cluster_boxes) && (rest & LIST_LACKS) == 0u;
-    if is_one && !(lists_receivers && binned_layer == 0u && rest != 0u) {
+    var is_one = cluster < arrayLength(&cluster_boxes)
+        && (atomicLoad(&texels[arrayLength(&texels) - 1u].length) & LIST_LACKS) == 0u;
+    if is_one {
         is_one = is_live(cluster_boxes[cluster]);
     }
     var slot = 0u;

@@ -68,12 +68,12 @@ struct Call {
 }
 
 // Dispatches where receivers are uncertain: a thread for each texel, pixel, tile, receiver and
-// cluster, or fill_rays.wgsl's.
+// caster, or fill_rays.wgsl's.
 const CALL_TEXELS: u32 = 0u;
 const CALL_PIXELS: u32 = 1u;
 const CALL_TILES: u32 = 2u;
 const CALL_RECEIVERS: u32 = 3u;
-const CALL_CLUSTERS: u32 = 4u;
+const CALL_CASTERS: u32 = 4u;
 const CALL_RAYS: u32 = 5u;
 
 // Dispatches of a layer: bin_large, bin_crowded.

@@ -56,18 +56,23 @@ fn a_doubled_tree_has_no_exact_method_and_no_winner_without_its_condition() {
     assert!(!answer.contains("exact"), "{answer}");
     let software = "The adapter is software: its times say nothing about a GPU.\n";
     let answer = answer.strip_prefix(software).unwrap_or(answer);
-    let sentences: Vec<&str> = answer.trim().lines().take(2).collect();
-    assert!(sentences[0].starts_with("Of the "), "{answer}");
-    assert!(
-        sentences[0].contains(" that can be judged, whatever moves: take `"),
-        "{answer}"
-    );
-    assert!(sentences[1].contains("hangs on rounding"), "{answer}");
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    assert!(
-        page.contains(&sentences[0].replace('<', "\\u003c")),
-        "the page says the same"
-    );
+    // One for all that may move, or several: as times are, of which two are close here.
+    let is_winner = |line: &&str| !line.contains("hangs on rounding");
+    let winners: Vec<&str> = answer.trim().lines().take_while(is_winner).collect();
+    assert!(!winners.is_empty() && winners.len() < 5, "{answer}");
+    for sentence in winners {
+        assert!(sentence.starts_with("Of the "), "{answer}");
+        let condition = sentence.split_once(" that can be judged, wh");
+        assert!(
+            condition.is_some_and(|(_, rest)| rest.contains(": take `")),
+            "{answer}"
+        );
+        assert!(
+            page.contains(&sentence.replace('<', "\\u003c")),
+            "the page says the same"
+        );
+    }
 }
 
 #[test]

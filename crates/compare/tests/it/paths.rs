@@ -97,6 +97,7 @@ fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
                 let expected = match run["preset"].as_str() {
                     Some("nsm") => "create_shadow_map.draw[0]",
                     Some("crsm") => "create_shadow_map.layer[0].turn[0].select",
+                    Some("light_buffer") => "bin_casters.box_clusters",
                     // They keep nothing: every pass of theirs reads the mesh or the eye.
                     _ => {
                         assert_eq!(skipped, "null", "{path} {}", run["preset"]);

@@ -17,7 +17,7 @@ var<storage, read_write> pending_casters: PendingCasters;
 
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_small(thread: Thread) {
-    let number = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
+    let number = number_of(thread);
     if number >= caster_count() {
         return;
     }

@@ -6,9 +6,12 @@
 
 var<storage, read_write> cluster_boxes: array<ClusterBox>;
 
+// All of its bits are set in NaN and infinity.
+const EXPONENT: u32 = 0x7f800000u;
+
 @compute @workgroup_size(GROUP_SIZE)
 fn main(thread: Thread) {
-    let cluster = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
+    let cluster = number_of(thread);
     if cluster >= arrayLength(&cluster_boxes) {
         return;
     }
@@ -16,8 +19,12 @@ fn main(thread: Thread) {
     var box = ClusterBox(vec3(3e38), vec3(-3e38));
     for (var corner = 3u * GROUP_SIZE * cluster; corner < end; corner++) {
         let position = corner_position(corner);
-        box.low = min(box.low, position);
-        box.high = max(box.high, position);
+        // A triangle with a corner of a host's that is no place shades nothing, and `min` may give
+        // back either of a number and NaN.
+        if all((bitcast<vec3<u32>>(position) & vec3(EXPONENT)) != vec3(EXPONENT)) {
+            box.low = min(box.low, position);
+            box.high = max(box.high, position);
+        }
     }
     cluster_boxes[cluster] = box;
 }

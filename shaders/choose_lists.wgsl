@@ -14,8 +14,8 @@ var<uniform> params: Params;
 // Entries of one caster in 31, texels with a receiver, and receivers.
 var<storage, read> estimate: array<u32, 3>;
 var<storage, read_write> texels: array<Texel>;
-// The workgroups of `bin`: none where rays are chosen.
-var<storage, read_write> bin_groups: array<u32, 3>;
+// The workgroups of box_casters.wgsl: none where rays are chosen.
+var<storage, read_write> box_groups: array<u32, 3>;
 // Draws of a full-screen triangle, or of none: vertices, instances, the first of each.
 var<storage, read_write> test_call: array<u32, 4>;
 var<storage, read_write> leave_call: array<u32, 4>;
@@ -35,13 +35,14 @@ fn main() {
     let lists = MAKING * entries / max(f32(estimate[2]), 1.0) + length * tested;
     // A light without extent takes one ray.
     if lists > f32(params.samples) && light_area.radius > 0.0 {
+        // So no cluster is binned.
         texels[arrayLength(&texels) - 1u].length = LIST_LACKS;
-        bin_groups = array(0u, 0u, 0u);
+        box_groups = array(0u, 0u, 0u);
         test_call = array(0u, 0u, 0u, 0u);
         leave_call = array(3u, 1u, 0u, 0u);
         return;
     }
     test_call = array(3u, 1u, 0u, 0u);
     leave_call = array(0u, 0u, 0u, 0u);
-    bin_groups = groups_for(caster_count());
+    box_groups = groups_for(caster_count());
 }

@@ -33,7 +33,7 @@ var<workgroup> first_slot: u32;
 @compute @workgroup_size(GROUP_SIZE)
 fn main(thread: Thread) {
     start_rounds(thread.lane);
-    let cluster = (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
+    let cluster = number_of(thread);
     // Lists that all lack a caster are read by none.
     var is_one = cluster < arrayLength(&cluster_boxes)
         && (atomicLoad(&texels[arrayLength(&texels) - 1u].length) & LIST_LACKS) == 0u;

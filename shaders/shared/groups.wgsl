@@ -11,6 +11,11 @@ struct Thread {
     @builtin(local_invocation_index) lane: u32,
 }
 
+// The number of a thread in a dispatch of as many as there are items, however it is folded.
+fn number_of(thread: Thread) -> u32 {
+    return (thread.group.y * thread.groups.x + thread.group.x) * GROUP_SIZE + thread.lane;
+}
+
 fn group_number(group: vec3<u32>) -> u32 {
     return group.y * GROUPS_PER_ROW + group.x;
 }

@@ -142,6 +142,44 @@ fn clusters_that_are_left_out_are_in_no_list() {
     assert!(left_out.iter().all(|count| *count >= 30), "{left_out:?}");
 }
 
+/// Boxes hold all corners but those of a host's that are no places.
+#[test]
+fn boxes_of_clusters_are_around_all_corners_that_are_places() {
+    let mut random = Random(11);
+    let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).into();
+    let scene = scene(&mut random, Vec3::ZERO, light);
+    let path = "shaders/shared/geometry.wgsl";
+    let geometry = EmbeddedSources.read(path).unwrap().unwrap().to_string();
+    // NaN, then infinity.
+    let broken = geometry.replace(
+        "    return scene_positions",
+        "    if corner % 97u < 2u {
+             return vec3(1.0, bitcast<f32>(0x7fc00000u - (corner % 97u) * 0x400000u), 1.0);
+         }
+         return scene_positions",
+    );
+    assert!(broken != geometry);
+    let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+    let files = layered(&[(path, &broken)]);
+    let preset = "pipelines/light_buffer.ron";
+    let plan = plan_with(&files, preset, &provider, VIEWPORT, |request| {
+        request.captures.push(Capture::new("cluster_boxes"));
+    });
+    let report = run_on(&open(), plan, &mut provider, &["cluster_boxes"]);
+    let boxes = values(&report, "cluster_boxes");
+    let corners: Vec<u32> = scene.mesh.triangles.iter().flatten().copied().collect();
+    assert_eq!(boxes.len(), 8 * corners.len().div_ceil(192));
+    for (cluster, (words, corners)) in boxes.chunks(8).zip(corners.chunks(192)).enumerate() {
+        let first = 192 * cluster;
+        let places = corners.iter().enumerate();
+        let places = places.filter(|(at, _)| (first + at) % 97 >= 2);
+        let ends = places.map(|(_, corner)| [scene.mesh.positions[*corner as usize]; 2]);
+        let ends = ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let place = |at: usize| Vec3::from_array([0, 1, 2].map(|i| f32::from_bits(words[at + i])));
+        assert_eq!(Some([place(0), place(4)]), ends, "{cluster}");
+    }
+}
+
 /// The share of clusters that are live, in percent: of city and forest with a million triangles, as
 /// docs/light_buffer.md has it.
 #[test]

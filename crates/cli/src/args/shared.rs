@@ -51,7 +51,7 @@ impl GpuArgs {
         request.backends = self.backend.as_deref().map(wgpu::Backends::from_comma_list);
         request.memory_limit = self.memory_limit;
         request.timeout = (self.timeout > 0).then(|| Duration::from_secs(self.timeout));
-        request.shaders = match std::env::var_os("SKIAGRAPH_SHADER_CACHE") {
+        request.shader_cache = match std::env::var_os("SKIAGRAPH_SHADER_CACHE") {
             Some(folder) => Some(folder.into()).filter(|it: &PathBuf| *it != PathBuf::new()),
             None => cache_folder().map(|folder| folder.join("shaders")),
         };

@@ -51,7 +51,7 @@ pub struct GpuRequest {
     pub timeout: Option<Duration>,
     /// Folder in which compiled shaders are kept from one run of the program to the next, in a file
     /// for each adapter; `None` keeps none.
-    pub shaders: Option<PathBuf>,
+    pub shader_cache: Option<PathBuf>,
 }
 
 /// Compiled shaders that are taken over: those of shaders that are edited would pile up.
@@ -79,7 +79,8 @@ pub async fn request<'a>(
 ) -> Result<Gpu> {
     let union = |features, graph: &Graph| features | graph.features();
     let mut features = graphs.into_iter().fold(wgpu::Features::empty(), union);
-    features.set(wgpu::Features::PIPELINE_CACHE, request.shaders.is_some());
+    let keeps_shaders = request.shader_cache.is_some();
+    features.set(wgpu::Features::PIPELINE_CACHE, keeps_shaders);
     let mut wanted = Wanted::default().with_features(features);
     wanted.adapter = request.adapter.as_deref();
     wanted.backends = request.backends;
@@ -90,7 +91,7 @@ pub async fn request<'a>(
     gpu.memory = request.memory_limit.or_else(memory);
     gpu.timeout = request.timeout;
     let key = wgpu::util::pipeline_cache_key(&gpu.adapter.get_info());
-    if let (Some(folder), Some(key)) = (&request.shaders, key) {
+    if let (Some(folder), Some(key)) = (&request.shader_cache, key) {
         gpu.pipelines = kept_in(folder.join(key), &gpu.device);
     }
     Ok(gpu)
@@ -99,8 +100,8 @@ pub async fn request<'a>(
 /// Creates an object without pipelines whose compiled shaders are kept in a file. Without a file
 /// that can be read and written, shaders are compiled again.
 fn kept_in(file: PathBuf, device: &wgpu::Device) -> Pipelines {
-    let kept = SHADERS.read(&file).unwrap_or_default();
-    Pipelines::with_kept(device, kept, move |bytes| {
+    let earlier = SHADERS.read(&file).unwrap_or_default();
+    Pipelines::with_kept(device, earlier, move |bytes| {
         if std::fs::create_dir_all(folder_of(&file)).is_ok() {
             let _ = write_whole(&file, &bytes);
         }

@@ -35,8 +35,8 @@ impl Preparer {
     /// and its place in the graph document.
     pub fn prepare(self, plan: Plan) -> Result<Prepared, ExecuteError> {
         Presence::new(self.pipelines.device()).map_err(|error| with_table(error, &plan))?;
-        let made = self.pipelines.of_passes(plan.live());
-        let pipelines = made.map_err(|error| with_table(error, &plan))?;
+        let pipelines = self.pipelines.of_passes(plan.live());
+        let pipelines = pipelines.map_err(|error| with_table(error, &plan))?;
         Ok(Prepared { plan, pipelines })
     }
 }

@@ -100,24 +100,24 @@ impl<'a> Reused<'a> {
 
     /// Creates the passes of the plan.
     pub fn passes(&self, pipelines: &Pipelines) -> Result<Vec<GpuPass>, ExecuteError> {
-        let _made = pipelines.of_passes(self.with_new_pipelines())?;
+        let _in_use = pipelines.of_passes(self.with_new_pipelines())?;
         let made = |at| GpuPass::new(self.plan, at, self.before(at), pipelines);
         (0..self.positions.len()).map(made).collect()
     }
 
     /// Returns the names of the passes with new pipelines.
     pub fn made_pipelines(&self) -> Vec<String> {
-        let made = self.with_new_pipelines();
-        made.map(|pass| pass.name.value.clone()).collect()
+        let passes = self.with_new_pipelines();
+        passes.map(|pass| pass.name.value.clone()).collect()
     }
 
     fn with_new_pipelines(&self) -> impl Iterator<Item = &'a LinkedPass> {
+        let is_new = |at: usize, pass: &LinkedPass| {
+            let before = self.before(at);
+            before.is_none_or(|(old, _)| !has_same_pipelines(old, pass))
+        };
         let passes = self.plan.live().enumerate();
-        let made = passes.filter(|(at, pass)| {
-            self.before(*at)
-                .is_none_or(|(old, _)| !has_same_pipelines(old, pass))
-        });
-        made.map(|(_, pass)| pass)
+        passes.filter_map(move |(at, pass)| is_new(at, pass).then_some(pass))
     }
 
     /// Returns the names of the resources whose content is lost.

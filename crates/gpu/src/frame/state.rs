@@ -64,7 +64,7 @@ impl State {
     ) -> Result<Self, ExecuteError> {
         let refused = |error| with_table(error, &plan);
         let memory = Memory::new(&plan, None, factory).map_err(refused)?;
-        let _made = pipelines.of_passes(plan.live()).map_err(refused)?;
+        let _in_use = pipelines.of_passes(plan.live()).map_err(refused)?;
         let passes = (0..plan.schedule().passes.len())
             .map(|at| GpuPass::new(&plan, at, None, pipelines))
             .collect::<Result<Vec<_>, _>>()

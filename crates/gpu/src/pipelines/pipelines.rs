@@ -235,10 +235,10 @@ impl Pipelines {
                 steps.push((pass, step));
             }
         }
-        let made = on_all_cores(&modules, |(pass, shader)| self.module(pass, shader));
-        made.into_iter().try_for_each(|module| module.map(drop))?;
-        let made = on_all_cores(&steps, |(pass, step)| self.get_or_make(pass, step));
-        made.into_iter().filter_map(Result::transpose).collect()
+        let ready = on_all_cores(&modules, |(pass, shader)| self.module(pass, shader));
+        ready.into_iter().try_for_each(|module| module.map(drop))?;
+        let ready = on_all_cores(&steps, |(pass, step)| self.get_or_make(pass, step));
+        ready.into_iter().filter_map(Result::transpose).collect()
     }
 }
 

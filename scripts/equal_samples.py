@@ -9,8 +9,9 @@ A cell is a view under a light with an extent, and a number of samples. Three gr
 `rt_area`; `light_buffer_area`; and the same with lists wherever there are any, in which a receiver
 traces its rays if one of its samples was asked of the tracer's own test: this one shows how many
 pixels have a sample within the stated bound (docs/light_buffer_area.md), and that the others' are
-right. With 16 samples `light_buffer_area` runs once more with room for as few entries as a first
-frame has. Exit 0 if no pixel differs anywhere and there was penumbra to differ in; 1 if not.
+right. With 16 samples `light_buffer_area` runs twice more, with room for as few entries as a first
+frame has: with rays for receivers without a list, and with casters tested for them. Exit 0 if no
+pixel differs anywhere and there was penumbra to differ in; 1 if not.
 
 Variables of scripts/mesa25.sh and scripts/swiftshader.sh choose another driver.
 """
@@ -160,20 +161,24 @@ def judge(runs, lists, cell, samples):
     rays, _ = runs.run("rt_area", cell, samples)
     answers, status = runs.run("light_buffer_area", cell, samples)
     sure, sure_status = runs.run(str(lists), cell, samples)
-    first = None
+    first = without = None
     if samples == 16:
-        first, _ = runs.run("light_buffer_area", cell, samples, f"max_entries={FIRST_FRAME}")
+        few = f"max_entries={FIRST_FRAME}"
+        first, _ = runs.run("light_buffer_area", cell, samples, few)
+        without, _ = runs.run("light_buffer_area", cell, samples, few, "unlisted=receivers")
     penumbra = sum(0 < share(bits) < 1 for bits in rays)
     asked = sum(value == ASKED_RAYS for value in status)
     within = {pixel for pixel, value in enumerate(sure_status) if value == ASKED_RAYS}
     faults = []
-    for name, seen in (("it", answers), ("lists and rays", sure), ("the first frame", first)):
+    compared = {"it": answers, "lists and rays": sure, "the first frame": first, "without rays": without}
+    for name, seen in compared.items():
         wrong = differing(rays, seen) if seen else []
         if wrong:
             inside = len(within.intersection(wrong))
             faults.append(f"{name}: {len(wrong)} pixels differ, {inside} of them with samples within the bound")
     line = f"{len(rays):,} pixels, {penumbra:,} in penumbra, {asked:,} asked rays, {len(within):,} have "
-    return faults, penumbra, line + "a sample within the bound" + ("; the first frame too" if first else "")
+    first_too = "; the first frame too, with and without rays" if first else ""
+    return faults, penumbra, f"{line}a sample within the bound{first_too}"
 
 
 def main():

@@ -2,11 +2,9 @@
 // an answer where not all casters were tested; one thread for each.
 
 #import "shared/groups.wgsl"
-#import "shared/answer.wgsl"
-#import "shared/pending.wgsl"
+#import "shared/pending_answer.wgsl"
 
 var<storage, read_write> pending_state: PendingState;
-var<storage, read> pending: array<u32>;
 
 @compute @workgroup_size(GROUP_SIZE)
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
@@ -17,15 +15,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if !is_placed && (place < first_unplaced || place >= size.x * size.y) {
         return;
     }
-    let word = pending[place];
+    let word = atomicLoad(&pending[receiver_words * place]);
     let number = word & ~IS_SHADED;
     let pixel = vec2(number % size.x, number / size.x);
-    let is_shaded = (word & IS_SHADED) != 0u;
-    let is_tested = is_placed && pending_state.parts_lack == 0u;
-    if is_shaded || is_tested {
-        store_answer(pixel, select(STATUS_LIGHT, STATUS_SHADOW, is_shaded));
-    } else {
-        textureStore(visibility, pixel, vec4(VISIBILITY_UNANSWERED));
+    if !answer_receiver(place, pixel, is_placed && pending_state.parts_lack == 0u) {
         atomicAdd(&pending_state.unanswered, 1u);
     }
 }

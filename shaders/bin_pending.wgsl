@@ -8,12 +8,9 @@
 #import "shared/groups.wgsl"
 #import "shared/bin_texels.wgsl"
 
-// Tiles under the box of a caster that one thread does alone.
-const ALONE: u32 = 4u;
-// Tiles of a part: four a thread.
-const PART: u32 = 256u;
-
 var<storage, read_write> pending_casters: PendingCasters;
+// The layer's `PendingBox`.
+var<uniform> pending_box: vec4<u32>;
 
 @compute @workgroup_size(GROUP_SIZE)
 fn bin_small(thread: Thread) {
@@ -27,11 +24,11 @@ fn bin_small(thread: Thread) {
         most = atomicLoad(&texels[last].length);
         test_placeless(number);
     }
-    let caster = caster_of(number);
+    let caster = pending_caster(number);
     if all(caster.last >= caster.first) {
         let tiles = tiles_of(caster);
         let count = tiles.x * tiles.y;
-        if count > ALONE {
+        if count > alone {
             append_parts(number, count);
         } else {
             for (var tile = 0u; tile < count; tile++) {
@@ -41,7 +38,7 @@ fn bin_small(thread: Thread) {
             bin(caster, 0u, count, 1u);
         }
     }
-    if most > BLOCK {
+    if most > block_size {
         let slot = atomicAdd(&pending_casters.crowded, 1u);
         pending_casters.words[arrayLength(&pending_casters.words) - 1u - slot] = number;
     }
@@ -55,9 +52,9 @@ fn bin_large(thread: Thread) {
     }
     block = thread.group.z;
     let first_tile = pending_casters.words[2u * number + 1u];
-    let caster = caster_of(pending_casters.words[2u * number]);
+    let caster = pending_caster(pending_casters.words[2u * number]);
     let tiles = tiles_of(caster);
-    let end = min(tiles.x * tiles.y, first_tile + PART);
+    let end = min(tiles.x * tiles.y, first_tile + part_tiles());
     bin(caster, first_tile + thread.lane, end, GROUP_SIZE);
 }
 
@@ -72,16 +69,31 @@ fn bin_crowded(thread: Thread) {
     if binned_layer == 0u {
         test_placeless(number);
     }
-    let caster = caster_of(number);
+    let caster = pending_caster(number);
     let tiles = tiles_of(caster);
-    if all(caster.last >= caster.first) && tiles.x * tiles.y <= ALONE {
+    if all(caster.last >= caster.first) && tiles.x * tiles.y <= alone {
         bin(caster, 0u, tiles.x * tiles.y, 1u);
     }
+}
+
+// A caster, its box cut to the tiles that hold receivers.
+fn pending_caster(number: u32) -> Binned {
+    var caster = caster_of(number);
+    let is_none = pending_box.x == 0u;
+    caster.first = select(max(caster.first, TILE * ~pending_box.xy), vec2(1u), is_none);
+    let end = TILE * pending_box.zw + TILE - 1u;
+    caster.last = select(min(caster.last, end), vec2(0u), is_none);
+    return caster;
 }
 
 // The most receivers of a texel in a tile.
 fn tiles_most(tile: vec2<u32>) -> u32 {
     return tiles[tile_number(binned_layer, tile)].w;
+}
+
+// Tiles of a part: as many a thread as it does alone.
+fn part_tiles() -> u32 {
+    return GROUP_SIZE * alone;
 }
 
 // Behind them there is room for all casters.
@@ -90,11 +102,11 @@ fn part_limit() -> u32 {
 }
 
 fn append_parts(number: u32, tiles: u32) {
-    let parts = (tiles + PART - 1u) / PART;
+    let parts = (tiles + part_tiles() - 1u) / part_tiles();
     var slot = atomicAdd(&pending_casters.parts, parts);
     for (var part = 0u; part < parts && slot < part_limit(); part++) {
         pending_casters.words[2u * slot] = number;
-        pending_casters.words[2u * slot + 1u] = PART * part;
+        pending_casters.words[2u * slot + 1u] = part_tiles() * part;
         slot += 1u;
     }
 }

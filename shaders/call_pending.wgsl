@@ -10,14 +10,15 @@ struct Params {
 var<uniform> params: Params;
 var<storage, read_write> pending_state: PendingState;
 var<storage, read_write> pending_casters: PendingCasters;
-var<storage, read> is_any_uncertain: u32;
+// The first item is 1 if a receiver is uncertain.
+var<storage, read> is_any_uncertain: array<u32>;
 var<storage, read_write> layer_calls: array<Call>;
 
 @compute @workgroup_size(1)
 fn main() {
     let blocks = atomicLoad(&pending_state.most_blocks);
     // Else nothing has set these counts.
-    if is_any_uncertain == 0u {
+    if is_any_uncertain[0] == 0u {
         call(CALL_LARGE, vec3(0u));
         call(CALL_CROWDED, vec3(0u));
         return;

@@ -8,7 +8,8 @@ struct Params {
 }
 
 var<uniform> params: Params;
-var<storage, read> is_any_uncertain: u32;
+// The first item is 1 if a receiver is uncertain.
+var<storage, read> is_any_uncertain: array<u32>;
 var<storage, read> texels: array<vec4<u32>>;
 var<storage, read> tiles: array<vec4<u32>>;
 var status: texture_2d<u32>;
@@ -28,5 +29,5 @@ fn main() {
 fn call(number: u32, groups: array<u32, 3>) {
     calls[number].x = groups[0];
     calls[number].y = groups[1];
-    calls[number].z = select(0u, groups[2], is_any_uncertain != 0u);
+    calls[number].z = select(0u, groups[2], is_any_uncertain[0] != 0u);
 }

@@ -19,6 +19,8 @@ var<storage, read_write> box_groups: array<u32, 3>;
 // Draws of a full-screen triangle, or of none: vertices, instances, the first of each.
 var<storage, read_write> test_call: array<u32, 4>;
 var<storage, read_write> leave_call: array<u32, 4>;
+// Of all later passes.
+var<storage, read_write> ray_count: u32;
 
 // As long as a ray takes: to make an entry, to walk over one, and to test 64 samples of one, fewer
 // where there are fewer.
@@ -28,6 +30,7 @@ const TESTING: f32 = 0.012;
 
 @compute @workgroup_size(1)
 fn main() {
+    ray_count = 0u;
     let entries = 31.0 * f32(estimate[0]);
     let length = entries / max(f32(estimate[1]), 1.0);
     let turns = (params.samples + 63u) / 64u;

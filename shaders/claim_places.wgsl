@@ -8,6 +8,7 @@ var<storage, read_write> texels: array<PendingTexel>;
 // As mark_tiles.wgsl has them, of receivers that are pending; and the most of a texel.
 var<storage, read_write> tiles: array<vec4<u32>>;
 var<storage, read_write> pending_state: PendingState;
+var<storage, read_write> pending_boxes: array<PendingBox>;
 
 struct Params {
     casters: u32,
@@ -59,6 +60,11 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     if place == NO_PLACE {
         depth = 0u;
         taken = vec2(0u);
+    } else {
+        atomicMax(&pending_boxes[layer].inverted_x, ~tile.x);
+        atomicMax(&pending_boxes[layer].inverted_y, ~tile.y);
+        atomicMax(&pending_boxes[layer].x, tile.x);
+        atomicMax(&pending_boxes[layer].y, tile.y);
     }
     tiles[tile_number(layer, tile)] = vec4(depth, taken, sum.most);
     for (var number = 0u; number < TILE * TILE; number++) {
@@ -80,7 +86,7 @@ fn add(texel: u32, sum: ptr<function, Sum>) -> bool {
 // The first place of as many receivers, or NO_PLACE. Each tile asks for what is its own: 6 * 91^2
 // of them do not overflow.
 fn claimed(sum: Sum) -> u32 {
-    let work = u32(min(sum.tests / TESTS, f32(MOST_WORK)));
+    let work = u32(min(sum.tests / f32(unit_tests), f32(MOST_WORK)));
     if work == MOST_WORK || blocks_of(sum.most) > MOST_BLOCKS {
         return NO_PLACE;
     }

@@ -7,8 +7,8 @@
 #import "shared/asked_list.wgsl"
 #import "shared/ray_triangle.wgsl"
 
-// 1 if a receiver is uncertain.
-var<storage, read_write> is_any_uncertain: atomic<u32>;
+// Of one item: 1 if a receiver is uncertain.
+var<storage, read_write> is_any_uncertain: array<atomic<u32>>;
 
 struct Answer {
     @location(0) visibility: u32,
@@ -35,8 +35,8 @@ fn answer(pixel: vec2<u32>) -> u32 {
         pixel_status = test_casters(receiver.xyz, textureLoad(primitive, pixel, 0).x);
     }
     // Asked first: many need not queue.
-    if pixel_status == STATUS_UNCERTAIN && atomicLoad(&is_any_uncertain) == 0u {
-        atomicStore(&is_any_uncertain, 1u);
+    if pixel_status == STATUS_UNCERTAIN && atomicLoad(&is_any_uncertain[0]) == 0u {
+        atomicStore(&is_any_uncertain[0], 1u);
     }
     return pixel_status;
 }

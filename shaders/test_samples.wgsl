@@ -1,7 +1,7 @@
 // Stage to find, for each receiver, which of the samples of the light its texel's casters hide: the
 // samples of shared/sample_light.ron, 64 in each turn. What is clear of rounding three planes
 // decide, the rest the tracer's own test of the sample's own ray. Receivers that no list answers,
-// or not within a thread's rounds, are left to rays. `status` says which half of the light counts.
+// or not within a thread's rounds, are uncertain. `status` says which half of the light counts.
 
 #import "shared/aimed_ray.wgsl"
 #import "shared/asked_list.wgsl"
@@ -19,11 +19,10 @@ override first_sample: u32 = 0u;
 // step then stay below 65,535, after which llvmpipe ends loops.
 const MOST_ROUNDS: u32 = 4080u;
 const TOO_MANY: u32 = 0xffffffffu;
-// Wider lights than the bounds hold for: of more than 126 degrees.
-const WIDEST: f32 = 2.0;
 
-// Samples of each pixel that see the light, of the turns so far; or TOO_MANY.
-var<storage, read_write> seen: array<u32>;
+// 1 if a receiver is uncertain; behind that, samples of each pixel that see the light, of the turns
+// so far, or TOO_MANY.
+var<storage, read_write> seen: array<atomic<u32>>;
 // As box_casters.wgsl has them.
 var<storage, read> boxes: array<vec4<u32>>;
 
@@ -44,10 +43,19 @@ struct Asking {
 
 @fragment
 fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
-    let pixel = vec2<u32>(centre.xy);
+    let answer = answer_of(vec2<u32>(centre.xy));
+    // Asked first: many need not queue.
+    if answer.status == STATUS_UNCERTAIN && atomicLoad(&seen[0]) == 0u {
+        atomicStore(&seen[0], 1u);
+    }
+    return answer;
+}
+
+fn answer_of(pixel: vec2<u32>) -> Answer {
     let receiver = textureLoad(position, pixel, 0);
     let own = textureLoad(primitive, pixel, 0).x;
     let number = pixel.y * textureDimensions(position).x + pixel.x;
+    let place = number + 1u;
     let pixel_status = initial_status(pixel, receiver);
     if pixel_status != STATUS_UNCERTAIN {
         return whole_answer(pixel_status);
@@ -60,30 +68,18 @@ fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
         return whole_answer(select(STATUS_UNCERTAIN, asked.status, asked.head == LIST_END));
     }
     let wanted = samples_needed(samples);
-    var sum = select(seen[number], 0u, first_sample == 0u);
+    var sum = select(atomicLoad(&seen[place]), 0u, first_sample == 0u);
     if sum != TOO_MANY && first_sample < wanted {
         let count = min(wanted - first_sample, 64u);
         let lit = lit_samples(Asking(receiver.xyz, own, number, count, wanted), asked);
         sum = select(sum + lit, TOO_MANY, lit == TOO_MANY);
     }
-    seen[number] = sum;
+    atomicStore(&seen[place], sum);
     if sum == TOO_MANY {
         return whole_answer(STATUS_UNCERTAIN);
     }
     let share = f32(sum) / f32(wanted);
     return Answer(share, select(STATUS_SHADOW, STATUS_LIGHT, share >= 0.5));
-}
-
-// Receivers within twice a lamp's radius ask rays: lists and bounds are for those beyond.
-fn is_inside_light(receiver: vec3<f32>) -> bool {
-    let way = light_way(receiver);
-    return light_kind != LIGHT_DIRECTIONAL
-        && !(dot(way, way) > 4.004 * light_area.radius * light_area.radius);
-}
-
-// Bounds are of lights no wider.
-fn is_too_wide() -> bool {
-    return light_kind == LIGHT_DIRECTIONAL && light_area.radius > WIDEST;
 }
 
 fn whole_answer(pixel_status: u32) -> Answer {
@@ -128,9 +124,7 @@ fn set_four(sight: Sight, pixel: u32, item: u32, points: ptr<function, Points>) 
 }
 
 fn point_of(sight: Sight, pixel: u32, i: u32) -> vec2<f32> {
-    let sample = first_sample + i;
-    let square = stratum_point(sample, samples, random_pair(pixel, sample));
-    return seen_point(sight, disk_point(square));
+    return seen_point(sight, sample_point(pixel, first_sample + i, samples));
 }
 
 // A thread's way through its list.
@@ -332,7 +326,8 @@ fn ask_tracer(
     while (*walk).unsure.x != NO_PRIMITIVE && (*walk).rounds < MOST_ROUNDS {
         let unsure = (*walk).lit & vec2((*walk).low.x, (*walk).high.x);
         let bit = first_bit(unsure);
-        let point = sample_point(asking, first_number(bit) % 64u);
+        let sample = first_sample + first_number(bit) % 64u;
+        let point = sample_point(asking.pixel, sample, asking.wanted);
         if hides(asking.receiver, t_min, (*walk).unsure.x, point) {
             (*walk).lit &= ~bit;
         }
@@ -348,48 +343,9 @@ fn ask_tracer(
     }
 }
 
-// As aim_samples.wgsl has it, of the unit disk.
-fn sample_point(asking: Asking, i: u32) -> vec2<f32> {
-    let sample = first_sample + i;
-    return disk_point(stratum_point(sample, asking.wanted, random_pair(asking.pixel, sample)));
-}
-
-// Returns two bits for each of four samples: certainly inside of all edges; and, since a triangle
-// that is not clear may be turned either way, not certainly inside of one and outside of another.
-fn sides_of(cone: Cone, x: vec4<f32>, y: vec4<f32>) -> vec2<u32> {
-    let ab = cone.at.x + cone.right.x * x + cone.up.x * y;
-    let bc = cone.at.y + cone.right.y * x + cone.up.y * y;
-    let ca = cone.at.z + cone.right.z * x + cone.up.z * y;
-    let least = lesser(ab, lesser(bc, ca));
-    let most = greater(ab, greater(bc, ca));
-    let bits = vec4(1u, 2u, 4u, 8u);
-    let hit = select(vec4(0u), bits, least > vec4(cone.error));
-    let is_mixed = (least < vec4(-cone.error)) & (most > vec4(cone.error));
-    let perhaps = select(bits, vec4(0u), is_mixed);
-    return vec2(hit.x | hit.y | hit.z | hit.w, perhaps.x | perhaps.y | perhaps.z | perhaps.w);
-}
-
-// llvmpipe looks for NaN in `min` and `max`.
-fn lesser(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-    return select(b, a, a < b);
-}
-
-fn greater(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
-    return select(b, a, a > b);
-}
-
 // The tracer's answer for the ray of a sample.
 fn hides(receiver: vec3<f32>, t_min: f32, primitive: u32, point: vec2<f32>) -> bool {
-    let asked = Ray(receiver, t_min, to_light_from(receiver), light_distance(receiver));
-    let ray = aimed(asked, point);
+    let ray = sample_ray(receiver, t_min, point);
     var hit = Hit(ray.t_max, NO_PRIMITIVE, 0.0, 0.0);
     return intersect(sheared(ray), primitive, t_min, &hit);
-}
-
-fn bits_below(count: u32) -> u32 {
-    return select((1u << min(count, 31u)) - 1u, 0xffffffffu, count >= 32u);
-}
-
-fn first_number(bit: vec2<u32>) -> u32 {
-    return select(countTrailingZeros(bit.x), 32u + countTrailingZeros(bit.y), bit.x == 0u);
 }

@@ -3,6 +3,12 @@
 #import "shared/light_area.wgsl"
 #import "shared/ray.wgsl"
 
+// The ray from a receiver to a point of the unit disk.
+fn sample_ray(receiver: vec3<f32>, t_min: f32, point: vec2<f32>) -> Ray {
+    let centre = Ray(receiver, t_min, to_light_from(receiver), light_distance(receiver));
+    return aimed(centre, point);
+}
+
 // The ray to a point of the unit disk, of one that goes to the light's centre.
 fn aimed(asked: Ray, point: vec2<f32>) -> Ray {
     let across = across_light(point, asked.direction);

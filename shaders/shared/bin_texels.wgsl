@@ -5,11 +5,6 @@
 #import "shared/linked_lists.wgsl"
 #import "shared/steps.wgsl"
 
-struct Params {
-    longest_list: u32,
-}
-
-var<uniform> params: Params;
 // As mark_tiles.wgsl has them.
 var<storage, read> tiles: array<vec4<u32>>;
 // Texels of the grid; behind them one that says LIST_LACKS if a part of a large triangle had no

@@ -8,6 +8,11 @@ struct Reach {
     none: f32,
 }
 
+// Returns true if a receiver of that depth's bits is one that bounds hold for.
+fn is_bounded(receiver: vec3<f32>, depth_bits: u32) -> bool {
+    return true;
+}
+
 // Bound on the difference between the tracer's view of a triangle and its corners, in any
 // direction, as a share of the longest way, twice the diagonal of the scene's box:
 // docs/light_buffer_errors.md.

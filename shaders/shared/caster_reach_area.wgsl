@@ -30,6 +30,12 @@ const STEEPEST_PLANE: f32 = 0.9;
 // The most that `point_spread` may be: sqrt(3) in a corner of the face, 3.42 near the lamp.
 const MOST_POINT_SPREAD: f32 = 6.0;
 
+// Returns true if a receiver of that depth's bits is one that bounds hold for.
+fn is_bounded(receiver: vec3<f32>, depth_bits: u32) -> bool {
+    // Two shaders may round it differently. No branch on a uniform: Mesa 22.3 crashed on one.
+    return (depth_bits <= max_depth_bits) & !is_inside_light(receiver);
+}
+
 fn traced() -> f32 {
     if light_kind != LIGHT_DIRECTIONAL {
         return 48.0 * HALF_ULP;

@@ -46,3 +46,17 @@ const UNANSWERED_SAMPLE: u32 = 0x80000000u;
 fn samples_needed(wanted: u32) -> u32 {
     return select(wanted, 1u, light_area.radius == 0.0);
 }
+
+// Wider lights than the bounds of light_cone.wgsl hold for: of more than 126 degrees.
+const WIDEST: f32 = 2.0;
+
+fn is_too_wide() -> bool {
+    return light_kind == LIGHT_DIRECTIONAL && light_area.radius > WIDEST;
+}
+
+// True within twice a lamp's radius: lists and bounds are for receivers beyond.
+fn is_inside_light(receiver: vec3<f32>) -> bool {
+    let way = light_way(receiver);
+    return light_kind != LIGHT_DIRECTIONAL
+        && !(dot(way, way) > 4.004 * light_area.radius * light_area.radius);
+}

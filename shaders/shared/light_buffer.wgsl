@@ -98,6 +98,15 @@ fn first_bit(texels: vec2<u32>) -> vec2<u32> {
     return vec2(lowest.x, select(0u, lowest.y, texels.x == 0u));
 }
 
+// The place of the lowest bit of two words.
+fn first_number(bit: vec2<u32>) -> u32 {
+    return select(countTrailingZeros(bit.x), 32u + countTrailingZeros(bit.y), bit.x == 0u);
+}
+
+fn bits_below(count: u32) -> u32 {
+    return select((1u << min(count, 31u)) - 1u, 0xffffffffu, count >= 32u);
+}
+
 // `summed`: of `light_clip_summands_of_scene`, the same for all.
 fn place_of(receiver: vec3<f32>, summed: vec2<f32>) -> Place {
     let layer = layer_of(receiver);

@@ -130,3 +130,27 @@ fn cone_of(sight: Sight, primitive: u32) -> Cone {
     let is_clear = has_side && is_before && ends_beyond;
     return Cone(sides, turn * right, turn * up, error, is_clear, is_beside);
 }
+
+// Returns two bits for each of four samples: certainly inside of all edges; and, since a triangle
+// that is not clear may be turned either way, not certainly inside of one and outside of another.
+fn sides_of(cone: Cone, x: vec4<f32>, y: vec4<f32>) -> vec2<u32> {
+    let ab = cone.at.x + cone.right.x * x + cone.up.x * y;
+    let bc = cone.at.y + cone.right.y * x + cone.up.y * y;
+    let ca = cone.at.z + cone.right.z * x + cone.up.z * y;
+    let least = lesser(ab, lesser(bc, ca));
+    let most = greater(ab, greater(bc, ca));
+    let bits = vec4(1u, 2u, 4u, 8u);
+    let hit = select(vec4(0u), bits, least > vec4(cone.error));
+    let is_mixed = (least < vec4(-cone.error)) & (most > vec4(cone.error));
+    let perhaps = select(bits, vec4(0u), is_mixed);
+    return vec2(hit.x | hit.y | hit.z | hit.w, perhaps.x | perhaps.y | perhaps.z | perhaps.w);
+}
+
+// llvmpipe looks for NaN in `min` and `max`.
+fn lesser(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
+    return select(b, a, a < b);
+}
+
+fn greater(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
+    return select(b, a, a > b);
+}

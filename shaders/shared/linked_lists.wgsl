@@ -1,5 +1,10 @@
 // Lists of texels, each entry before those that were appended sooner.
 
+struct Params {
+    longest_list: u32,
+}
+
+var<uniform> params: Params;
 // Those included for which there is no room.
 var<storage, read_write> entry_count: atomic<u32>;
 

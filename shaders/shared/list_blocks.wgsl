@@ -3,6 +3,12 @@
 // list does not wait for memory. The last entry names a next one, too, which may hold anything: a
 // list is as long as its texel says.
 
+struct Params {
+    longest_list: u32,
+}
+
+var<uniform> params: Params;
+
 struct Counted {
     // Entries of all blocks, those included for which there is no room.
     entries: atomic<u32>,

@@ -29,9 +29,9 @@ fn ray_of(index: u32) -> AskedRay {
     let part = divided(index, asked_count);
     let place = ray_pixels[part.y];
     let sample = params.first + part.x;
-    let square = stratum_point(sample, samples_needed(params.samples), random_pair(place, sample));
+    let point = sample_point(place, sample, samples_needed(params.samples));
     let asked = pixel_ray(listed_pixel(place, textureDimensions(primitive).x));
-    return AskedRay(aimed(asked.ray, disk_point(square)), asked.skipped);
+    return AskedRay(aimed(asked.ray, point), asked.skipped);
 }
 
 fn take(index: u32, hit: Hit) {

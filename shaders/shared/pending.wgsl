@@ -10,7 +10,7 @@ struct PendingState {
     count: atomic<u32>,
     // Receivers that have none.
     unplaced: atomic<u32>,
-    // Tests that they may take, in units of TESTS.
+    // Tests that they may take, in units of `unit_tests`.
     work: atomic<u32>,
     // Blocks of the texel that has most.
     most_blocks: atomic<u32>,
@@ -33,14 +33,19 @@ struct PendingCasters {
     words: array<u32>,
 }
 
-// A word for each receiver: the number of its pixel, and this.
+// Words of `pending` for each receiver: the number of its pixel, with IS_SHADED, and those that
+// shared/pending_answer.wgsl or its stand-in adds.
+override receiver_words: u32 = 1u;
 const IS_SHADED: u32 = 0x80000000u;
-// Receivers of one texel that one thread tests at most: 4 tiles of 64 texels then take it half of
-// the 65,535 rounds after which llvmpipe ends loops.
-const BLOCK: u32 = 128u;
+// Receivers of one texel that one thread tests at most: `alone` tiles of 64 texels then take it
+// about half of the 65,535 rounds after which llvmpipe ends loops.
+override block_size: u32 = 128u;
+// Tiles under the box of a caster that one thread does alone.
+override alone: u32 = 4u;
 // As many as a dimension of a dispatch has workgroups.
 const MOST_BLOCKS: u32 = 65535u;
-const TESTS: f32 = 65536.0;
+// Tests of receivers in a unit of work.
+override unit_tests: u32 = 65536u;
 // Units of work in a frame: 4.3e9 tests.
 const MOST_WORK: u32 = 65536u;
 
@@ -54,6 +59,16 @@ struct PendingTexel {
     first: atomic<u32>,
     // Casters of its list until places are claimed, then how many receivers have one.
     filled: atomic<u32>,
+}
+
+// The tiles of a layer that hold receivers with a place, where a device can bind it alone: the
+// least, inverted, and the greatest. All zero where there is none.
+struct PendingBox {
+    inverted_x: atomic<u32>,
+    inverted_y: atomic<u32>,
+    x: atomic<u32>,
+    y: atomic<u32>,
+    padding: array<vec4<u32>, 15>,
 }
 
 const NO_PLACE: u32 = 0xffffffffu;
@@ -81,5 +96,5 @@ const CALL_LARGE: u32 = 0u;
 const CALL_CROWDED: u32 = 1u;
 
 fn blocks_of(count: u32) -> u32 {
-    return (count + BLOCK - 1u) / BLOCK;
+    return (count + block_size - 1u) / block_size;
 }

@@ -1,21 +1,17 @@
 // In the place of shared/linked_lists.wgsl: texels list receivers, and a caster that would be
 // listed in a texel is tested for each of them.
 
-#import "shared/pending.wgsl"
-#import "shared/receiver.wgsl"
-#import "shared/ray_corners.wgsl"
-
-var<storage, read_write> pending: array<atomic<u32>>;
+#import "shared/pending_answer.wgsl"
 
 // The block of each texel that this thread tests.
 var<private> block: u32 = 0u;
 
 fn is_tile_wanted(tile: vec4<u32>) -> bool {
-    return tile.w > BLOCK * block;
+    return tile.w > block_size * block;
 }
 
 fn is_within_list(texel: u32) -> bool {
-    return atomicLoad(&texels[texel].length) > BLOCK * block;
+    return atomicLoad(&texels[texel].length) > block_size * block;
 }
 
 fn reserved_slots(count: u32) -> u32 {
@@ -41,11 +37,11 @@ fn test_receivers(texel: u32, caster: u32, key: vec2<u32>, has_key: bool) {
     let corners = Corners(a, b, c, caster_primitive(caster));
     let first = atomicLoad(&texels[texel].head);
     let count = atomicLoad(&texels[texel].length);
-    let end = first + min(count, BLOCK * (block + 1u));
+    let end = first + min(count, block_size * (block + 1u));
     let width = textureDimensions(position).x;
     let summed = light_clip_summands_of_scene();
-    for (var place = first + BLOCK * block; place < end; place++) {
-        let word = atomicLoad(&pending[place]);
+    for (var place = first + block_size * block; place < end; place++) {
+        let word = atomicLoad(&pending[receiver_words * place]);
         if (word & IS_SHADED) != 0u {
             continue;
         }
@@ -60,16 +56,8 @@ fn test_receivers(texel: u32, caster: u32, key: vec2<u32>, has_key: bool) {
                 continue;
             }
         }
-        if textureLoad(primitive, pixel, 0).x != corners.primitive && shades(receiver, corners) {
-            atomicOr(&pending[place], IS_SHADED);
+        if textureLoad(primitive, pixel, 0).x != corners.primitive {
+            test_receiver(PendingReceiver(receiver, place, word, has_key), corners, caster);
         }
     }
-}
-
-fn shades(receiver: vec3<f32>, corners: Corners) -> bool {
-    let t_min = receiver_error_bound(receiver, camera.eye);
-    let end = light_distance(receiver);
-    let ray = sheared(Ray(receiver, t_min, to_light_from(receiver), end));
-    var hit = Hit(end, NO_PRIMITIVE, 0.0, 0.0);
-    return intersect_corners(ray, corners, t_min, &hit);
 }

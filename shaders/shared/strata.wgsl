@@ -20,6 +20,11 @@ fn quotient(a: u32, b: u32) -> u32 {
     return u32((f32(a) + 0.5) / f32(b));
 }
 
+// The point of the unit disk that a pixel's sample goes to, one of `count`.
+fn sample_point(pixel: u32, sample: u32, count: u32) -> vec2<f32> {
+    return disk_point(stratum_point(sample, count, random_pair(pixel, sample)));
+}
+
 // From the unit square to the unit disk; parts of equal area stay so. Shirley, Chiu, "A Low
 // Distortion Map Between Disk and Square", JGT 2(3), 1997.
 fn disk_point(square: vec2<f32>) -> vec2<f32> {

@@ -1,9 +1,9 @@
 //! Lights that have an extent: the presets that sample them against the oracle.
 
 use crate::support;
-use crate::support::graphs::{plan_files, provider, run, values};
+use crate::support::graphs::{layered, plan_files, plan_with, provider, run, values};
 use glam::{DVec3, Vec3};
-use skiagraph_graph::PassSummary;
+use skiagraph_graph::{Capture, PassSummary};
 use skiagraph_reference::{Class, Graded, GroundTruth, Oracle, OracleMode, Progress, area};
 use skiagraph_scene::{DirectionalLight, LightKind, Mesh, PointLight, Scene, SpotLight, View};
 use std::sync::Arc;
@@ -47,14 +47,26 @@ struct Shown {
     status: Vec<u32>,
     rays: u32,
     traces: usize,
+    /// Receivers that all casters were tested for.
+    unlisted: usize,
 }
 
 fn shown(document: &str, scene: &Arc<Scene>) -> Shown {
     let mut provider = provider(scene, &scene.views[0], VIEWPORT);
-    let plan = plan_files(&[("test.ron", document)], &provider, VIEWPORT);
+    let is_listed = document.contains("unlisted\": receivers");
+    let names = ["visibility", "status", "ray_count", "pending_state"];
+    let files = layered(&[("test.ron", document)]);
+    let plan = plan_with(&files, "test.ron", &provider, VIEWPORT, |request| {
+        let state = is_listed.then(|| Capture::new("pending_state"));
+        request.captures.extend(state);
+    });
     let is_trace = |pass: &&PassSummary| pass.name.ends_with("trace_rays");
     let traces = plan.passes().iter().filter(is_trace).count();
-    let report = run(plan, &mut provider, &["visibility", "status", "ray_count"]);
+    let report = run(plan, &mut provider, &names[..if is_listed { 4 } else { 3 }]);
+    let pending = match is_listed {
+        true => values(&report, "pending_state"),
+        false => vec![0; 3],
+    };
     let visibility = report
         .readbacks
         .iter()
@@ -64,6 +76,8 @@ fn shown(document: &str, scene: &Arc<Scene>) -> Shown {
         status: values(&report, "status"),
         rays: values(&report, "ray_count")[0],
         traces,
+        // As shaders/shared/pending.wgsl has it: those with a place, and those without.
+        unlisted: (pending[1] + pending[2]) as usize,
     }
 }
 
@@ -237,7 +251,7 @@ fn eight_maps_agree_in_light_and_umbra_and_leave_the_penumbra_to_rays() {
     assert!(hybrid < traced + 0.03, "{hybrid} {traced}");
 }
 
-/// Lists beside rays: shares of every pixel, and the pixels that asked rays.
+/// Lists beside rays: shares of every pixel, and the pixels without a list.
 fn assert_lists_answer_as_rays_do(scene: &Arc<Scene>, samples: u32, set: &str) -> usize {
     let samples = format!(r#""samples": {samples}"#);
     let rays = shown(&preset("rt_area", &samples), scene);
@@ -252,7 +266,8 @@ fn assert_lists_answer_as_rays_do(scene: &Arc<Scene>, samples: u32, set: &str) -
     assert_eq!(bits(&lists), bits(&rays), "{samples}{set}");
     let is_partial = |share: &&f32| (0.01..0.99).contains(*share);
     assert!(rays.shares.iter().filter(is_partial).count() > 0);
-    lists.status.iter().filter(|status| **status == 4).count()
+    let asked = lists.status.iter().filter(|status| **status == 4).count();
+    asked + lists.unlisted
 }
 
 #[test]
@@ -284,8 +299,10 @@ fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
         (point(at(1.0, 1.9, 0.9), 0.4), 16, true),
         (spot(at(0.5, 2.4, 0.2), 170.0, 0.5), 16, true),
     ] {
-        let asked = assert_lists_answer_as_rays_do(&scene(light), samples, "");
-        assert_eq!(asked > 0, asks, "{asked} pixels asked rays: {light:?}");
+        for set in ["", r#", "unlisted": receivers"#] {
+            let asked = assert_lists_answer_as_rays_do(&scene(light), samples, set);
+            assert_eq!(asked > 0, asks, "{asked} pixels without a list: {light:?}");
+        }
     }
     // Over, and between, masked leaves.
     let leaves = || support::meshes::foliage(60, 0.35, 4.0, 1);
@@ -295,7 +312,7 @@ fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
     ] {
         let asked = assert_lists_answer_as_rays_do(&scene_of(leaves(), light), 33, "");
         let pixels = (VIEWPORT[0] * VIEWPORT[1]) as usize;
-        assert!(4 * asked < pixels, "lists answer: {asked} asked rays");
+        assert!(4 * asked < pixels, "{asked} of {pixels} without a list");
     }
 }
 
@@ -307,13 +324,15 @@ fn lists_in_turns_and_lists_cut_short_answer_as_rays_do() {
     for samples in [33, 65, 256] {
         assert_eq!(assert_lists_answer_as_rays_do(&scene, samples, ""), 0);
     }
-    // With one caster at most in a list some receivers are left to rays.
-    for longest in [0, 1] {
-        let set = format!(r#", "longest_list": {longest}"#);
-        assert!(
-            assert_lists_answer_as_rays_do(&scene, 16, &set) > 20,
-            "{longest}"
-        );
+    // With one caster at most in a list, or one entry in all of them.
+    for short in ["longest_list\": 0", "longest_list\": 1", "max_entries\": 1"] {
+        for word in ["receivers", "rays"] {
+            let set = format!(r#", "{short}, "unlisted": {word}"#);
+            for samples in [16, 100] {
+                let asked = assert_lists_answer_as_rays_do(&scene, samples, &set);
+                assert!(asked > 20, "{set}");
+            }
+        }
     }
     for fit in ["scene", "camera", "pssm"] {
         let asked = assert_lists_answer_as_rays_do(&scene, 16, &format!(r#", "fit": {fit}"#));

@@ -81,10 +81,8 @@ fn listed(scene: &Arc<Scene>, preset: &str, fit: &str, culls: bool) -> (Vec<u32>
     let plan = plan_with(&layered(&files), &path, &provider, VIEWPORT, |request| {
         let fit = ParamValue::Choice(fit.to_owned());
         request.params.insert("fit".to_owned(), fit);
-        if preset == "light_buffer" {
-            let rays = ParamValue::Choice("rays".to_owned());
-            request.params.insert("unlisted".to_owned(), rays);
-        }
+        let rays = ParamValue::Choice("rays".to_owned());
+        request.params.insert("unlisted".to_owned(), rays);
         let captured = ["texels", "live_clusters"].map(Capture::new);
         request.captures.extend(captured);
     });

@@ -101,7 +101,7 @@ fn presets_keep_the_contract() {
             })
             .collect();
         // `position` is not kept where passes find receivers anew; rays are written on request;
-        // light_buffer_area lists no receivers.
+        // light_buffer_area lists no receivers unless it is asked to.
         let is_needed = |name: &&&String| {
             let left_out = ["gbuffer.surface", ".write_rays", "reset_state"];
             !left_out.iter().any(|pass| name.ends_with(pass))

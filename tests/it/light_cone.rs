@@ -45,8 +45,8 @@ struct Answer {
     error: f32,
 }
 
-/// Before it stand the functions of `test_samples.wgsl` that take the planes' answers and ask the
-/// tracer, and that of `box_casters.wgsl`.
+/// Before it stand the function of `test_samples.wgsl` that asks the tracer, and that of
+/// `box_casters.wgsl`.
 const SHADER: &str = r#"
 struct Question {
     receiver: vec3<f32>,
@@ -135,9 +135,7 @@ fn shader() -> String {
     let mut text: String = modules
         .map(|module| format!("#import \"shared/{module}.wgsl\"\n"))
         .concat();
-    for name in ["lesser", "greater", "sides_of", "hides"] {
-        text += &function("shaders/test_samples.wgsl", name);
-    }
+    text += &function("shaders/test_samples.wgsl", "hides");
     text += &function("shaders/box_casters.wgsl", "box_of");
     text + SHADER
 }

@@ -258,7 +258,11 @@ impl<'a> ShaderFiles<'a> {
             }
             if let Some(replaced) = replaced {
                 let replaced = Located::new(replaced.to_owned(), place.clone());
-                seen.push(self.import(file, &replaced)?.name.to_string());
+                let name = self.import(file, &replaced)?.name.to_string();
+                // And what the document has imported in its place.
+                let is_other = |path: &&String| **path != *imported.name;
+                seen.extend(modules.get(&name).filter(is_other).cloned());
+                seen.push(name);
             }
             into.imports.push(ImportLine {
                 asked,

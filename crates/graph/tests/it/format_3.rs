@@ -637,6 +637,22 @@ fn a_replacement_may_import_what_it_replaces() {
     assert_eq!(names(&planned(&files, 8)), ["inner.fill"]);
 }
 
+/// A shader's own `instead` leaves out the module that the document has imported in its place.
+#[test]
+fn a_line_with_instead_also_leaves_out_a_replacement() {
+    let files = modules(r#"imports: [(of: "shared/solid.wgsl", is: "shared/masked.wgsl")],"#).with(
+        "shaders/shared/own.wgsl",
+        "fn brightness(at: f32) -> f32 { return at; }",
+    );
+    let line =
+        "#import \"shared/own.wgsl\" instead \"shared/solid.wgsl\"\n#import \"shared/solid.wgsl\"";
+    let files = files.edited("shaders/fill.wgsl", "#import \"shared/solid.wgsl\"", line);
+    assert_eq!(names(&planned(&files, 8)), ["inner.fill"]);
+    // Which may itself be what the line brings.
+    let files = files.edited("shaders/fill.wgsl", line, &line.replace("own", "masked"));
+    assert_eq!(names(&planned(&files, 8)), ["clear", "inner.fill"]);
+}
+
 /// A mistake in the module that does not stand in today is told all the same.
 #[test]
 fn both_sides_of_an_import_are_checked() {

@@ -16,6 +16,8 @@ use std::collections::BTreeMap;
 pub(crate) struct Corner {
     pub position: u32,
     pub normal: Option<DVec3>,
+    /// Place in [`MeshBuilder::kept`] of the index of `normal`, if that is kept.
+    pub slot: Option<u32>,
     pub uv: Option<Vec2>,
 }
 
@@ -24,6 +26,8 @@ pub(crate) struct Corner {
 pub(crate) struct MeshBuilder {
     pub positions: Welder,
     normals: Welder,
+    /// Indices of normals that corners share, once a triangle has used them.
+    pub kept: Vec<Option<u32>>,
     uvs: UvWelder,
     /// Triangles of which a corner has no texture coordinates, or none that are finite.
     without_uvs: Vec<u32>,
@@ -36,7 +40,7 @@ impl MeshBuilder {
     pub fn add(
         &mut self,
         corners: [Corner; 3],
-        normal: impl Fn(&Self) -> Option<DVec3>,
+        normal: impl Fn() -> Option<DVec3>,
         group: &str,
         material: Option<u32>,
         face: impl Fn() -> FaceRef,
@@ -50,15 +54,22 @@ impl MeshBuilder {
         if has_no_area(points) {
             self.report.zero_area.add(face);
         }
-        let own = geometric_normal(points)
-            .or_else(|| normal(self))
-            .unwrap_or(DVec3::Y);
+        let mut own = None;
         let normal_indices = corners.map(|corner| {
-            let given = corner.normal.map(DVec3::try_normalize);
-            if given == Some(None) {
-                self.report.normals_replaced += 1;
+            let kept = corner.slot.map(|slot| &mut self.kept[slot as usize]);
+            if let Some(Some(index)) = kept {
+                return *index;
             }
-            self.normals.index(given.flatten().unwrap_or(own).as_vec3())
+            let given = corner.normal.map(DVec3::try_normalize);
+            self.report.normals_replaced += usize::from(given == Some(None));
+            let mut index = |normal: DVec3| self.normals.index(normal.as_vec3());
+            match given.flatten() {
+                Some(given) => *kept.unwrap_or(&mut None).insert(index(given)),
+                None => *own.get_or_insert_with(|| {
+                    let own = geometric_normal(points).or_else(&normal);
+                    index(own.unwrap_or(DVec3::Y))
+                }),
+            }
         });
         let primitive = self.mesh.triangles.len() as u32;
         self.mesh.triangles.push(indices);

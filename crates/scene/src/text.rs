@@ -1,6 +1,7 @@
 //! Text and names of files that other programs wrote: byte order marks and encodings.
 
 use crate::handed::is_file;
+use memchr::{memchr, memchr2};
 use std::{
     borrow::Cow,
     ffi::OsString,
@@ -36,33 +37,40 @@ pub(crate) fn without_mark(bytes: &[u8]) -> Cow<'_, [u8]> {
 
 /// Takes the next line off a text, without its end; the flag says whether it had one. Lines end as
 /// on Unix, on Windows or on old Macs.
-pub(crate) fn next_line<'a>(rest: &mut &'a [u8]) -> Option<(&'a [u8], bool)> {
+pub(crate) fn next_line<'a>(rest: &mut &'a str) -> Option<(&'a str, bool)> {
     if rest.is_empty() {
         return None;
     }
-    let Some(end) = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
+    let Some(end) = memchr2(b'\n', b'\r', rest.as_bytes()) else {
         return Some((std::mem::take(rest), false));
     };
     let (line, behind) = rest.split_at(end);
-    let length = if behind.starts_with(b"\r\n") { 2 } else { 1 };
+    let length = if behind.starts_with("\r\n") { 2 } else { 1 };
     *rest = &behind[length..];
     Some((line, true))
+}
+
+/// A file's lines as text, each as [`line_text`] reads it.
+pub(crate) fn lines_text(bytes: &[u8]) -> Cow<'_, str> {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        return text.into();
+    }
+    let lines = bytes.split_inclusive(|byte| matches!(byte, b'\n' | b'\r'));
+    lines.map(line_text).collect::<String>().into()
 }
 
 /// A line as text. One that is not UTF-8 is read as Windows-1252, which gives every byte a
 /// character of its own: keywords and numbers are the same in all encodings that contain ASCII, and
 /// names that differ stay different.
 pub(crate) fn line_text(line: &[u8]) -> Cow<'_, str> {
-    match std::str::from_utf8(line) {
-        Ok(text) => text.into(),
-        Err(_) => {
-            let character = |&byte: &u8| match byte {
-                0x80..=0x9f => WINDOWS_1252[usize::from(byte - 0x80)],
-                _ => char::from(byte),
-            };
-            line.iter().map(character).collect::<String>().into()
-        }
+    if let Ok(text) = std::str::from_utf8(line) {
+        return text.into();
     }
+    let character = |&byte: &u8| match byte {
+        0x80..=0x9f => WINDOWS_1252[usize::from(byte - 0x80)],
+        _ => char::from(byte),
+    };
+    line.iter().map(character).collect::<String>().into()
 }
 
 /// The bytes of a text in Windows-1252, if it has no other characters: the reverse of
@@ -102,7 +110,7 @@ pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
 
 /// The part of a statement before a comment.
 pub(crate) fn without_comment(rest: &str) -> &str {
-    rest.split('#').next().unwrap_or("")
+    &rest[..memchr(b'#', rest.as_bytes()).unwrap_or(rest.len())]
 }
 
 #[cfg(test)]
@@ -129,11 +137,17 @@ mod tests {
 
     #[test]
     fn lines_end_in_three_ways() {
-        let mut rest = &b"a\nb\r\nc\rd\n\re"[..];
+        let mut rest = "a\nb\r\nc\rd\n\re";
         let lines = std::iter::from_fn(|| next_line(&mut rest));
-        let lines: Vec<(&[u8], bool)> = lines.collect();
-        let ended = [&b"a"[..], b"b", b"c", b"d", b""].map(|line| (line, true));
-        assert_eq!(lines, [&ended[..], &[(b"e", false)]].concat());
+        let lines: Vec<(&str, bool)> = lines.collect();
+        let ended = ["a", "b", "c", "d", ""].map(|line| (line, true));
+        assert_eq!(lines, [&ended[..], &[("e", false)]].concat());
+    }
+
+    #[test]
+    fn each_line_has_its_own_encoding() {
+        assert_eq!(lines_text("ä\nö\r".as_bytes()), "ä\nö\r");
+        assert_eq!(lines_text(b"\xc3\xa4\r\n\xe4\r\xc3\xa4"), "ä\r\nä\rä");
     }
 
     #[test]

@@ -24,7 +24,7 @@ use crate::{
     shadows::Shadows,
     weld::Known,
 };
-use glam::{DMat3, DMat4, DVec3, Vec2};
+use glam::{DMat3, DMat4, Vec2};
 use gltf::{Document, Semantic, accessor::DataType, mesh::Mode};
 use std::{ops::Range, path::Path};
 
@@ -359,9 +359,8 @@ impl<'a> Import<'a> {
                 number,
                 line: 0,
             };
-            let none = |_: &MeshBuilder| None::<DVec3>;
             self.builder
-                .add(corners, none, group, Some(material as u32), face);
+                .add(corners, || None, group, Some(material as u32), face);
         }
         Ok(())
     }
@@ -416,6 +415,7 @@ impl<'a> Import<'a> {
         Ok(Corner {
             position: self.builder.positions.index(placed),
             normal: normal.map(|normal| of_normals * *normal),
+            slot: None,
             uv: uv.map(|uv| turn * Vec2::from(*uv) + offset),
         })
     }

@@ -10,7 +10,7 @@
 use super::options::ObjMaterials;
 use crate::{
     error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, SceneError, beginning},
-    text::{line_text, next_line, without_comment},
+    text::{next_line, without_comment},
 };
 use glam::Vec2;
 use std::{
@@ -33,15 +33,16 @@ pub(super) struct FaceRecord {
     /// Index into [`Guard::materials`].
     pub material: u32,
     /// The first of its corners in [`Guard::corner_uvs`], if each names texture coordinates.
-    pub uvs: Option<usize>,
+    pub uvs: Option<u32>,
 }
 
 /// The reader that `tobj` reads from.
 #[derive(Default)]
 pub(super) struct Guard<'a> {
-    whole: &'a [u8],
-    rest: &'a [u8],
-    turn: Turn,
+    whole: &'a str,
+    rest: &'a str,
+    /// True once all vertices are handed on: then faces are.
+    hands_on_faces: bool,
     leave_out: HashSet<&'a str>,
     handed_on: Vec<u8>,
     consumed: usize,
@@ -86,14 +87,6 @@ pub(super) struct Guard<'a> {
     total: Counts,
 }
 
-/// The part of the file that is handed on.
-#[derive(Clone, Copy, Default, PartialEq, Eq)]
-enum Turn {
-    #[default]
-    Vertices,
-    Faces,
-}
-
 /// Faces that cannot be used: the first of them, and how many there are.
 #[derive(Default)]
 pub(super) struct Faults {
@@ -134,23 +127,29 @@ struct Counts {
     uvs: usize,
 }
 
-/// A corner: numbers from 1 of what it names, or why what it names is not there. Only its vertex
-/// must be.
+/// What the corners of a face name, as far as they are read. Only their vertices must be there.
+#[derive(Default)]
 struct Named {
-    vertex: usize,
-    normal: Option<Result<usize, ()>>,
-    uv: Option<Result<usize, FaceProblem>>,
+    vertices: usize,
+    normals: usize,
+    uvs: usize,
+    normal_absent: bool,
+    /// Why the first texture coordinates that are not there are not.
+    uv_absent: Option<FaceProblem>,
 }
+
+/// Most faces that `tobj` indexes at once: tables of so many fit a processor's cache.
+const FACES_AT_ONCE: usize = 1 << 14;
 
 /// Name of the faces that stand before the first `g` or `o`.
 const UNNAMED: &str = "unnamed";
 
 impl<'a> Guard<'a> {
-    pub fn new(bytes: &'a [u8], leave_out: &'a [String], materials: &ObjMaterials) -> Self {
+    pub fn new(text: &'a str, leave_out: &'a [String], materials: &ObjMaterials) -> Self {
         let leave_out: HashSet<&str> = leave_out.iter().map(String::as_str).collect();
         Self {
-            whole: bytes,
-            rest: bytes,
+            whole: text,
+            rest: text,
             groups: vec![UNNAMED.to_owned()],
             materials: vec![String::new()],
             with_materials: *materials != ObjMaterials::Ignore,
@@ -163,7 +162,9 @@ impl<'a> Guard<'a> {
 
     /// Returns the text that `tobj` was last given to read, shortened to fit a message.
     pub fn current_line(&self) -> String {
-        beginning(String::from_utf8_lossy(&self.handed_on).trim_end()).into_owned()
+        let text = String::from_utf8_lossy(&self.handed_on);
+        let words: Vec<&str> = text.split_whitespace().collect();
+        beginning(&words.join(" ")).into_owned()
     }
 
     /// True if the file has no vertex.
@@ -181,31 +182,27 @@ impl<'a> Guard<'a> {
 
     /// Takes the next physical line off the file, without its line end; the flag says whether it
     /// had one.
-    fn next_line(&mut self) -> Option<(Cow<'a, str>, bool)> {
+    fn next_line(&mut self) -> Option<(&'a str, bool)> {
         let (line, ended) = next_line(&mut self.rest)?;
         self.line = self.line.saturating_add(1);
-        Some((line_text(line.trim_ascii()), ended))
+        Some((line.trim_ascii(), ended))
     }
 
     /// Takes the next statement, which may be continued on more lines.
     fn next_statement(&mut self) -> Option<(Cow<'a, str>, bool)> {
-        let (mut line, mut ended) = self.next_line()?;
+        let (line, mut ended) = self.next_line()?;
+        let mut statement = Cow::from(line);
         // A name or a comment may end in a backslash (a Windows folder); only numbers are
         // continued.
-        if !line.starts_with(['v', 'f', 'l', 'p']) || !line.ends_with('\\') {
-            return Some((line, ended));
-        }
-        let mut joined = String::new();
-        while let Some(start) = line.strip_suffix('\\') {
-            joined.push_str(start);
+        while statement.ends_with('\\') && line.starts_with(['v', 'f', 'l', 'p']) {
+            let joined = statement.to_mut();
+            joined.pop();
             joined.push(' ');
-            let Some((next, next_ended)) = self.next_line() else {
-                return Some((joined.into(), ended));
-            };
-            (line, ended) = (next, next_ended);
+            let next;
+            (next, ended) = self.next_line().unwrap_or(("", ended));
+            joined.push_str(next);
         }
-        joined.push_str(&line);
-        Some((joined.into(), ended))
+        Some((statement, ended))
     }
 
     /// Prepares the next line for `tobj`; false at the end of the file.
@@ -213,20 +210,18 @@ impl<'a> Guard<'a> {
         self.handed_on.clear();
         self.consumed = 0;
         while self.handed_on.is_empty() {
-            match (self.next_statement(), self.turn) {
-                (Some((line, _)), Turn::Vertices) => self.take_vertex(line.trim()),
-                (Some((line, ended)), Turn::Faces) => self.take(line.trim(), ended)?,
-                (None, Turn::Vertices) => self.begin_faces(),
-                (None, Turn::Faces) => return Ok(false),
+            match (self.next_statement(), self.hands_on_faces) {
+                (Some((line, _)), false) => self.take_vertex(line.trim()),
+                (Some((line, ended)), true) => self.take(line.trim(), ended)?,
+                (None, false) => {
+                    (self.rest, self.line) = (self.whole, 0);
+                    (self.total, self.above) = (self.above, Counts::default());
+                    self.hands_on_faces = true;
+                }
+                (None, true) => return Ok(false),
             }
         }
         Ok(true)
-    }
-
-    fn begin_faces(&mut self) {
-        (self.rest, self.line) = (self.whole, 0);
-        (self.total, self.above) = (self.above, Counts::default());
-        self.turn = Turn::Faces;
     }
 
     /// Takes what faces name.
@@ -238,25 +233,30 @@ impl<'a> Guard<'a> {
                 self.above.vertices += 1;
                 // Six numbers are a position with a colour: the colour is not ours, and tobj fails
                 // where only some have one.
-                let count = numbers.split_whitespace().count();
-                let taken = if count >= 6 { 3 } else { count };
-                self.hand_on("v", numbers.split_whitespace().take(taken));
+                let gaps = numbers.bytes().filter(|byte| !byte.is_ascii_graphic());
+                let words = numbers.split_whitespace();
+                if gaps.count() >= 5 && words.clone().count() >= 6 {
+                    let position: Vec<&str> = words.take(3).collect();
+                    self.hand_on(keyword, &position.join(" "));
+                } else {
+                    self.hand_on(keyword, numbers);
+                }
             }
             "vn" => {
                 self.above.normals += 1;
-                let words = || numbers.split_whitespace().take(3);
-                let read = words().filter(|word| word.parse::<f32>().is_ok()).count();
-                match read {
-                    3 => self.hand_on("vn", words()),
-                    _ => {
-                        self.normals_unread += 1;
-                        self.hand_on("vn", ["0"; 3].into_iter());
-                    }
-                }
+                let words = numbers.split_whitespace().take(3);
+                let read = words.filter(|word| word.parse::<f32>().is_ok()).count();
+                self.normals_unread += usize::from(read < 3);
+                self.hand_on(keyword, if read < 3 { "0 0 0" } else { numbers });
             }
             "vt" if self.with_materials => {
                 self.above.uvs += 1;
-                self.take_uv(numbers);
+                // A number that cannot be read counts as 0, as one that is missing does.
+                let mut numbers = numbers.split_whitespace();
+                let mut next = || numbers.next().and_then(|word| word.parse::<f32>().ok());
+                let (u, v) = (next().unwrap_or(0.0), next().unwrap_or(0.0));
+                // The first row of a texture's texels is the upper one, where v is 1.
+                self.uvs.push(Vec2::new(u, 1.0 - v));
             }
             "mtllib" if self.with_materials && !rest.trim().is_empty() => {
                 self.libraries.push(rest.trim().to_owned());
@@ -286,7 +286,7 @@ impl<'a> Guard<'a> {
                 self.group_left_out = self.leave_out.contains(name);
                 self.groups.push(name.to_owned());
                 self.number = 0;
-                self.hand_on("g", [name].into_iter());
+                self.hand_on("g", name);
             }
             "p" => self.points += 1,
             "l" => self.lines += 1,
@@ -297,22 +297,10 @@ impl<'a> Guard<'a> {
         Ok(())
     }
 
-    fn hand_on<'b>(&mut self, keyword: &str, words: impl Iterator<Item = &'b str>) {
-        self.handed_on.extend_from_slice(keyword.as_bytes());
-        for word in words {
-            self.handed_on.push(b' ');
-            self.handed_on.extend_from_slice(word.as_bytes());
+    fn hand_on(&mut self, keyword: &str, text: &str) {
+        for part in [keyword, " ", text, "\n"] {
+            self.handed_on.extend_from_slice(part.as_bytes());
         }
-        self.handed_on.push(b'\n');
-    }
-
-    /// A number that cannot be read counts as 0, as one that is missing does.
-    fn take_uv(&mut self, numbers: &str) {
-        let mut numbers = numbers.split_whitespace();
-        let mut next = || numbers.next().and_then(|word| word.parse::<f32>().ok());
-        let (u, v) = (next().unwrap_or(0.0), next().unwrap_or(0.0));
-        // The first row of a texture's texels is the upper one, where v is 1.
-        self.uvs.push(Vec2::new(u, 1.0 - v));
     }
 
     fn take_face(&mut self, corners: &str, ended: bool) -> Result<(), String> {
@@ -320,101 +308,98 @@ impl<'a> Guard<'a> {
         if self.group_left_out {
             return Ok(());
         }
-        let mut parsed = Vec::with_capacity(4);
-        let (mut normals_absent, mut uvs_absent) = (false, None);
-        for corner in corners.split_whitespace() {
-            match self.corner(corner) {
-                Ok(corner) => {
-                    normals_absent |= corner.normal.is_some_and(|normal| normal.is_err());
-                    if let Some(Err(problem)) = &corner.uv {
-                        uvs_absent.get_or_insert_with(|| problem.clone());
-                    }
-                    parsed.push(corner);
-                }
-                Err(problem) => {
-                    self.fault(problem);
-                    return Ok(());
-                }
-            }
+        let first_uv = self.corner_uvs.len();
+        let mut named = Named::default();
+        self.handed_on.push(b'f');
+        let mut corners = corners.split_whitespace();
+        let taken = corners.try_for_each(|corner| self.take_corner(corner, &mut named));
+        if taken.is_err() || named.vertices < 3 {
+            self.handed_on.clear();
         }
-        match parsed.len() {
+        if let Err(problem) = taken {
+            let face = || FaceRef {
+                group: self.groups.last().cloned().unwrap_or_default(),
+                number: self.number,
+                line: self.line,
+            };
+            self.faults.add(face, problem);
+            return Ok(());
+        }
+        match named.vertices {
             0..=2 if !ended => return Err("the file ends in the middle of a face".to_owned()),
             0 => return Err("a face without corners".to_owned()),
             1 => self.points += 1,
             2 => self.lines += 1,
-            _ => {
-                self.normals_absent += usize::from(normals_absent);
-                if let Some(problem) = uvs_absent {
-                    self.uvs_absent.push((self.faces.len(), problem));
+            _ => self.end_face(named, first_uv),
+        }
+        Ok(())
+    }
+
+    /// Ends a face of three corners or more.
+    fn end_face(&mut self, named: Named, first_uv: usize) {
+        self.handed_on.push(b'\n');
+        self.normals_absent += usize::from(named.normal_absent);
+        let problem = named.uv_absent.map(|problem| (self.faces.len(), problem));
+        self.uvs_absent.extend(problem);
+        self.faces.push(FaceRecord {
+            group: (self.groups.len() - 1) as u32,
+            number: self.number,
+            line: self.line,
+            has_normals: named.normals == named.vertices,
+            material: self.material,
+            uvs: (named.uvs == named.vertices).then_some(first_uv as u32),
+        });
+        if self.faces.len().is_multiple_of(FACES_AT_ONCE) {
+            self.handed_on.extend_from_slice(b"g\n");
+        }
+    }
+
+    /// Hands on a corner whose vertex exists, with its normal, and keeps its texture coordinates.
+    fn take_corner(&mut self, text: &str, named: &mut Named) -> Result<(), FaceProblem> {
+        let mut words = text.as_bytes().split(|byte| *byte == b'/');
+        let vertex = words.next().unwrap_or_default();
+        let [uv, normal] = [(); 2].map(|()| words.next().filter(|word| !word.is_empty()));
+        let not_a_corner = || FaceProblem::NotACorner(text.to_owned());
+        if words.next().is_some() {
+            return Err(not_a_corner());
+        }
+        let (above, total) = (self.above, self.total);
+        let index = resolve(vertex, above.vertices, total.vertices).ok_or_else(not_a_corner)?;
+        let index = index
+            .map_err(|(written, available)| FaceProblem::NoSuchVertex { written, available })?;
+        named.vertices += 1;
+        self.push_number(b" ", vertex, index);
+        if let Some(normal) = normal {
+            match resolve(normal, above.normals, total.normals).ok_or_else(not_a_corner)? {
+                Ok(index) => {
+                    named.normals += 1;
+                    self.push_number(b"//", normal, index);
                 }
-                self.hand_on_face(&parsed);
+                Err(_) => named.normal_absent = true,
+            }
+        }
+        // Without a file of materials nothing is looked up by them.
+        if let Some(uv) = uv.filter(|_| self.makes_masks || !self.libraries.is_empty()) {
+            match resolve(uv, above.uvs, total.uvs).ok_or_else(not_a_corner)? {
+                Ok(index) => {
+                    named.uvs += 1;
+                    self.corner_uvs.push(self.uvs[index - 1]);
+                }
+                Err((written, available)) => {
+                    let problem = FaceProblem::NoSuchUv { written, available };
+                    named.uv_absent.get_or_insert(problem);
+                }
             }
         }
         Ok(())
     }
 
-    fn hand_on_face(&mut self, corners: &[Named]) {
-        let normals = corners.iter().map(|corner| corner.normal?.ok());
-        let normals: Option<Vec<usize>> = normals.collect();
-        let uvs = corners
-            .iter()
-            .map(|corner| corner.uv.as_ref()?.as_ref().ok());
-        let uvs: Option<Vec<Vec2>> = uvs.map(|uv| Some(self.uvs[*uv? - 1])).collect();
-        let uvs = uvs.map(|uvs| {
-            self.corner_uvs.extend(uvs);
-            self.corner_uvs.len() - corners.len()
-        });
-        self.handed_on.push(b'f');
-        for (at, corner) in corners.iter().enumerate() {
-            let text = match &normals {
-                Some(normals) => format!(" {}//{}", corner.vertex, normals[at]),
-                None => format!(" {}", corner.vertex),
-            };
-            self.handed_on.extend_from_slice(text.as_bytes());
-        }
-        self.handed_on.push(b'\n');
-        let group = (self.groups.len() - 1) as u32;
-        self.faces.push(FaceRecord {
-            group,
-            number: self.number,
-            line: self.line,
-            has_normals: normals.is_some(),
-            material: self.material,
-            uvs,
-        });
-    }
-
-    /// A corner whose vertex is known to exist.
-    fn corner<'t>(&self, text: &'t str) -> Result<Named, FaceProblem> {
-        let mut words = text.split('/');
-        let (vertex, uv, normal) = (words.next().unwrap_or(""), words.next(), words.next());
-        let not_a_corner = || FaceProblem::NotACorner(text.to_owned());
-        if words.next().is_some() {
-            return Err(not_a_corner());
-        }
-        let find = |word: &str, count: fn(&Counts) -> usize| {
-            resolve(word, count(&self.above), count(&self.total)).ok_or_else(not_a_corner)
-        };
-        let written = |word: Option<&'t str>| word.filter(|word| !word.is_empty());
-        let vertex = find(vertex, |counts| counts.vertices)?
-            .map_err(|(written, available)| FaceProblem::NoSuchVertex { written, available })?;
-        let normal = written(normal).map(|word| find(word, |counts| counts.normals));
-        let normal = normal.transpose()?.map(|index| index.map_err(drop));
-        // Without a file of materials nothing is looked up by them.
-        let uv = written(uv).filter(|_| self.makes_masks || !self.libraries.is_empty());
-        let uv = uv.map(|word| find(word, |counts| counts.uvs)).transpose()?;
-        let absent = |(written, available)| FaceProblem::NoSuchUv { written, available };
-        let uv = uv.map(|index| index.map_err(absent));
-        Ok(Named { vertex, normal, uv })
-    }
-
-    fn fault(&mut self, problem: FaceProblem) {
-        let face = FaceRef {
-            group: self.groups.last().cloned().unwrap_or_default(),
-            number: self.number,
-            line: self.line,
-        };
-        self.faults.add(|| face, problem);
+    /// Hands on a number as it is written; one that counts back becomes the one that it means.
+    fn push_number(&mut self, before: &[u8], written: &[u8], index: usize) {
+        let counted = written.starts_with(b"-").then(|| index.to_string());
+        let text = counted.as_ref().map_or(written, |text| text.as_bytes());
+        self.handed_on.extend_from_slice(before);
+        self.handed_on.extend_from_slice(text);
     }
 }
 
@@ -426,20 +411,22 @@ pub(super) fn split(line: &str) -> (&str, &str) {
 /// The number, from 1, of what a corner names, or the text of one that names nothing and how many
 /// there are. `None` where it is no number. A positive one counts from the beginning of the file,
 /// to its end; a negative one back from the line. One that overflows names nothing either.
-fn resolve(written: &str, above: usize, total: usize) -> Option<Result<usize, (String, usize)>> {
-    let digits = written.strip_prefix(['-', '+']).unwrap_or(written);
-    if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
-        return None;
-    }
-    let counts_back = written.starts_with('-');
-    let most = if counts_back { above } else { total };
-    let index = match digits.parse::<usize>() {
-        Ok(back) if counts_back => (most + 1).checked_sub(back).filter(|_| back > 0),
-        Ok(index) => Some(index),
-        Err(_) => None,
+fn resolve(written: &[u8], above: usize, total: usize) -> Option<Result<usize, (String, usize)>> {
+    let (counts_back, digits) = match written {
+        [b'-', digits @ ..] => (true, digits),
+        [b'+', digits @ ..] | digits => (false, digits),
     };
-    let valid = index.filter(|index| (1..=most).contains(index));
-    Some(valid.ok_or_else(|| (written.to_owned(), most)))
+    let number = digits.iter().try_fold(0usize, |number, byte| {
+        let digit = byte.is_ascii_digit().then(|| usize::from(byte - b'0'))?;
+        Some(number.saturating_mul(10).saturating_add(digit))
+    });
+    let number = number.filter(|_| !digits.is_empty())?;
+    let (index, most) = match counts_back {
+        true => ((above + 1).saturating_sub(number), above),
+        false => (number, total),
+    };
+    let valid = (1..=most).contains(&index).then_some(index);
+    Some(valid.ok_or_else(|| (String::from_utf8_lossy(written).into_owned(), most)))
 }
 
 impl Read for Guard<'_> {

@@ -13,6 +13,7 @@ use crate::{
     report::ImportReport,
 };
 use glam::{DVec3, Vec3};
+use smallvec::SmallVec;
 use std::path::Path;
 
 /// The mesh of the models that `tobj` read through `guard`.
@@ -67,20 +68,22 @@ impl Import<'_> {
         for text in std::mem::take(&mut self.found.remarks) {
             report.remark(text);
         }
-        if guard.normals_unread > 0 {
-            let normals = plural(guard.normals_unread, "normal", "normals");
-            report.remark(format!("{normals} (vn) passed over: not three numbers"));
-        }
-        if guard.normals_absent > 0 {
-            let faces = plural(guard.normals_absent, "face names", "faces name");
-            report.remark(format!("{faces} normals that are not there: flat"));
-        }
-        if guard.curved > 0 {
-            let curved = plural(guard.curved, "curve or surface", "curves and surfaces");
-            report.remark(format!(
-                "{curved} (curv, surf) passed over: only faces are drawn"
-            ));
-        }
+        let mut remark = |count: usize, one: &str, many: &str, text: &str| {
+            if count > 0 {
+                report.remark(format!("{} {text}", plural(count, one, many)));
+            }
+        };
+        let unread = "(vn) passed over: not three numbers";
+        remark(guard.normals_unread, "normal", "normals", unread);
+        let flat = "normals that are not there: flat";
+        remark(guard.normals_absent, "face names", "faces name", flat);
+        let curved = "(curv, surf) passed over: only faces are drawn";
+        remark(
+            guard.curved,
+            "curve or surface",
+            "curves and surfaces",
+            curved,
+        );
         let (mut faults, mut harmless) = (Faults::default(), 0);
         for (face, problem) in &guard.uvs_absent {
             let record = &guard.faces[*face];
@@ -91,10 +94,8 @@ impl Import<'_> {
             }
             faults.add(|| guard.face_ref(record), problem.clone());
         }
-        if harmless > 0 {
-            let faces = plural(harmless, "face names", "faces name");
-            report.remark(format!("{faces} texture coordinates that are not there"));
-        }
+        let white = "texture coordinates that are not there";
+        remark(harmless, "face names", "faces name", white);
         faults.refuse(self.path)
     }
 
@@ -111,25 +112,27 @@ impl Import<'_> {
         let mut polygon = Vec::new();
         for model in models {
             let mesh = &model.mesh;
-            let points = mesh
-                .positions
-                .chunks_exact(3)
-                .map(|p| Vec3::new(p[0], p[1], p[2]));
-            let welded: Vec<u32> = points
-                .map(|point| self.builder.positions.index(point))
-                .collect();
+            let (points, positions) = (
+                mesh.positions.as_chunks::<3>().0,
+                &mut self.builder.positions,
+            );
+            let welded = points
+                .iter()
+                .map(|point| positions.index(Vec3::from(*point)));
+            let welded: Vec<u32> = welded.collect();
+            self.builder.kept.clear();
+            self.builder.kept.resize(mesh.normals.len() / 3, None);
             for (range, record) in faces(mesh).zip(&mut records) {
                 polygon.clear();
                 let first = range.start;
                 polygon.extend(range.map(|slot| {
-                    let normal = record
-                        .has_normals
-                        .then(|| vec3(&mesh.normals, mesh.normal_indices[slot]).as_dvec3());
+                    let normal = record.has_normals.then(|| mesh.normal_indices[slot]);
                     Corner {
                         position: welded[mesh.indices[slot] as usize],
-                        normal,
+                        normal: normal.map(|index| vec3(&mesh.normals, index).as_dvec3()),
+                        slot: normal,
                         uv: record.uvs.map(|uvs| {
-                            let uv = self.guard.corner_uvs[uvs + slot - first];
+                            let uv = self.guard.corner_uvs[uvs as usize + slot - first];
                             let transform = self.found.uvs.get(record.material as usize);
                             transform.map_or(uv, |transform| transform.apply(uv))
                         }),
@@ -142,16 +145,16 @@ impl Import<'_> {
     }
 
     fn check_finite(&self, models: &[tobj::Model]) -> Result<(), SceneError> {
+        let mut values = models.iter().flat_map(|model| &model.mesh.positions);
+        if values.all(|value| value.is_finite()) {
+            return Ok(());
+        }
         let mut faults = Faults::default();
         let mut records = self.guard.faces.iter();
         for model in models {
             let mesh = &model.mesh;
-            let all_finite = mesh.positions.iter().all(|value| value.is_finite());
             for (mut range, record) in faces(mesh).zip(&mut records) {
                 let first = range.start;
-                if all_finite {
-                    continue;
-                }
                 let broken =
                     range.find(|&slot| !vec3(&mesh.positions, mesh.indices[slot]).is_finite());
                 let Some(slot) = broken else { continue };
@@ -167,18 +170,15 @@ impl Import<'_> {
 
     fn add_face(&mut self, record: &FaceRecord, polygon: &[Corner]) {
         let (guard, builder) = (self.guard, &mut self.builder);
-        let points: Vec<DVec3> = polygon
-            .iter()
-            .map(|corner| builder.point(corner.position))
-            .collect();
-        let Some(triangles) =
-            polygon::cut(&points, self.options.quads.apex(), self.options.concave)
-        else {
-            let face = || guard.face_ref(record);
-            self.uncut.add(face, FaceProblem::CannotBeCut);
+        let points = polygon.iter().map(|corner| builder.point(corner.position));
+        let points: SmallVec<[DVec3; 4]> = points.collect();
+        let (apex, concave) = (self.options.quads.apex(), self.options.concave);
+        let Some(triangles) = polygon::cut(&points, apex, concave) else {
+            self.uncut
+                .add(|| guard.face_ref(record), FaceProblem::CannotBeCut);
             return;
         };
-        let of_all = |_: &MeshBuilder| polygon::normal(&points).try_normalize();
+        let of_all = || polygon::normal(&points).try_normalize();
         let group = &guard.groups[record.group as usize];
         let material = (!self.found.materials.is_empty()).then_some(record.material);
         for triangle in triangles {
@@ -190,24 +190,14 @@ impl Import<'_> {
 
 /// Index ranges of a model's faces. `tobj` lists no arities where all faces are triangles.
 fn faces(mesh: &tobj::Mesh) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
-    let triangles = if mesh.face_arities.is_empty() {
-        mesh.indices.len() / 3
-    } else {
-        0
-    };
-    let arities = mesh
-        .face_arities
-        .iter()
-        .map(|&arity| arity as usize)
-        .chain(std::iter::repeat_n(3, triangles));
-    arities.scan(0, |start, arity| {
-        let range = *start..*start + arity;
-        *start = range.end;
-        Some(range)
+    let (mut range, mut arities) = (0..0, mesh.face_arities.iter());
+    std::iter::from_fn(move || {
+        let arity = arities.next().map_or(3, |arity| *arity as usize);
+        range = range.end..range.end + arity;
+        (range.end <= mesh.indices.len()).then(|| range.clone())
     })
 }
 
 fn vec3(values: &[f32], index: u32) -> Vec3 {
-    let start = index as usize * 3;
-    Vec3::new(values[start], values[start + 1], values[start + 2])
+    Vec3::from_slice(&values[index as usize * 3..])
 }

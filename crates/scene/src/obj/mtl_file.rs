@@ -7,7 +7,7 @@
 use super::guard::split;
 use crate::{
     error::beginning,
-    text::{line_text, next_line, without_comment, without_mark},
+    text::{lines_text, next_line, without_comment, without_mark},
 };
 
 /// A material, as far as it matters here.
@@ -77,10 +77,10 @@ pub(super) fn parse(bytes: &[u8]) -> Vec<MtlMaterial> {
     let bytes = without_mark(bytes);
     let mut materials: Vec<MtlMaterial> = Vec::new();
     let mut is_named = false;
-    let mut rest = &*bytes;
+    let text = lines_text(&bytes);
+    let mut rest = &*text;
     let lines = std::iter::from_fn(|| next_line(&mut rest));
     for (number, (line, _)) in (1..).zip(lines) {
-        let line = line_text(line.trim_ascii());
         let (keyword, rest) = split(line.trim());
         let rest = rest.trim();
         if keyword.eq_ignore_ascii_case("newmtl") {

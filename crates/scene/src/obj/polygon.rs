@@ -3,6 +3,10 @@
 use super::options::Concave;
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
+
+/// Triangles of a polygon, as corner numbers; those of a quad need no memory of their own.
+pub(super) type Triangles = SmallVec<[[usize; 3]; 2]>;
 
 /// Share of a polygon's extent, squared, below which an area is rounding: corners are f32.
 const FLAT: f64 = 1.0 / (1u32 << 20) as f64;
@@ -13,9 +17,9 @@ const MOST_CORNERS: usize = 10_000;
 /// The triangles of a polygon, as corner numbers, wound as it is: the fan from corner `apex` where
 /// that is a partition of it, as it is of every convex polygon; else what an ear cutter makes of
 /// it. `None` where the polygon intersects itself, or is too large.
-pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec<[usize; 3]>> {
+pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Triangles> {
     let count = points.len();
-    let fan: Vec<[usize; 3]> = (1..count - 1)
+    let fan: Triangles = (1..count - 1)
         .map(|step| [apex, (apex + step) % count, (apex + step + 1) % count])
         .collect();
     if count == 3 || concave == Concave::Fan {
@@ -42,7 +46,7 @@ pub(super) fn cut(points: &[DVec3], apex: usize, concave: Concave) -> Option<Vec
         triangle.rotate_left(lowest);
     }
     triangles.sort_unstable();
-    Some(triangles)
+    Some(triangles.into())
 }
 
 /// Triangles within an outline, by the numbers of its corners; `None` if they do not cover it once,

@@ -7,7 +7,7 @@ use crate::{
     limit::Limit,
     mesh::Mesh,
     report::ImportReport,
-    text::without_mark,
+    text::{lines_text, without_mark},
 };
 use std::{collections::HashSet, path::Path};
 
@@ -44,15 +44,16 @@ pub fn parse_obj(
     options: &ObjOptions,
 ) -> Result<(Mesh, ImportReport), SceneError> {
     let bytes = without_mark(bytes);
-    let mut guard = Guard::new(&bytes, &options.leave_out, &options.materials);
+    let text = lines_text(&bytes);
+    let mut guard = Guard::new(&text, &options.leave_out, &options.materials);
     let no_materials = |_: &Path| Ok(Default::default());
     let loaded = caught("tobj", || {
         tobj::load_obj_buf(&mut guard, &tobj::LoadOptions::default(), no_materials)
     });
     let loaded = loaded.and_then(|loaded| {
-        loaded.map_err(|error| match guard.fatal.take() {
-            Some(reason) => reason,
-            None => format!("{error} in {:?}", guard.current_line()),
+        loaded.map_err(|error| {
+            let fatal = guard.fatal.take();
+            fatal.unwrap_or_else(|| format!("{error} in {:?}", guard.current_line()))
         })
     });
     let (models, _) = loaded.map_err(|reason| SceneError::ObjLine {

@@ -127,7 +127,7 @@ struct Counts {
     uvs: usize,
 }
 
-/// What the corners of a face name, as far as they are read. Only their vertices must be there.
+/// Counts of what the corners of a face name and what is there. Only their vertices must be there.
 #[derive(Default)]
 struct Named {
     vertices: usize,
@@ -412,19 +412,16 @@ pub(super) fn split(line: &str) -> (&str, &str) {
 /// there are. `None` where it is no number. A positive one counts from the beginning of the file,
 /// to its end; a negative one back from the line. One that overflows names nothing either.
 fn resolve(written: &[u8], above: usize, total: usize) -> Option<Result<usize, (String, usize)>> {
-    let (counts_back, digits) = match written {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] | digits => (false, digits),
+    let (digits, most, back_from) = match written {
+        [b'-', digits @ ..] => (digits, above, Some(above + 1)),
+        [b'+', digits @ ..] | digits => (digits, total, None),
     };
     let number = digits.iter().try_fold(0usize, |number, byte| {
         let digit = byte.is_ascii_digit().then(|| usize::from(byte - b'0'))?;
         Some(number.saturating_mul(10).saturating_add(digit))
     });
     let number = number.filter(|_| !digits.is_empty())?;
-    let (index, most) = match counts_back {
-        true => ((above + 1).saturating_sub(number), above),
-        false => (number, total),
-    };
+    let index = back_from.map_or(number, |from| from.saturating_sub(number));
     let valid = (1..=most).contains(&index).then_some(index);
     Some(valid.ok_or_else(|| (String::from_utf8_lossy(written).into_owned(), most)))
 }

@@ -87,6 +87,33 @@ fn groups_across_the_file_share_positions() {
 }
 
 #[test]
+fn many_faces_share_positions_and_normals() {
+    // More of them than `tobj` is handed at once.
+    let count = 40_000;
+    let vertices = (0..count + 2).map(|at| format!("v {at} {} 0\n", at % 2));
+    let faces = (1..=count).map(|at| match at % 3 {
+        0 => format!("f {at} {} {}\n", at + 1, at + 2),
+        1 => format!("f {at} {}//2 {}\n", at + 1, at + 2),
+        _ => format!("f {at}//3 {}//1 {}//-1\n", at + 1, at + 2),
+    });
+    let normals = "vn 2 0 0\nvn 0 1 0\nvn 4 0 0\n".to_owned();
+    let text: String = vertices.chain([normals]).chain(faces).collect();
+    let (mesh, _) = parse(text);
+    assert_eq!(mesh.positions.len(), count as usize + 2);
+    assert!((0..count).eq(mesh.triangles.iter().map(|[first, ..]| *first)));
+    assert!((1..=count).eq(mesh.triangles.iter().map(|[_, second, _]| *second)));
+    assert_eq!(mesh.normals, [Vec3::NEG_Z, Vec3::X, Vec3::Z]);
+    // Every third face has normals at all of its corners; the others lie up or down.
+    let expected = |at: u32| match (at % 3, at % 2) {
+        (2, _) => [1; 3],
+        (_, 0) => [2; 3],
+        _ => [0; 3],
+    };
+    let normal_indices = mesh.normal_indices.iter().copied();
+    assert!((1..=count).map(expected).eq(normal_indices));
+}
+
+#[test]
 fn given_normals_are_normalised_and_shared() {
     let (mesh, _) = parse(format!(
         "{SQUARE}vn 0 0 2\nvn 0 3 4\nf 1//1 2//1 3//2\nf 1//1 3//2 4//-1\n"

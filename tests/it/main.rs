@@ -51,6 +51,7 @@ mod masked;
 mod mirrored;
 mod moved_device;
 mod moving;
+mod moving_on_gpu;
 mod moving_rays;
 mod one_submission;
 mod oracle;

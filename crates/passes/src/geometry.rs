@@ -9,18 +9,19 @@ use crate::{
     error::Error,
     hierarchies::all,
     host_buffers::{HostMesh, HostWrite},
-    names::{NORMALS, next_version},
+    names::next_version,
     outlines::Outlines,
     part::{HostPart, Part, placed},
     parts::{PartId, Room},
     piece::{Content, Outside, Piece},
+    placed::Placed,
     space::Space,
     trees::{Over, Trees},
     uniforms::LightUniform,
 };
 use glam::{DAffine3, Vec3};
-use skiagraph_scene::{LightKind, Mesh, Movable, MoveError, MovedPart, PartPlace, Scene};
-use std::{ops::Range, sync::Arc};
+use skiagraph_scene::{LightKind, Mesh, Movable, MoveError, PartPlace, Scene};
+use std::{collections::BTreeSet, ops::Range, sync::Arc};
 
 /// Pieces of a mesh: its parts, and all that is in none of them. A mesh without parts is one piece.
 #[derive(Clone, Default)]
@@ -33,6 +34,10 @@ pub(crate) struct Geometry {
     parts: Vec<PartId>,
     /// Numbers of pieces that were removed, for those that are added.
     gone: Vec<usize>,
+    /// Pieces that maps have moved since their corners in the scene's mesh were computed.
+    behind: BTreeSet<usize>,
+    /// Number of the change that gave parts their positions at rest.
+    rested: u64,
     /// Triangles of parts that were removed, each with the number of that change.
     cleared: Cleared,
     /// Number of the change that gave the mesh its items.
@@ -73,8 +78,8 @@ impl Geometry {
             is_mirrored: false,
             host: None,
         };
-        let begun = next_version();
         let own: Vec<Part> = (0..parts.parts()).map(part).collect();
+        let begun = next_version();
         let ids: Vec<PartId> = own.iter().map(|part| part.id).collect();
         let pieces = own.into_iter().map(|part| Piece::new(Content::Part(part)));
         let mut pieces: Vec<Piece> = pieces.collect();
@@ -151,7 +156,8 @@ impl Geometry {
         }
     }
 
-    /// Moves the parts of the scene's mesh whose maps are others than before.
+    /// Moves the parts whose maps are others than before. Their corners in the scene's mesh follow
+    /// when they are [brought](Self::bring) there.
     ///
     /// # Errors
     /// See [`SceneProvider::set_transforms`](crate::SceneProvider::set_transforms).
@@ -165,13 +171,8 @@ impl Geometry {
         if parts != given {
             return Err(MoveError::Count { parts, maps: given }.into());
         }
-        let mut moved = Vec::new();
-        for (number, (&id, map)) in self.parts.iter().zip(maps).enumerate() {
-            if self.maps[id.piece] != Some(*map) {
-                moved.push((id.piece, *map, self.part(id)?.moved(map, number)?));
-            }
-        }
-        self.move_parts(moved, scene)
+        let moved: Vec<_> = self.parts.iter().copied().zip(maps).enumerate().collect();
+        self.move_parts(&moved, scene)
     }
 
     /// Moves one part.
@@ -185,40 +186,32 @@ impl Geometry {
         scene: &mut Arc<Scene>,
     ) -> Result<Change, Error> {
         let number = self.number(id)?;
-        let part = self.part(id)?;
-        if self.maps[id.piece] == Some(*map) {
-            return Ok(Change::default());
-        }
-        let moved = part.moved(map, number)?;
-        self.move_parts(vec![(id.piece, *map, moved)], scene)
+        self.move_parts(&[(number, (id, map))], scene)
     }
 
     fn move_parts(
         &mut self,
-        moved: Vec<(usize, DAffine3, MovedPart)>,
+        maps: &[(usize, (PartId, &DAffine3))],
         scene: &mut Arc<Scene>,
     ) -> Result<Change, Error> {
-        let mut change = Change::default();
-        if moved.is_empty() && !self.is_unplaced {
-            return Ok(change);
+        let mut moved = Vec::new();
+        for &(number, (id, map)) in maps {
+            if self.maps[id.piece] != Some(*map) {
+                let placed = self.part(id)?.place(map);
+                let placed = placed.map_err(|error| error.renumbered(number))?;
+                moved.push((id.piece, map, placed));
+            }
         }
-        let (mesh, version) = (&mut Arc::make_mut(scene).mesh, next_version());
-        for (piece, map, moved) in moved {
-            let part = self.part_mut(piece)?;
-            let is_host = part.place_bounds(&map)?;
-            let was = std::mem::replace(&mut part.is_mirrored, moved.is_mirrored);
-            let put = part.of.put_at(part.number, &moved, was, mesh, part.at);
-            let positions = part.positions();
-            self.maps[piece] = Some(map);
-            if put.is_elsewhere || is_host {
-                (self.pieces[piece].moved, self.pieces[piece].leaned) = (version, version);
-                self.work.moved += positions as u64;
+        let mut change = Change::default();
+        for (piece, map, placed) in moved {
+            let before = self.maps[piece].replace(*map);
+            let own = &mut self.pieces[piece];
+            change.is_turned |= own.move_by((before, map), placed, scene);
+            change.is_elsewhere = true;
+            self.work.moved += own.ranges(&scene.mesh)[0].len() as u64;
+            if own.host().is_none() {
+                self.behind.insert(piece);
             }
-            if put.is_turned {
-                self.pieces[piece].turned = version;
-            }
-            change.is_elsewhere |= put.is_elsewhere || is_host;
-            change.is_turned |= put.is_turned;
         }
         if self.is_unplaced && self.has_places() {
             self.is_unplaced = false;
@@ -233,31 +226,42 @@ impl Geometry {
         parts.all(|id| self.maps[id.piece].is_some())
     }
 
+    /// Computes the corners in the scene's mesh of those parts that maps have moved.
+    pub fn bring(&mut self, scene: &mut Arc<Scene>) {
+        if !self.behind.is_empty() {
+            self.placed().bring(&mut Arc::make_mut(scene).mesh);
+            self.behind.clear();
+        }
+    }
+
+    /// Where the parts are.
+    pub fn placed(&self) -> Placed<'_> {
+        Placed {
+            pieces: &self.pieces,
+            maps: &self.maps,
+            behind: &self.behind,
+            begun: self.begun,
+            rested: self.rested.max(self.begun),
+        }
+    }
+
     /// Notes that the positions and normals of `mesh` are about to be replaced by these, and
     /// returns true if they are others.
     pub fn deform(&mut self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> bool {
-        // The maps of parts, if there are any, no longer say where those are.
-        self.maps.fill(None);
         self.is_unplaced = false;
         if mesh.positions == positions && mesh.normals == normals {
             return false;
         }
+        // The maps of parts, if there are any, no longer say where those are.
+        self.maps.fill(None);
         self.is_deformed = true;
         self.trees.bend();
         let version = next_version();
         for piece in &mut self.pieces {
-            let [places, directions] = piece.ranges(mesh);
-            let [is_elsewhere, is_leaning] = match &piece.content {
-                // Its range holds those of parts, too.
-                Content::Outside(outside) => outside.is_bent(mesh, positions, normals),
-                _ => [
-                    mesh.positions[places.clone()] != positions[places.clone()],
-                    mesh.normals[directions.clone()] != normals[directions],
-                ],
-            };
+            let [is_elsewhere, is_leaning] = piece.is_bent(mesh, positions, normals);
             if is_elsewhere {
                 piece.moved = version;
-                self.work.moved += places.len() as u64;
+                self.work.moved += piece.ranges(mesh)[0].len() as u64;
             }
             if is_leaning {
                 piece.leaned = version;
@@ -317,10 +321,10 @@ impl Geometry {
     ) -> Result<(PartId, Change), Error> {
         self.check_parts()?;
         let is_mirrored = map.matrix3.determinant() < 0.0;
-        let moved = match &host {
-            Some(_) => Ok(MovedPart::written_elsewhere(is_mirrored)),
-            None => movable.moved_part(0, map),
-        };
+        let moved = host
+            .is_none()
+            .then(|| movable.moved_part(0, map))
+            .transpose();
         let moved = moved.map_err(|error| error.renumbered(self.parts.len()))?;
         let (at, is_grown) = self.place(&movable.rest, scene)?;
         let whole = &mut Arc::make_mut(scene).mesh;
@@ -342,17 +346,23 @@ impl Geometry {
             positions[..movable.rest.positions.len()].copy_from_slice(&movable.rest.positions);
         }
         let positions = movable.rest.positions.len();
-        movable.put_at(0, &moved, false, whole, at);
+        if let Some(moved) = moved {
+            movable.put_at(0, &moved, whole, at);
+        }
+        if is_mirrored {
+            movable.turn_at(0, whole, at);
+        }
         let piece = self.gone.pop().unwrap_or(self.pieces.len());
         let id = PartId::new(piece, next_version());
         let part = Piece::new(Content::Part(Part {
             id,
             number: 0,
             at,
-            is_mirrored: moved.is_mirrored,
+            is_mirrored,
             of: movable,
             host,
         }));
+        self.rested = next_version();
         self.work.nodes += self.trees.add(&part, piece) as u64;
         if piece < self.pieces.len() {
             self.pieces[piece] = part;
@@ -405,6 +415,8 @@ impl Geometry {
         }
         self.pieces[id.piece] = Piece::new(Content::Gone);
         self.maps[id.piece] = None;
+        self.behind.remove(&id.piece);
+        self.rested = next_version();
         self.parts.remove(number);
         self.gone.push(id.piece);
         self.cleared.clear(part.triangles());
@@ -512,25 +524,6 @@ impl Geometry {
         version < self.begun
     }
 
-    /// The ranges of positions, or of normals, that are others than in a version of the shape:
-    /// those of pieces that were moved on the CPU. `name` says which; the list has `count` items.
-    pub fn moved_since(
-        &self,
-        version: u64,
-        (name, count): (&str, usize),
-        mesh: &Mesh,
-    ) -> Vec<Range<usize>> {
-        if self.is_begun_after(version) {
-            return all(count);
-        }
-        let list = usize::from(name == NORMALS);
-        let moved = self.pieces.iter().filter(|piece| piece.host().is_none());
-        let moved = moved.filter(|piece| [piece.moved, piece.leaned][list] > version);
-        moved
-            .map(|piece| piece.ranges(mesh)[list].clone())
-            .collect()
-    }
-
     /// The ranges of triangles that have other corners than in a version of the winding.
     pub fn triangles_since(&self, version: u64, mesh: &Mesh) -> Vec<Range<usize>> {
         if self.is_begun_after(version) {
@@ -585,7 +578,7 @@ impl Geometry {
     /// corners are looked at, or none.
     pub fn lay(&mut self, light: LightKind, mesh: &Mesh) -> LightUniform {
         let moved: Vec<u64> = self.pieces.iter().map(|piece| piece.moved).collect();
-        let corners = |piece: usize| self.pieces[piece].corners(mesh);
+        let corners = |piece: usize| self.pieces[piece].corners(mesh, self.maps[piece].as_ref());
         let (uniform, laid) = self.outlines.lay(light, &moved, corners);
         self.work.laid += laid;
         uniform

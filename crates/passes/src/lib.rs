@@ -72,6 +72,7 @@ mod outlines;
 mod part;
 mod parts;
 mod piece;
+mod placed;
 mod presets;
 mod provider;
 mod ray_query;

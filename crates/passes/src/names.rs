@@ -25,6 +25,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 pub(crate) const POSITIONS: &str = "scene.positions";
 pub(crate) const INDICES: &str = "scene.indices";
+/// Positions of parts before their maps move them; no graph sees it.
+pub(crate) const AT_REST: &str = "positions at rest";
 pub(crate) const NORMALS: &str = "scene.normals";
 pub(crate) const BVH_NODES: &str = "scene.bvh_nodes";
 pub(crate) const BVH_PRIMITIVES: &str = "scene.bvh_primitives";

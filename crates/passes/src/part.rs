@@ -5,7 +5,7 @@ use crate::{
     parts::PartId,
 };
 use glam::{DAffine3, Vec3};
-use skiagraph_scene::{Movable, MoveError, MovedPart, PartPlace};
+use skiagraph_scene::{Movable, MoveError, PartPlace};
 use std::{ops::Range, sync::Arc};
 
 /// A part of a mesh; the geometry has its map.
@@ -67,7 +67,8 @@ pub(crate) fn placed(ends: [Vec3; 2], map: &DAffine3) -> Result<[Vec3; 2], MoveE
         return Err(MoveError::NotFinite { part, map: *map });
     }
     let determinant = map.matrix3.determinant();
-    if determinant == 0.0 || determinant.is_nan() {
+    // Nor is there a normal where an entry of the inverse is beyond f64.
+    if determinant == 0.0 || !map.matrix3.inverse().is_finite() {
         return Err(MoveError::Singular { part });
     }
     let mut bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
@@ -77,9 +78,14 @@ pub(crate) fn placed(ends: [Vec3; 2], map: &DAffine3) -> Result<[Vec3; 2], MoveE
         if !place.is_finite() {
             return Err(MoveError::OutOfRange { part, from, to });
         }
-        bounds = [bounds[0].min(place), bounds[1].max(place)];
+        bounds = joined(bounds, [place; 2]);
     }
     Ok(bounds)
+}
+
+/// Bounds around both.
+pub(crate) fn joined(one: [Vec3; 2], other: [Vec3; 2]) -> [Vec3; 2] {
+    [one[0].min(other[0]), one[1].max(other[1])]
 }
 
 /// The corners of a box.
@@ -90,26 +96,16 @@ pub(crate) fn box_corners(ends: [Vec3; 2]) -> impl Iterator<Item = Vec3> {
 }
 
 impl Part {
-    /// Returns the part moved by a map, or the error of its number.
-    pub fn moved(&self, map: &DAffine3, number: usize) -> Result<MovedPart, MoveError> {
-        let moved = match &self.host {
-            Some(host) => placed(host.bounds, map)
-                .map(|_| MovedPart::written_elsewhere(map.matrix3.determinant() < 0.0)),
-            None => self.of.moved_part(self.number, map),
-        };
-        moved.map_err(|error| error.renumbered(number))
-    }
-
-    /// Moves the bounds of a part of a host's buffer by a map; true if it is one.
+    /// Bounds of its positions where a map takes it.
     ///
     /// # Errors
-    /// A map that cannot move it.
-    pub fn place_bounds(&mut self, map: &DAffine3) -> Result<bool, MoveError> {
-        let Some(host) = &mut self.host else {
-            return Ok(false);
+    /// A map that cannot move it, or not all within its bounds.
+    pub fn place(&self, map: &DAffine3) -> Result<[Vec3; 2], MoveError> {
+        let bounds = match &self.host {
+            Some(host) => host.bounds,
+            None => self.of.bounds(self.number),
         };
-        host.placed = placed(host.bounds, map)?;
-        Ok(true)
+        placed(bounds, map)
     }
 
     /// Number of its positions.

@@ -4,8 +4,8 @@ use crate::{
     names::next_version,
     part::{HostPart, Part, box_corners, range_of},
 };
-use glam::Vec3;
-use skiagraph_scene::{Mesh, Movable, TwoLevelBvh, outline::outer};
+use glam::{DAffine3, Vec3};
+use skiagraph_scene::{Mesh, Movable, Scene, TwoLevelBvh, outline::outer};
 use std::{ops::Range, sync::Arc};
 
 /// A piece, with the numbers of the changes that made it as it is.
@@ -86,6 +86,36 @@ impl Piece {
         }
     }
 
+    /// Moves the part that it is, by a map in the place of the one before, to these bounds; true if
+    /// that winds its triangles the other way in the scene's mesh.
+    pub fn move_by(
+        &mut self,
+        (before, map): (Option<DAffine3>, &DAffine3),
+        bounds: [Vec3; 2],
+        scene: &mut Arc<Scene>,
+    ) -> bool {
+        let Content::Part(part) = &mut self.content else {
+            return false;
+        };
+        self.moved = next_version();
+        if let Some(host) = &mut part.host {
+            host.placed = bounds;
+        }
+        // At rest normals are as they were given, of any length.
+        let before = before.filter(|before| *before != DAffine3::IDENTITY);
+        if before.is_none_or(|before| before.matrix3 != map.matrix3) {
+            self.leaned = self.moved;
+        }
+        let is_turned = part.is_mirrored != (map.matrix3.determinant() < 0.0);
+        if is_turned {
+            part.is_mirrored = !part.is_mirrored;
+            let mesh = &mut Arc::make_mut(scene).mesh;
+            part.of.turn_at(part.number, mesh, part.at);
+            self.turned = self.moved;
+        }
+        is_turned
+    }
+
     /// Number of the last change of its positions or its tree.
     pub fn changed(&self) -> u64 {
         self.moved.max(self.built)
@@ -125,9 +155,27 @@ impl Piece {
         }
     }
 
-    /// The number of positions that its triangles use, and those of them that may be on its box or
-    /// outline.
-    pub fn corners(&self, mesh: &Mesh) -> (usize, Vec<Vec3>) {
+    /// True if a corner of its triangles would have another place than in `mesh`, and if one would
+    /// have another normal.
+    pub fn is_bent(&self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> [bool; 2] {
+        if let Content::Whole = self.content {
+            return [mesh.positions != positions, mesh.normals != normals];
+        }
+        // Ranges may hold those of other pieces, too.
+        let primitives = self.primitives(mesh);
+        let differ = |indices: &[[u32; 3]], now: &[Vec3], then: &[Vec3]| {
+            let corners = primitives.iter().flat_map(|&id| indices[id as usize]);
+            corners.map(|at| at as usize).any(|at| now[at] != then[at])
+        };
+        [
+            differ(&mesh.triangles, &mesh.positions, positions),
+            differ(&mesh.normal_indices, &mesh.normals, normals),
+        ]
+    }
+
+    /// The number of positions that were looked at, and those of the piece that may be on its box
+    /// or outline. A part that has a `map` is where that takes it; others are as in `mesh`.
+    pub fn corners(&self, mesh: &Mesh, map: Option<&DAffine3>) -> (usize, Vec<Vec3>) {
         let places = |corners: &[u32], first: usize| {
             let place = |at: usize| mesh.positions[first + corners[at] as usize];
             (corners.len(), outer(corners.len(), place))
@@ -136,7 +184,13 @@ impl Piece {
             return (8, box_corners(host.placed).collect());
         }
         match &self.content {
-            Content::Part(part) => places(part.of.corners(part.number), part.at.position),
+            Content::Part(part) => match map {
+                Some(map) => {
+                    let moved = part.of.moved_border(part.number, map);
+                    (moved.len(), moved)
+                }
+                None => places(part.of.corners(part.number), part.at.position),
+            },
             Content::Outside(outside) => places(&outside.corners, 0),
             Content::Gone => (0, Vec::new()),
             Content::Whole => {
@@ -148,30 +202,10 @@ impl Piece {
 }
 
 impl Outside {
-    /// True if a corner of its triangles would have another place than in `mesh`, and if one would
-    /// have another normal.
-    pub fn is_bent(&self, mesh: &Mesh, positions: &[Vec3], normals: &[Vec3]) -> [bool; 2] {
-        let mut corners = self.corners.iter().map(|&corner| corner as usize);
-        let triangles = self.triangles.iter();
-        let directions = triangles.flat_map(|&id| mesh.normal_indices[id as usize]);
-        let mut directions = directions.map(|normal| normal as usize);
-        [
-            corners.any(|at| mesh.positions[at] != positions[at]),
-            directions.any(|at| mesh.normals[at] != normals[at]),
-        ]
-    }
-
     pub fn new(parts: &Movable) -> Self {
-        let mesh = &parts.rest;
-        let mut is_inside = vec![false; mesh.triangles.len()];
-        for part in 0..parts.parts() {
-            for &triangle in parts.triangles(part) {
-                is_inside[triangle as usize] = true;
-            }
-        }
-        let triangles = (0..).zip(is_inside).filter(|(_, is_inside)| !is_inside);
-        let triangles: Vec<u32> = triangles.map(|(triangle, _)| triangle).collect();
-        let corners = triangles.iter().flat_map(|&id| mesh.triangles[id as usize]);
+        let triangles = parts.outside();
+        let corners = triangles.iter();
+        let corners = corners.flat_map(|&id| parts.rest.triangles[id as usize]);
         let mut corners: Vec<u32> = corners.collect();
         corners.sort_unstable();
         corners.dedup();

@@ -102,7 +102,7 @@ pub use mask::Mask;
 pub use material::{Material, Surfaces};
 pub use mesh::{Group, Mesh};
 pub use motion::{Motion, PoseKey, RigidKey};
-pub use movable::{Movable, MoveError, MovedPart, PartChange, PartPlace};
+pub use movable::{Movable, MoveError, MovedPart, PartPlace};
 pub use outline::Outline;
 pub use parts::Parts;
 pub use path::{CameraKey, CameraPath, LightKey};

@@ -1,10 +1,14 @@
 //! Meshes with parts that are moved independently of each other, by affine maps or by bends.
 
-use crate::mesh::{Group, Mesh};
+use crate::{
+    mesh::{Group, Mesh, bounds},
+    outline::{Border, outer},
+};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use std::{
     collections::{BTreeMap, HashMap, HashSet},
     ops::Range,
+    sync::OnceLock,
 };
 
 /// Mesh with parts that are moved independently of each other. Each part is moved by a map from
@@ -25,6 +29,10 @@ struct Part {
     /// Primitive ids.
     triangles: Vec<u32>,
     positions: Vec<u32>,
+    /// Bounds of these.
+    bounds: [Vec3; 2],
+    /// Border of the corners at rest; of copies, that of the first is asked for.
+    border: OnceLock<Border>,
     /// Normals, each with the position at which it stands.
     normals: Vec<(u32, u32)>,
     /// Positions that triangles use, where not all of them do.
@@ -34,7 +42,7 @@ struct Part {
 }
 
 /// Part of a [`Movable`] after it was moved, as [`Movable::moved_part`] returns it, to be written
-/// into a mesh by [`Movable::put`].
+/// into a mesh by [`Movable::put_at`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MovedPart {
@@ -42,18 +50,6 @@ pub struct MovedPart {
     normals: Vec<Vec3>,
     /// True if the part was mirrored, so that its triangles are wound the other way than at rest.
     pub is_mirrored: bool,
-}
-
-impl MovedPart {
-    /// Creates a part whose moved positions and normals are written elsewhere, such as by a GPU.
-    /// [`Movable::put_at`] then only winds the part's triangles.
-    pub fn written_elsewhere(is_mirrored: bool) -> Self {
-        Self {
-            positions: Vec::new(),
-            normals: Vec::new(),
-            is_mirrored,
-        }
-    }
 }
 
 /// Indices at which the positions, normals and triangles of a [`Movable`] begin in the lists of a
@@ -66,16 +62,6 @@ pub struct PartPlace {
     pub normal: usize,
     /// Index of the movable's first triangle in the triangles of the larger mesh.
     pub triangle: usize,
-}
-
-/// Changes that a call of [`Movable::put`] or [`Movable::put_at`] made to a mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct PartChange {
-    /// True if the call changed a position or normal of the part.
-    pub is_elsewhere: bool,
-    /// True if the call reversed the winding of the part's triangles.
-    pub is_turned: bool,
 }
 
 /// Reason why parts of a [`Movable`] cannot be moved. Parts are numbered from 0.
@@ -196,6 +182,49 @@ impl Movable {
         }
     }
 
+    /// Adds a last part of the triangles that are in no part, if there are any. They must share no
+    /// positions with parts, as [`new`](Self::new) demands.
+    pub fn with_outside(mut self) -> Self {
+        let triangles = self.outside();
+        if triangles.is_empty() {
+            return self;
+        }
+        let mut normals = BTreeMap::new();
+        let mut positions = Vec::new();
+        for &id in &triangles {
+            let corners = self.rest.triangles[id as usize];
+            positions.extend(corners);
+            normals.extend(
+                self.rest.normal_indices[id as usize]
+                    .into_iter()
+                    .zip(corners),
+            );
+        }
+        positions.sort_unstable();
+        positions.dedup();
+        self.parts.push(Part {
+            triangles,
+            bounds: bounds_of(&self.rest, &positions),
+            border: OnceLock::new(),
+            positions,
+            normals: normals.into_iter().collect(),
+            corners: None,
+            copy_of: self.parts.len(),
+        });
+        self
+    }
+
+    /// Returns the triangles that are in no part, as primitive ids of [`rest`](Self::rest) in
+    /// ascending order.
+    pub fn outside(&self) -> Vec<u32> {
+        let mut is_inside = vec![false; self.rest.triangles.len()];
+        for &triangle in self.parts.iter().flat_map(|part| &part.triangles) {
+            is_inside[triangle as usize] = true;
+        }
+        let triangles = (0..).zip(is_inside).filter(|(_, is_inside)| !is_inside);
+        triangles.map(|(triangle, _)| triangle).collect()
+    }
+
     /// Returns the number of parts that can be moved.
     pub fn parts(&self) -> usize {
         self.parts.len()
@@ -218,6 +247,29 @@ impl Movable {
     pub fn corners(&self, part: usize) -> &[u32] {
         let part = &self.parts[part];
         part.corners.as_deref().unwrap_or(&part.positions)
+    }
+
+    /// Returns the low and high corner of the box around part number `part` at rest.
+    ///
+    /// # Panics
+    /// If there is no part of that number.
+    pub fn bounds(&self, part: usize) -> [Vec3; 2] {
+        self.parts[part].bounds
+    }
+
+    /// Returns the places to which a map takes those corners of part number `part` that may be on
+    /// the part's box or [`Outline`](crate::Outline) there. After the first time few are looked at.
+    ///
+    /// # Panics
+    /// If there is no part of that number.
+    pub fn moved_border(&self, part: usize, map: &DAffine3) -> Vec<Vec3> {
+        let corners = self.corners(part);
+        let corner = |at: usize| self.rest.positions[corners[at] as usize];
+        let border = &self.parts[self.copy_of(part)].border;
+        let border = border.get_or_init(|| Border::new(corners.len(), corner));
+        let place = |at: usize| map.transform_point3(corner(at).as_dvec3()).as_vec3();
+        let moved = border.moved(map);
+        moved.unwrap_or_else(|| outer(corners.len(), place))
     }
 
     /// Returns the smallest ranges of the positions and of the normals of [`rest`](Self::rest) that
@@ -272,7 +324,10 @@ impl Movable {
         let mut mesh = self.rest.clone();
         for part in 0..self.parts.len() {
             let moved = make(part)?;
-            self.put(part, &moved, false, &mut mesh);
+            self.put_at(part, &moved, &mut mesh, PartPlace::default());
+            if moved.is_mirrored {
+                self.turn_at(part, &mut mesh, PartPlace::default());
+            }
         }
         Ok(mesh)
     }
@@ -368,58 +423,31 @@ impl Movable {
         })
     }
 
-    /// Writes `moved`, the moved part number `part`, into `mesh`, which is a copy of
-    /// [`rest`](Self::rest) in which parts may be moved already, and returns the changes.
-    /// `was_mirrored` is true if the part is mirrored in `mesh` so far. If `moved` is mirrored and
-    /// the part so far is not, or the reverse, the part's triangles are wound the other way.
-    ///
-    /// # Panics
-    /// If there is no part of that number, or if `mesh` has fewer positions, normals or triangles
-    /// than that copy.
-    pub fn put(
-        &self,
-        part: usize,
-        moved: &MovedPart,
-        was_mirrored: bool,
-        mesh: &mut Mesh,
-    ) -> PartChange {
-        self.put_at(part, moved, was_mirrored, mesh, PartPlace::default())
-    }
-
-    /// Writes a moved part as [`put`](Self::put) does, but into a larger mesh: its lists contain
-    /// the positions, normals and triangles of [`rest`](Self::rest) from the indices of `at` on.
+    /// Writes the positions and normals of a moved part into a mesh that contains those of
+    /// [`rest`](Self::rest) from the indices of `at` on.
     ///
     /// # Panics
     /// If there is no part of that number, or if `mesh` is too small.
-    pub fn put_at(
-        &self,
-        part: usize,
-        moved: &MovedPart,
-        was_mirrored: bool,
-        mesh: &mut Mesh,
-        at: PartPlace,
-    ) -> PartChange {
+    pub fn put_at(&self, part: usize, moved: &MovedPart, mesh: &mut Mesh, at: PartPlace) {
         let part = &self.parts[part];
-        let mut change = PartChange {
-            is_elsewhere: false,
-            is_turned: moved.is_mirrored != was_mirrored,
-        };
-        let mut put = |place: &mut Vec3, now: Vec3| {
-            change.is_elsewhere |= *place != now;
-            *place = now;
-        };
         for (&position, place) in part.positions.iter().zip(&moved.positions) {
-            put(&mut mesh.positions[at.position + position as usize], *place);
+            mesh.positions[at.position + position as usize] = *place;
         }
         for (&(normal, _), direction) in part.normals.iter().zip(&moved.normals) {
-            put(&mut mesh.normals[at.normal + normal as usize], *direction);
+            mesh.normals[at.normal + normal as usize] = *direction;
         }
-        if change.is_turned {
-            for &primitive in &part.triangles {
-                mesh.turn(at.triangle + primitive as usize);
-            }
+    }
+
+    /// Winds the triangles of a part the other way, in a mesh that contains those of
+    /// [`rest`](Self::rest) from the indices of `at` on: for a map that mirrors the part, where the
+    /// one before did not, or the reverse.
+    ///
+    /// # Panics
+    /// If there is no part of that number, or if `mesh` is too small.
+    pub fn turn_at(&self, part: usize, mesh: &mut Mesh, at: PartPlace) {
+        for &primitive in &self.parts[part].triangles {
+            mesh.turn(at.triangle + primitive as usize);
         }
-        change
     }
 
     /// Returns the lowest and highest coordinate of part number `part` at rest along `axis`, as dot
@@ -479,9 +507,12 @@ impl Part {
         used.sort_unstable();
         used.dedup();
         used.iter_mut().for_each(|index| *index += first_position);
+        let positions: Vec<u32> = (first_position..rest.positions.len() as u32).collect();
         Self {
             triangles: (first..rest.triangles.len() as u32).collect(),
-            positions: (first_position..rest.positions.len() as u32).collect(),
+            bounds: bounds_of(rest, &positions),
+            border: OnceLock::new(),
+            positions,
             normals: at_positions(&own),
             corners: (used.len() < mesh.positions.len()).then_some(used),
             copy_of,
@@ -525,12 +556,20 @@ impl Part {
         triangles.sort_unstable();
         Ok(Self {
             triangles,
+            bounds: bounds_of(mesh, &positions),
+            border: OnceLock::new(),
             positions,
             normals: at_positions(&own),
             corners: None,
             copy_of,
         })
     }
+}
+
+/// Bounds of some positions; those of no position are 0.
+fn bounds_of(mesh: &Mesh, positions: &[u32]) -> [Vec3; 2] {
+    let places = positions.iter().map(|at| mesh.positions[*at as usize]);
+    bounds(places).map_or_else(Default::default, |(low, high)| [low, high])
 }
 
 /// New normals, each with the position at which it stands.

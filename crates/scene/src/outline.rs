@@ -1,7 +1,7 @@
 //! Outlines of points as a directional light sees them: what its box is fitted to.
 
 use crate::mesh::bounds;
-use glam::{DMat3, DVec2, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec2, DVec3, Vec3};
 
 /// Outline of points as a directional light sees them: their convex hull across the light, and
 /// their least and greatest depth. [`DirectionalLight::outline`](crate::DirectionalLight::outline)
@@ -66,72 +66,139 @@ impl Outline {
     }
 }
 
-/// Triangles of a cube seen from its middle: a corner, the middle of a face, and the next corner of
-/// that face. Each axis is 0 or a side.
-fn cones() -> impl Iterator<Item = [DVec3; 3]> {
-    let faces = (0..3).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]);
-    faces.flat_map(|(axis, side)| {
-        let round = [
-            (1.0, 1.0),
-            (-1.0, 1.0),
-            (-1.0, -1.0),
-            (1.0, -1.0),
-            (1.0, 1.0),
-        ];
-        let corner = move |(u, v): (f64, f64)| {
-            let mut corner = DVec3::splat(side);
-            corner[(axis + 1) % 3] = u;
-            corner[(axis + 2) % 3] = v;
-            corner
-        };
-        let mut middle = DVec3::ZERO;
-        middle[axis] = side;
-        (0..4).map(move |turn| [corner(round[turn]), middle, corner(round[turn + 1])])
-    })
-}
-
-/// Returns those of some points that may be corners of an [`Outline`] of all of them, or nearest or
-/// farthest in it, whatever the direction of the light: all but those that lie well within the
-/// polyhedra between the points farthest in 14 directions.
-pub fn border(points: &[Vec3]) -> Vec<Vec3> {
-    /// Volumes this much smaller than that of a cube as large are flat.
-    const FLAT: f64 = 1e-6;
-    /// A point so near to the outer side, as a share of its distance, counts as outside. It is far
-    /// more than f64 errs by, and so is `FLAT`.
-    const MARGIN: f64 = 1e-6;
-    let farthest = |direction: DVec3| {
-        let along = |point: &Vec3| direction.dot(point.as_dvec3());
-        let farthest = points.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
-        farthest.map_or(DVec3::ZERO, |point| point.as_dvec3())
-    };
-    let corners: Vec<[DVec3; 3]> = cones().map(|cone| cone.map(farthest)).collect();
-    let middle = corners.iter().flatten().sum::<DVec3>() / (3 * corners.len()) as f64;
-    let insides = corners.iter().filter_map(|cone| {
-        let [a, b, c] = cone.map(|corner| corner - middle);
-        let size = a.length().max(b.length()).max(c.length());
-        let matrix = DMat3::from_cols(a, b, c);
-        (matrix.determinant().abs() > FLAT * size.powi(3)).then(|| matrix.inverse())
-    });
-    let insides: Vec<DMat3> = insides.collect();
-    let is_inside = |point: &&Vec3| {
-        let from_middle = point.as_dvec3() - middle;
-        insides.iter().any(|inside| {
-            let weights = *inside * from_middle;
-            weights.min_element() >= 0.0 && weights.element_sum() < 1.0 - MARGIN
-        })
-    };
-    let border = points.iter().filter(|point| !is_inside(point));
-    border.copied().collect()
-}
-
 /// Returns those of `count` points, each the `point` of its number, that may be corners of the box
 /// around all of them or of their [`Outline`], whatever the direction of the light: all but those
 /// well within a box in their convex hull. Each point is looked at once or twice.
 pub fn outer(count: usize, point: impl Fn(usize) -> Vec3) -> Vec<Vec3> {
-    /// Points by which the box is chosen.
+    outside(sampled_box(count, &point), count, point)
+}
+
+/// Points of a solid that [`outer`] may return wherever an affine map takes all of its points: few
+/// of them, which take longer to find.
+#[derive(Clone, Debug)]
+pub struct Border {
+    /// The points.
+    pub points: Vec<Vec3>,
+    /// How deep at least the others lie in the convex hull; infinite if there is no box in that.
+    depth: f64,
+}
+
+impl Border {
+    /// Finds the border of `count` points, each the `point` of its number.
+    pub fn new(count: usize, point: impl Fn(usize) -> Vec3) -> Self {
+        let ends = sampled_box(count, &point);
+        let points = outside(ends, count, point);
+        let [low, high] = ends.map(|end| end.as_dvec3());
+        if !low.cmplt(high).all() {
+            let depth = f64::INFINITY;
+            return Self { points, depth };
+        }
+        let mut shell = Shell {
+            middle: (low + high) * 0.5,
+            half: (high - low) * 0.5,
+            points: Vec::new(),
+        };
+        let mut octants: [Vec<Vec3>; 8] = Default::default();
+        for point in points {
+            let octant = shell.from_middle(point).is_negative_bitmask();
+            octants[octant as usize].push(point);
+        }
+        for (octant, points) in octants.into_iter().enumerate() {
+            // To the middles of the box's sides.
+            let way = |axis: usize| DVec3::AXES[axis] * [1.0, -1.0][octant >> axis & 1];
+            shell.add([0, 1, 2].map(way), points, Shell::ROUNDS);
+        }
+        Self {
+            depth: MARGIN * shell.half.min_element(),
+            points: shell.points,
+        }
+    }
+
+    /// Returns the points where a map takes them, in f32; `None` if others may be on the border
+    /// there, because f32 rounds too much.
+    pub fn moved(&self, map: &DAffine3) -> Option<Vec<Vec3>> {
+        let most = |places: &[Vec3]| {
+            let most = places.iter().map(|at| at.abs().max_element());
+            f64::from(most.fold(0.0, f32::max))
+        };
+        let length = |it: &DMat3| it.x_axis.length() + it.y_axis.length() + it.z_axis.length();
+        let place = |from: &Vec3| map.transform_point3(from.as_dvec3()).as_vec3();
+        let moved: Vec<Vec3> = self.points.iter().map(place).collect();
+        // The least length that the map makes of 1, and more than places err by.
+        let least = 1.0 / length(&map.matrix3.inverse());
+        let error = 1e-6 * most(&moved) + 1e-12 * length(&map.matrix3) * most(&self.points);
+        (self.depth * least > error).then_some(moved)
+    }
+}
+
+/// A polyhedron within the convex hull goes so far, seen from the middle of the box, as a share,
+/// before the border. It is far more than f64 errs by.
+const MARGIN: f64 = 1e-3;
+
+/// Points that lie near the surface of a polyhedron between some of them, or beyond.
+struct Shell {
+    /// Middle and half size of a box in the convex hull.
+    middle: DVec3,
+    half: DVec3,
+    points: Vec<Vec3>,
+}
+
+impl Shell {
+    /// Corners that a line from the middle may pass by.
+    const ROUNDS: u32 = 40;
+
+    fn from_middle(&self, point: Vec3) -> DVec3 {
+        (point.as_dvec3() - self.middle) / self.half
+    }
+
+    /// Adds the points of a cone but those well within the tetrahedron between the middle and three
+    /// corners. Where one lies beyond it, the cone is cut in three along the farthest one.
+    fn add(&mut self, corners: [DVec3; 3], mut points: Vec<Vec3>, rounds: u32) {
+        /// Volumes this much smaller than that of a cube as large are flat: far more than f64 errs
+        /// by.
+        const FLAT: f64 = 1e-7;
+        let matrix = DMat3::from_cols(corners[0], corners[1], corners[2]);
+        let size = corners.iter().map(|corner| corner.length());
+        let size = size.fold(0.0, f64::max);
+        if rounds == 0 || matrix.determinant().abs() <= FLAT * size.powi(3) {
+            self.points.append(&mut points);
+            return;
+        }
+        let inverse = matrix.inverse();
+        let (mut farthest, mut reach) = (None, 1.0 + MARGIN);
+        points.retain(|point| {
+            let weights = inverse * self.from_middle(*point);
+            if weights.element_sum() > reach {
+                (farthest, reach) = (Some((*point, weights)), weights.element_sum());
+            }
+            weights.element_sum() >= 1.0 - MARGIN || weights.min_element() < 0.0
+        });
+        let Some((farthest, whole)) = farthest else {
+            self.points.append(&mut points);
+            return;
+        };
+        let mut cones: [Vec<Vec3>; 3] = Default::default();
+        for point in points {
+            let shares = inverse * self.from_middle(point) / whole.max(DVec3::splat(FLAT));
+            cones[shares.min_position()].push(point);
+        }
+        for (corner, points) in cones.into_iter().enumerate() {
+            let mut corners = corners;
+            corners[corner] = self.from_middle(farthest);
+            self.add(corners, points, rounds - 1);
+        }
+    }
+}
+
+/// A box in the convex hull of some points, by a sample of them.
+fn sampled_box(count: usize, point: impl Fn(usize) -> Vec3) -> [Vec3; 2] {
     const SAMPLES: usize = 1 << 16;
     let samples = (0..count).step_by(count / SAMPLES + 1);
-    let [low, high] = inner_box(&samples.map(&point).collect::<Vec<_>>());
+    inner_box(&samples.map(point).collect::<Vec<_>>())
+}
+
+/// Those points that are not in a box.
+fn outside([low, high]: [Vec3; 2], count: usize, point: impl Fn(usize) -> Vec3) -> Vec<Vec3> {
     let is_outer = |point: &Vec3| point.cmple(low).any() || point.cmpge(high).any();
     (0..count).map(point).filter(is_outer).collect()
 }

@@ -3,11 +3,12 @@
 use std::sync::OnceLock;
 
 /// Entry points of place.wgsl that write parts.
-pub(super) const ENTRIES: [&str; 4] = [
+pub(super) const ENTRIES: [&str; 5] = [
     "place_positions",
     "place_normals",
     "fit_nodes",
     "find_beyond",
+    "move_parts",
 ];
 
 /// The module of kernels that decode vertices in one way, and its pipelines.

@@ -61,6 +61,9 @@ struct Node {
 // The position and normal of each vertex, as bits.
 @group(0) @binding(13) var<storage, read_write> at_rest: array<array<u32, 6>>;
 
+// Positions of the scene's own parts before they are moved, as bits, and the number of the part.
+@group(0) @binding(14) var<storage, read> own: array<vec4<u32>>;
+
 const NONE = 0xffffffffu;
 const NOT_A_NUMBER = 0x7fc00000u;
 const INFINITE = 0x7f800000u;
@@ -128,6 +131,20 @@ fn find_beyond(
     for (var i = thread.x; i < mesh.positions; i += WIDTH * groups.x) {
         if sources[i] != NONE && !is_within(position_bits(sources[i]), low, high) {
             atomicMin(&beyond[parts[thread.y].number], sources[i]);
+        }
+    }
+}
+
+// Moves the scene's own parts, of which those that stay where they are have no number.
+@compute @workgroup_size(WIDTH)
+fn move_parts(
+    @builtin(global_invocation_id) thread: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+) {
+    for (var i = thread.x; i < arrayLength(&own); i += WIDTH * groups.x) {
+        let at = own[i];
+        if at.w != NONE && parts[at.w].number != NONE {
+            placed[i] = vec4(moved(at.w, at.xyz), bitcast<u32>(1.0));
         }
     }
 }

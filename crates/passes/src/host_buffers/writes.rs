@@ -54,6 +54,8 @@ pub(crate) enum Kernel {
     Nodes,
     /// Finds the first vertex of each part that is beyond its bounds.
     Beyond,
+    /// Writes positions of parts of the scene's own mesh.
+    Own,
 }
 
 impl Kernel {
@@ -65,6 +67,7 @@ impl Kernel {
             Self::Normals => (&[0, 1, 2, 4], &[6, 7, 8]),
             Self::Nodes => (&[1], &[11, 7, 8, 9]),
             Self::Beyond => (&[0, 1, 2, 3], &[12]),
+            Self::Own => (&[1], &[14, 5]),
         }
     }
 }
@@ -143,6 +146,40 @@ impl Kernels {
         Ok(Bound(batches?))
     }
 
+    /// Binds parts of the scene's own mesh, which the GPU moves by `maps`; those without one stay.
+    /// `buffers` are their positions at rest, each with the number of its map, and the scene's.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] for more parts than the device can bind.
+    pub fn bind_own(
+        &mut self,
+        buffers: [&wgpu::Buffer; 2],
+        maps: impl Iterator<Item = Option<DAffine3>>,
+        device: &wgpu::Device,
+    ) -> Result<Bound, Error> {
+        let record = |map: Option<DAffine3>| PartRecord {
+            number: if map.is_some() { 0 } else { u32::MAX },
+            ..PartRecord::of_map(&map.unwrap_or_default())
+        };
+        let records: Vec<PartRecord> = maps.map(record).collect();
+        let content: &[u8] = bytemuck::cast_slice(&records);
+        check_binding("moved parts", content.len() as u64, device)?;
+        let records = upload(device, "moved parts", content, wgpu::BufferUsages::STORAGE);
+        let pipeline = self.own(device).pipeline(Kernel::Own as usize, device);
+        let (own, of_scene) = Kernel::Own.bindings();
+        let bindings = own.iter().chain(of_scene).copied();
+        let bound = bindings.zip([&records, buffers[0], buffers[1]]);
+        let bound = bound.map(|(at, buffer)| (at, buffer.as_entire_binding()));
+        let group = group(&pipeline, Kernel::Own, bound, device);
+        let positions = (buffers[0].size() / 16) as u32;
+        Ok(Bound(vec![Batch {
+            pipeline,
+            group,
+            workgroups: [across_items(positions), 1],
+            uploaded: content.len() as u64,
+        }]))
+    }
+
     /// Looks for a vertex beyond the bounds of its part, and waits for the answer.
     ///
     /// # Errors
@@ -181,12 +218,13 @@ impl Kernels {
         // Nodes are fitted to positions.
         match decoder.filter(|_| kernel != Kernel::Nodes) {
             Some(decoder) => decoder.made.pipeline(kernel as usize, device),
-            None => {
-                let make = || Arc::new(KernelModule::new(device, include_str!("decode.wgsl")));
-                let made = self.made.get_or_insert_with(make);
-                made.pipeline(kernel as usize, device)
-            }
+            None => self.own(device).pipeline(kernel as usize, device),
         }
+    }
+
+    fn own(&mut self, device: &wgpu::Device) -> &KernelModule {
+        let make = || Arc::new(KernelModule::new(device, include_str!("decode.wgsl")));
+        self.made.get_or_insert_with(make)
     }
 }
 
@@ -217,7 +255,7 @@ fn groups(kernel: Kernel, mesh: &HostMesh) -> u32 {
     let items = match kernel {
         Kernel::Positions | Kernel::Beyond => rest.positions.len(),
         Kernel::Normals => rest.normals.len(),
-        Kernel::Nodes => 1,
+        Kernel::Nodes | Kernel::Own => 1,
     };
     across_items(items as u32)
 }
@@ -264,28 +302,39 @@ fn bind(
     let levels = parts[0].nodes.iter().map(|(_, levels)| (10, levels));
     let of_scene = of_scene.chain(levels);
     let of_scene = of_scene.map(|(at, buffer)| (at, buffer.as_entire_binding()));
-    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-    let entries: Vec<wgpu::BindGroupEntry> = own.chain(of_scene).map(entry).collect();
-    let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(ENTRIES[kernel as usize]),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &entries,
-    });
+    let group = group(pipeline, kernel, own.chain(of_scene), device);
     Ok((group, uploaded))
 }
 
+/// The bind group of a kernel.
+fn group<'a>(
+    pipeline: &wgpu::ComputePipeline,
+    kernel: Kernel,
+    bound: impl Iterator<Item = (u32, wgpu::BindingResource<'a>)>,
+    device: &wgpu::Device,
+) -> wgpu::BindGroup {
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+    let entries: Vec<wgpu::BindGroupEntry> = bound.map(entry).collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(ENTRIES[kernel as usize]),
+        layout: &pipeline.get_bind_group_layout(0),
+        entries: &entries,
+    })
+}
+
 impl PartRecord {
-    fn new(number: usize, part: &HostWrite) -> Self {
-        let axes = part.map.to_cols_array_2d();
-        let mut map = [0; 12];
-        for (bits, entry) in map.iter_mut().zip(axes.as_flattened()) {
-            *bits = entry.to_bits();
+    fn of_map(map: &DAffine3) -> Self {
+        Self {
+            map: map.to_cols_array().map(f64::to_bits),
+            across: across(map).map(|axis| axis.as_vec3().extend(0.0).to_array()),
+            ..bytemuck::Zeroable::zeroed()
         }
+    }
+
+    fn new(number: usize, part: &HostWrite) -> Self {
         let [position, normal, triangle] = part.first.map(|first| first as u32);
         let [low, high] = part.bounds.map(|corner| corner.to_array());
         Self {
-            map,
-            across: across(&part.map).map(|axis| axis.as_vec3().extend(0.0).to_array()),
             low,
             first_position: position,
             high,
@@ -293,7 +342,7 @@ impl PartRecord {
             first_triangle: triangle,
             first_node: part.nodes.as_ref().map_or(0, |(first, _)| *first as u32),
             number: number as u32,
-            padding: 0,
+            ..Self::of_map(&part.map)
         }
     }
 }

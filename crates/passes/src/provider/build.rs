@@ -117,6 +117,7 @@ impl Provider for SceneProvider {
             return Err(Error::OnDevice(EMBREE, part).into());
         }
         let began = self.uploads.begin();
+        self.uploads.bring();
         let embree = Arc::new(crate::embree::Embree::build(&self.uploads.scene)?);
         self.embree = Some((embree.clone(), version));
         self.uploads.note(EMBREE, How::Made, began);

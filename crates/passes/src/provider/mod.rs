@@ -184,9 +184,10 @@ impl SceneProvider {
     }
 
     /// Returns the provider's scene. Its mesh is the one that was set last, in its current shape:
-    /// with parts moved and positions deformed.
+    /// with parts moved and positions deformed. The first call after parts have moved computes all
+    /// of their positions and normals; frames of methods without a hierarchy do not.
     pub fn scene(&self) -> &Arc<Scene> {
-        &self.uploads.scene
+        self.uploads.current()
     }
 
     /// Sets the camera of a view on a viewport of `[width, height]` pixels, and the view's light:
@@ -311,6 +312,7 @@ impl SceneProvider {
         if let Some(part) = self.uploads.geometry.a_host_part() {
             return Err(Error::OnDevice("deform", part));
         }
+        self.uploads.bring();
         let mesh = &self.uploads.scene.mesh;
         let expected = [mesh.positions.len(), mesh.normals.len()];
         let given = [positions.len(), normals.len()];
@@ -340,8 +342,8 @@ impl SceneProvider {
     ///
     /// # Errors
     /// [`Error::NoParts`] if the mesh was not given in parts; [`Error::Move`] if the number of maps
-    /// is not the number of parts, or a map is singular, not finite, or moves a position beyond
-    /// f32; the error names the part of such a map. The mesh then stays as it was.
+    /// is not the number of parts, or a map is singular, not finite, or moves a corner of the box
+    /// around its part beyond f32; the error names this part. The mesh then stays as it was.
     pub fn set_transforms(&mut self, maps: &[DAffine3]) -> Result<(), Error> {
         self.uploads
             .change(|geometry, scene| geometry.set_transforms(maps, scene))
@@ -351,7 +353,8 @@ impl SceneProvider {
     ///
     /// # Errors
     /// [`Error::NoPart`] for a part that the mesh does not have; [`Error::Move`] for a map that is
-    /// singular, not finite, or moves a position beyond f32. The mesh then stays as it was.
+    /// singular, not finite, or moves a corner of the part's box beyond f32. The mesh then stays as
+    /// it was.
     pub fn set_transform(&mut self, part: PartId, map: &DAffine3) -> Result<(), Error> {
         self.uploads
             .change(|geometry, scene| geometry.set_transform(part, map, scene))
@@ -378,6 +381,7 @@ impl SceneProvider {
     /// cannot bind the mesh with that room. The mesh then stays as it was.
     pub fn reserve(&mut self, room: Room, limits: &wgpu::Limits) -> Result<(), Error> {
         let uploads = &mut self.uploads;
+        uploads.bring();
         uploads.geometry.space.limit = Some(binding_limit(limits));
         uploads.geometry.reserve(room, &mut uploads.scene)?;
         uploads.facts = Facts::new(&uploads.scene.mesh).into();

@@ -20,7 +20,10 @@ use skiagraph_scene::{
     BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets,
     packed_masks::{mask_words, shadow_words},
 };
-use std::{ops::Range, sync::Arc};
+use std::{
+    ops::Range,
+    sync::{Arc, OnceLock},
+};
 use web_time::Instant;
 
 /// A resource of scenes.
@@ -63,7 +66,10 @@ impl Facts {
 #[derive(Clone)]
 pub(super) struct Uploads {
     resources: &'static [Resource],
+    /// The scene; in its mesh some parts are [behind](Geometry::bring).
     pub scene: Arc<Scene>,
+    /// The scene with all parts in their places, once it was asked for since the last change.
+    current: OnceLock<Arc<Scene>>,
     pub versions: Versions,
     /// Words of [`MASKS`], [`SHADOWS`] and [`SHEETS`], made at once: plans ask how many there are.
     pub facts: Arc<Facts>,
@@ -86,6 +92,7 @@ impl Uploads {
             facts: Facts::new(&scene.mesh).into(),
             sheets: Sheets::new(&scene.mesh).into(),
             scene,
+            current: OnceLock::new(),
             buffers: Buffers::new(held),
             resources,
             geometry: Geometry::whole(),
@@ -101,6 +108,39 @@ impl Uploads {
 
     pub fn lights(&self) -> &[LightKind] {
         &self.versions.lights.now
+    }
+
+    /// The scene with all parts in their places.
+    pub fn current(&self) -> &Arc<Scene> {
+        let placed = self.geometry.placed();
+        if placed.behind.is_empty() {
+            return &self.scene;
+        }
+        self.current.get_or_init(|| {
+            let mut scene = Arc::clone(&self.scene);
+            placed.bring(&mut Arc::make_mut(&mut scene).mesh);
+            scene
+        })
+    }
+
+    /// Computes the corners of all parts that maps have moved.
+    pub fn bring(&mut self) {
+        self.current.take();
+        self.geometry.bring(&mut self.scene);
+    }
+
+    /// True if the GPU moves parts by their maps, in the buffer of positions that is of a version:
+    /// where many have moved, or once they have.
+    fn moves_on_gpu(&self, held: Option<u64>) -> bool {
+        /// The others are fewer than so many times those that have moved.
+        const FEW: usize = 8;
+        let placed = self.geometry.placed();
+        let Some(held) = held.filter(|held| !self.geometry.is_begun_after(*held)) else {
+            return false;
+        };
+        let moved = placed.moved_since(held);
+        let has_rest = self.buffers.version(AT_REST) == Some(placed.rested);
+        moved > 0 && (has_rest || FEW * moved > self.scene.mesh.positions.len())
     }
 
     /// The resource of a name; of a single light, the list.
@@ -141,6 +181,21 @@ impl Uploads {
         }
         let began = self.begin();
         let resource = self.find(name).ok_or_else(|| self.unknown(name))?;
+        let held = self.buffers.version(name);
+        let needs_places = match name {
+            POSITIONS => !self.moves_on_gpu(held),
+            NORMALS => {
+                let (mesh, held) = (&self.scene.mesh, held.unwrap_or_default());
+                let list = (name, mesh.normals.len(), false);
+                let changed = self.geometry.placed().changed_since(held, list, mesh);
+                !changed.is_empty()
+            }
+            BVH_NODES | BVH_PRIMITIVES | LIGHT_SPACE_NODES | LIGHT_SPACE_PRIMITIVES => true,
+            _ => false,
+        };
+        if needs_places {
+            self.bring();
+        }
         let scene = Arc::clone(&self.scene);
         let how = (resource.upload)(self, &scene.mesh, name, on)?;
         self.note(name, how, began);
@@ -250,19 +305,43 @@ impl Uploads {
         on: On,
     ) -> Result<How, Error> {
         let (version, held) = (self.version(name), self.buffers.version(name));
+        let is_gpu = name == POSITIONS && self.moves_on_gpu(held);
         let (held, mesh) = (held.unwrap_or_default(), &self.scene.mesh);
-        let list = (name, items.len());
-        let changed = self.geometry.moved_since(held, list, mesh);
+        let list = (name, items.len(), is_gpu);
+        let changed = self.geometry.placed().changed_since(held, list, mesh);
         let append = |range: Range<usize>, to: &mut Vec<Vec4>| {
             to.extend(items[range].iter().map(|item| item.extend(w)));
         };
         let changed = (items.len(), &changed[..]);
-        let patched = self.buffers.patch(name, changed, append, version, on)?;
+        let mut patched = self.buffers.patch(name, changed, append, version, on)?;
         let since = (patched != Patched::All).then_some(held);
         let writes = self.geometry.host_writes(since).into_iter();
         let writes = writes.map(|(_, write)| write).collect();
+        if is_gpu {
+            // Behind an error it has not what its version says.
+            let moved = self.move_parts(patched, on);
+            moved.inspect_err(|_| self.buffers.forget(name))?;
+            patched = Patched::Some;
+        }
         self.write_host_parts(name, patched, writes, on)?;
         Ok(How::Made)
+    }
+
+    /// Has the GPU move all parts that have maps, in the buffer of positions, which was patched.
+    fn move_parts(&mut self, patched: Patched, on: On) -> Result<(), Error> {
+        let placed = self.geometry.placed();
+        if self.buffers.version(AT_REST) != Some(placed.rested) {
+            let rest = placed.at_rest(&self.scene.mesh);
+            self.buffers.make(AT_REST, &rest, placed.rested, on)?;
+        }
+        let rest = self.buffers.get(AT_REST, placed.rested).cloned();
+        if let Some((rest, buffer)) = rest.zip(self.buffers.renew(POSITIONS, patched, on)) {
+            let (buffers, maps) = ([&rest, &buffer], placed.own_maps());
+            let bound = self.kernels.bind_own(buffers, maps, on.device)?;
+            let uploaded = bound.record(self.buffers.record(POSITIONS, on));
+            self.buffers.work.uploaded += uploaded;
+        }
+        Ok(())
     }
 
     /// Has the GPU write parts of hosts' buffers into the buffer of that name, which was patched.
@@ -458,6 +537,7 @@ impl Uploads {
     }
 
     pub fn note_change(&mut self, change: Change) {
+        self.current.take();
         if change.is_grown {
             self.versions.change_mesh();
         }

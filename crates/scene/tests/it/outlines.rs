@@ -1,9 +1,9 @@
 //! The light's box around parts is that around all their points, of which few are looked at.
 
-use glam::{DVec3, Vec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 use skiagraph_scene::{
     DirectionalLight, LightFit, Outline,
-    outline::{border, outer},
+    outline::{Border, outer},
 };
 
 /// Clouds of points in rows, some of which are nothing.
@@ -82,15 +82,15 @@ fn outlines_of_the_border_are_those_of_all_points() {
     let flat: Vec<Vec3> = whole.iter().map(|p| p.with_y(2.0)).collect();
     let thin: Vec<Vec3> = whole.iter().map(|p| p.with_y(1e-5 * p.y)).collect();
     let on_a_grid: Vec<Vec3> = whole.iter().map(|p| (4.0 * *p).round()).collect();
-    assert!(border(&whole).len() < whole.len());
-    println!("{} of {}", border(&whole).len(), whole.len());
     // So many that the box within them is chosen by some, in an order that those follow.
     let many: Vec<Vec3> = (0..70_000)
         .map(|at| whole[at % whole.len()] * (1.0 + (at / whole.len()) as f32))
         .collect();
     let outside = |points: &[Vec3]| outer(points.len(), |at| points[at]);
+    let border = |points: &[Vec3]| Border::new(points.len(), |at| points[at]);
     for points in [&whole, &far, &many] {
         assert!(outside(points).len() < points.len());
+        assert!(4 * border(points).points.len() < points.len());
     }
     clouds.extend([whole, far, flat, thin, on_a_grid, many]);
     for points in &clouds {
@@ -99,7 +99,7 @@ fn outlines_of_the_border_are_those_of_all_points() {
             let end = |points: &[Vec3]| points.iter().copied().reduce(op);
             assert_eq!(end(&outer), end(points));
         }
-        let border = border(&outer);
+        let border = border(points).points;
         for turn in 0..200 {
             let angle = 0.37 * f64::from(turn);
             let direction = match turn {
@@ -117,4 +117,46 @@ fn outlines_of_the_border_are_those_of_all_points() {
             }
         }
     }
+}
+
+/// Wherever a map takes points, and f32 rounds them, the border has their box and outline, or tells
+/// that it may not.
+#[test]
+fn a_border_moved_is_that_of_the_points_moved() {
+    let whole: Vec<Vec3> = clouds(60).into_iter().flatten().collect();
+    let thin: Vec<Vec3> = whole.iter().map(|p| p.with_y(1e-3 * p.y)).collect();
+    let ball = whole
+        .iter()
+        .map(|p| (*p - Vec3::splat(4.0)).normalize_or_zero());
+    let ball: Vec<Vec3> = ball.collect();
+    let (mut sure, mut unsure) = (0, 0);
+    for points in [&whole, &thin, &ball] {
+        let border = Border::new(points.len(), |at| points[at]);
+        for turn in 0..300 {
+            let size = f64::from(turn % 7).exp2() * 0.1;
+            let angle = 0.37 * f64::from(turn);
+            let skew = DMat3::from_cols(DVec3::X, DVec3::new(0.3, 1.0, 0.0), DVec3::Z);
+            let matrix = DMat3::from_rotation_y(angle) * skew * DMat3::from_rotation_x(angle);
+            let far = 10f64.powi(turn % 9 - 2);
+            let translation = far * DVec3::new(angle.sin(), angle.cos(), 1.0);
+            let map = DAffine3::from_mat3_translation(size * matrix, translation);
+            let place = |point: &Vec3| map.transform_point3(point.as_dvec3()).as_vec3();
+            let all_moved: Vec<Vec3> = points.iter().map(place).collect();
+            let Some(moved) = border.moved(&map) else {
+                unsure += 1;
+                continue;
+            };
+            sure += 1;
+            for op in [Vec3::min, Vec3::max] {
+                let end = |points: &[Vec3]| points.iter().copied().reduce(op);
+                assert_eq!(end(&moved), end(&all_moved), "{map}");
+            }
+            for direction in [DVec3::NEG_Y, DVec3::new(0.4, -1.0, -0.3), -translation] {
+                let light = DirectionalLight::new(direction);
+                let outline = |points: &[Vec3]| light.outline(points.iter().copied());
+                assert_eq!(outline(&moved), outline(&all_moved), "{map}");
+            }
+        }
+    }
+    assert!(sure > 300 && unsure > 30, "{sure}, {unsure}");
 }

@@ -32,8 +32,9 @@ pub struct MovingParts {
 }
 
 impl MovingParts {
+    /// Whatever is in none of the parts is a last one, so that all of the mesh can be moved.
     fn new(parts: Movable, elsewhere: Option<Mesh>) -> Arc<Self> {
-        let parts = Arc::new(parts);
+        let parts = Arc::new(parts.with_outside());
         Arc::new(Self { parts, elsewhere })
     }
     /// Returns the parts that move on the first of `paths` on which any do, to be moved on still

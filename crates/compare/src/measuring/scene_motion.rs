@@ -4,9 +4,9 @@
 use crate::error::{CompareError, Result};
 use crate::measuring::frame_sequence::FrameSequence;
 use crate::records::regimes::Regime;
-use glam::Vec3;
+use glam::{DAffine3, DVec3};
 use skiagraph_passes::SceneProvider;
-use skiagraph_scene::{LightKind, Mesh};
+use skiagraph_scene::LightKind;
 
 /// Length of a step as a share of what it is compared with: small, so that a frame's work stays the
 /// same, but more than `f32` rounds away.
@@ -37,14 +37,14 @@ pub fn step(
     viewport: [u32; 2],
     provider: &mut SceneProvider,
 ) -> Result<()> {
-    let shape = match regime {
-        Regime::Nothing => None,
+    let wrong = |error| CompareError::Input(format!("frame {index}: {error}"));
+    let mut camera = frames.poses[index].camera(viewport);
+    let distance = length(count) * camera.near.max(camera.eye.length());
+    match regime {
+        Regime::Nothing => {}
         Regime::Camera => {
-            let mut camera = frames.poses[index].camera(viewport);
-            let distance = camera.near.max(camera.eye.length());
-            camera.eye += camera.right * (length(count) * distance);
+            camera.eye += camera.right * distance;
             provider.set_camera(&camera);
-            None
         }
         Regime::Light => {
             let moved = |light: &LightKind| moved_light(light, length(count));
@@ -53,19 +53,20 @@ pub fn step(
             let set = provider.set_lights(&lights);
             set.map_err(|error| CompareError::Input(format!("a moved light: {error}")))?;
             provider.set_light(light);
-            None
         }
         Regime::SomeMeshes => {
-            let mesh = frames.elsewhere(index);
-            mesh.map(|mesh| (mesh.positions.clone(), mesh.normals.clone()))
+            if let Some(mesh) = frames.elsewhere(index) {
+                let deformed = provider.deform(mesh.positions.clone(), mesh.normals.clone());
+                deformed.map_err(wrong)?;
+            }
         }
-        Regime::AllMeshes => Some(shifted(&provider.scene().mesh)),
-    };
-    let Some((positions, normals)) = shape else {
-        return Ok(());
-    };
-    let deformed = provider.deform(positions, normals);
-    deformed.map_err(|error| CompareError::Input(format!("frame {index}: {error}")))
+        Regime::AllMeshes => {
+            let map = DAffine3::from_translation(DVec3::splat(distance));
+            let moved = provider.set_transforms(&vec![map; provider.parts().count()]);
+            moved.map_err(wrong)?;
+        }
+    }
+    Ok(())
 }
 
 /// A light that is turned or shifted by a step.
@@ -79,13 +80,4 @@ fn moved_light(light: &LightKind, step: f64) -> LightKind {
         *direction += across * (step * direction.length());
     }
     light
-}
-
-/// A mesh of which every position is shifted by a step.
-fn shifted(mesh: &Mesh) -> (Vec<Vec3>, Vec<Vec3>) {
-    let extent = |position: &Vec3| position.abs().max_element();
-    let size = mesh.positions.iter().map(extent).fold(0.0, f32::max);
-    let step = Vec3::splat(STEP as f32 * size);
-    let positions = mesh.positions.iter().map(|position| *position + step);
-    (positions.collect(), mesh.normals.clone())
 }

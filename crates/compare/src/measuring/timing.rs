@@ -60,8 +60,15 @@ pub fn schedule(view: &ViewOrPath, frames: &FrameSequence, protocol: &Protocol) 
     let regime_frames = protocol.regime_frames;
     let every_pass = |frame, is_kept| Turn::new(Kind::EveryPass, frame, is_kept);
     let regimes = |frame| {
-        let moved = move |regime: &Regime| Turn::new(Kind::Moved(*regime), frame, true);
-        regimes(frames).iter().map(moved)
+        let moved = move |regime: &Regime| {
+            // Before the parts are moved by maps, those that were bent are brought to their rest.
+            let brings = *regime == Regime::AllMeshes;
+            let brought = brings.then(|| Turn::new(Kind::Moved(*regime), frame, false));
+            brought
+                .into_iter()
+                .chain([Turn::new(Kind::Moved(*regime), frame, true)])
+        };
+        regimes(frames).iter().flat_map(moved)
     };
     let mut turns: Vec<Turn> = (0..warmup).map(|_| every_pass(0, false)).collect();
     let count = frames.poses.len();

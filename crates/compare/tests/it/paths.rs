@@ -86,10 +86,14 @@ fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
                 "{path} {} {camera:?} {light:?}",
                 run["preset"]
             );
-            assert!(
-                some.1 > camera.1 && whole.1 > 2 * some.1,
-                "{some:?} {whole:?}"
-            );
+            assert!(some.1 > camera.1, "{some:?} {camera:?}");
+            // By maps, so that only a hierarchy is brought to the device.
+            let has_hierarchy = ["rt", "crsm"].contains(&run["preset"].as_str().unwrap());
+            let is_so = match has_hierarchy {
+                true => whole.1 > some.1,
+                false => whole.1 < 1024,
+            };
+            assert!(is_so, "{path} {} {some:?} {whole:?}", run["preset"]);
             assert!(whole.0 > rest.0, "{rest:?} {whole:?}");
             // The passes that draw the mesh run while it moves, and no longer.
             for (index, frame) in frames.iter().enumerate() {

@@ -98,16 +98,24 @@ impl Border {
             half: (high - low) * 0.5,
             points: Vec::new(),
         };
-        let mut octants: [Vec<Vec3>; 8] = Default::default();
-        for point in points {
-            let octant = shell.from_middle(point).is_negative_bitmask();
-            octants[octant as usize].push(point);
+        let farthest = |side: f64| {
+            DVec3::AXES.map(|axis| {
+                let along = |point: &Vec3| side * axis.dot(point.as_dvec3());
+                let farthest = points.iter().max_by(|a, b| along(a).total_cmp(&along(b)));
+                farthest.map_or(DVec3::ZERO, |point| shell.scaled(*point))
+            })
+        };
+        let ends = [farthest(-1.0), farthest(1.0)];
+        let mut left = points;
+        for octant in 0..8 {
+            let corners = [0, 1, 2].map(|axis| ends[octant >> axis & 1][axis]);
+            let inverse = DMat3::from_cols(corners[0], corners[1], corners[2]).inverse();
+            let is_in = |point: &Vec3| (inverse * shell.scaled(*point)).min_element() >= 0.0;
+            let (own, rest) = left.into_iter().partition(is_in);
+            shell.add(corners, own, Shell::ROUNDS);
+            left = rest;
         }
-        for (octant, points) in octants.into_iter().enumerate() {
-            // To the middles of the box's sides.
-            let way = |axis: usize| DVec3::AXES[axis] * [1.0, -1.0][octant >> axis & 1];
-            shell.add([0, 1, 2].map(way), points, Shell::ROUNDS);
-        }
+        shell.points.append(&mut left);
         Self {
             depth: MARGIN * shell.half.min_element(),
             points: shell.points,
@@ -147,7 +155,8 @@ impl Shell {
     /// Corners that a line from the middle may pass by.
     const ROUNDS: u32 = 40;
 
-    fn from_middle(&self, point: Vec3) -> DVec3 {
+    /// The way from the middle, in half sizes.
+    fn scaled(&self, point: Vec3) -> DVec3 {
         (point.as_dvec3() - self.middle) / self.half
     }
 
@@ -167,7 +176,7 @@ impl Shell {
         let inverse = matrix.inverse();
         let (mut farthest, mut reach) = (None, 1.0 + MARGIN);
         points.retain(|point| {
-            let weights = inverse * self.from_middle(*point);
+            let weights = inverse * self.scaled(*point);
             if weights.element_sum() > reach {
                 (farthest, reach) = (Some((*point, weights)), weights.element_sum());
             }
@@ -179,12 +188,12 @@ impl Shell {
         };
         let mut cones: [Vec<Vec3>; 3] = Default::default();
         for point in points {
-            let shares = inverse * self.from_middle(point) / whole.max(DVec3::splat(FLAT));
+            let shares = inverse * self.scaled(point) / whole.max(DVec3::splat(FLAT));
             cones[shares.min_position()].push(point);
         }
         for (corner, points) in cones.into_iter().enumerate() {
             let mut corners = corners;
-            corners[corner] = self.from_middle(farthest);
+            corners[corner] = self.scaled(farthest);
             self.add(corners, points, rounds - 1);
         }
     }

@@ -7,7 +7,7 @@
 #import "shared/asked_list.wgsl"
 #import "shared/ray_triangle.wgsl"
 
-// Of one item: 1 if a receiver is uncertain.
+// One item: 1 if a receiver is uncertain.
 var<storage, read_write> is_any_uncertain: array<atomic<u32>>;
 
 struct Answer {

@@ -19,7 +19,7 @@ var<storage, read_write> box_groups: array<u32, 3>;
 // Draws of a full-screen triangle, or of none: vertices, instances, the first of each.
 var<storage, read_write> test_call: array<u32, 4>;
 var<storage, read_write> leave_call: array<u32, 4>;
-// Of all later passes.
+// Counts the rays of later passes.
 var<storage, read_write> ray_count: u32;
 
 // As long as a ray takes: to make an entry, to walk over one, and to test 64 samples of one, fewer

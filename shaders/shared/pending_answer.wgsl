@@ -1,4 +1,4 @@
-// What a receiver asks that no list answers: does a caster hide the light's centre?
+// Tests of a receiver that no list answers: does a caster hide the centre of the light from it?
 
 #import "shared/answer.wgsl"
 #import "shared/pending.wgsl"

@@ -1,5 +1,5 @@
-// In the place of shared/pending_answer.wgsl, under a light with an extent: which of its samples do
-// casters hide, 64 in each turn? Two words of each receiver have a bit for each that one hides.
+// In the place of shared/pending_answer.wgsl, under a light with an extent: which of the samples of
+// a receiver do casters hide, 64 in each turn? Two words have a bit for each that one hides.
 
 #import "shared/aimed_ray.wgsl"
 #import "shared/answer_shares.wgsl"

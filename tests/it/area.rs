@@ -63,9 +63,10 @@ fn shown(document: &str, scene: &Arc<Scene>) -> Shown {
     let is_trace = |pass: &&PassSummary| pass.name.ends_with("trace_rays");
     let traces = plan.passes().iter().filter(is_trace).count();
     let report = run(plan, &mut provider, &names[..if is_listed { 4 } else { 3 }]);
-    let pending = match is_listed {
-        true => values(&report, "pending_state"),
-        false => vec![0; 3],
+    let pending = if is_listed {
+        values(&report, "pending_state")
+    } else {
+        vec![0; 3]
     };
     let visibility = report
         .readbacks

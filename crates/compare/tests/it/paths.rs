@@ -89,9 +89,10 @@ fn moving_parts_are_followed_by_what_is_kept_and_by_the_reference() {
             assert!(some.1 > camera.1, "{some:?} {camera:?}");
             // By maps, so that only a hierarchy is brought to the device.
             let has_hierarchy = ["rt", "crsm"].contains(&run["preset"].as_str().unwrap());
-            let is_so = match has_hierarchy {
-                true => whole.1 > some.1,
-                false => whole.1 < 1024,
+            let is_so = if has_hierarchy {
+                whole.1 > some.1
+            } else {
+                whole.1 < 1024
             };
             assert!(is_so, "{path} {} {some:?} {whole:?}", run["preset"]);
             assert!(whole.0 > rest.0, "{rest:?} {whole:?}");

@@ -61,6 +61,16 @@ struct PendingTexel {
     filled: atomic<u32>,
 }
 
+// A receiver that a caster is tested for.
+struct PendingReceiver {
+    position: vec3<f32>,
+    place: u32,
+    // The number of its pixel.
+    pixel: u32,
+    // True if bounds of casters hold for it.
+    is_bounded: bool,
+}
+
 // The tiles of a layer that hold receivers with a place, where a device can bind it alone: the
 // least, inverted, and the greatest. All zero where there is none.
 struct PendingBox {

@@ -7,15 +7,6 @@
 
 var<storage, read_write> pending: array<atomic<u32>>;
 
-struct PendingReceiver {
-    position: vec3<f32>,
-    place: u32,
-    // The number of its pixel.
-    pixel: u32,
-    // True if bounds of casters hold for it.
-    is_bounded: bool,
-}
-
 // Notes what a caster hides from a receiver; `number` is the caster's.
 fn test_receiver(receiver: PendingReceiver, corners: Corners, number: u32) {
     let t_min = receiver_error_bound(receiver.position, camera.eye);

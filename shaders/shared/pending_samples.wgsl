@@ -21,15 +21,6 @@ var<storage, read_write> pending: array<atomic<u32>>;
 // As test_samples.wgsl has them.
 var<storage, read_write> seen: array<u32>;
 
-struct PendingReceiver {
-    position: vec3<f32>,
-    place: u32,
-    // The number of its pixel.
-    pixel: u32,
-    // True if bounds of casters hold for it.
-    is_bounded: bool,
-}
-
 // Notes which samples of the turn a caster hides from a receiver; `number` is the caster's. A round
 // for each that is lit.
 fn test_receiver(receiver: PendingReceiver, corners: Corners, number: u32) {

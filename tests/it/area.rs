@@ -267,15 +267,15 @@ fn assert_lists_answer_as_rays_do(scene: &Arc<Scene>, samples: u32, set: &str) -
     assert_eq!(bits(&lists), bits(&rays), "{samples}{set}");
     let is_partial = |share: &&f32| (0.01..0.99).contains(*share);
     assert!(rays.shares.iter().filter(is_partial).count() > 0);
-    let asked = lists.status.iter().filter(|status| **status == 4).count();
-    asked + lists.unlisted
+    let unlisted = lists.status.iter().filter(|status| **status == 4).count();
+    unlisted + lists.unlisted
 }
 
 #[test]
 fn lists_answer_each_sample_as_its_ray_does() {
     for (angle, samples) in [(0.5, 64), (12.0, 7), (40.0, 64)] {
-        let asked = assert_lists_answer_as_rays_do(&scene(sun(angle)), samples, "");
-        assert_eq!(asked, 0, "{angle} degrees");
+        let unlisted = assert_lists_answer_as_rays_do(&scene(sun(angle)), samples, "");
+        assert_eq!(unlisted, 0, "{angle} degrees");
     }
 }
 
@@ -301,8 +301,12 @@ fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
         (spot(at(0.5, 2.4, 0.2), 170.0, 0.5), 16, true),
     ] {
         for set in ["", r#", "unlisted": receivers"#] {
-            let asked = assert_lists_answer_as_rays_do(&scene(light), samples, set);
-            assert_eq!(asked > 0, asks, "{asked} pixels without a list: {light:?}");
+            let unlisted = assert_lists_answer_as_rays_do(&scene(light), samples, set);
+            assert_eq!(
+                unlisted > 0,
+                asks,
+                "{unlisted} pixels without a list: {light:?}"
+            );
         }
     }
     // Over, and between, masked leaves.
@@ -311,9 +315,12 @@ fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
         spot(at(1.5, 6.0, -1.0), 100.0, 0.3),
         point(at(0.3, 1.0, 0.2), 0.1),
     ] {
-        let asked = assert_lists_answer_as_rays_do(&scene_of(leaves(), light), 33, "");
+        let unlisted = assert_lists_answer_as_rays_do(&scene_of(leaves(), light), 33, "");
         let pixels = (VIEWPORT[0] * VIEWPORT[1]) as usize;
-        assert!(4 * asked < pixels, "{asked} of {pixels} without a list");
+        assert!(
+            4 * unlisted < pixels,
+            "{unlisted} of {pixels} without a list"
+        );
     }
 }
 
@@ -330,14 +337,14 @@ fn lists_in_turns_and_lists_cut_short_answer_as_rays_do() {
         for word in ["receivers", "rays"] {
             let set = format!(r#", "{short}, "unlisted": {word}"#);
             for samples in [16, 100] {
-                let asked = assert_lists_answer_as_rays_do(&scene, samples, &set);
-                assert!(asked > 20, "{set}");
+                let unlisted = assert_lists_answer_as_rays_do(&scene, samples, &set);
+                assert!(unlisted > 20, "{set}");
             }
         }
     }
     for fit in ["scene", "camera", "pssm"] {
-        let asked = assert_lists_answer_as_rays_do(&scene, 16, &format!(r#", "fit": {fit}"#));
-        assert_eq!(asked, 0, "{fit}");
+        let unlisted = assert_lists_answer_as_rays_do(&scene, 16, &format!(r#", "fit": {fit}"#));
+        assert_eq!(unlisted, 0, "{fit}");
     }
 }
 

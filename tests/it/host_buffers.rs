@@ -426,23 +426,7 @@ fn half(bits: u16) -> f32 {
 
 /// Reads a buffer of the scene back, as tests may.
 pub fn contents(gpu: &Gpu, provider: &mut SceneProvider, name: &str) -> Vec<u32> {
-    let buffer = provider.build(name, &gpu.device, &gpu.queue).unwrap();
-    provider.submit_built(&gpu.device, &gpu.queue).unwrap();
-    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: buffer.size(),
-        usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(&buffer, 0, &copy, 0, buffer.size());
-    gpu.queue.submit([encoder.finish()]);
-    copy.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    gpu.device
-        .poll(wgpu::PollType::wait_indefinitely())
-        .unwrap();
-    let mapped = copy.slice(..).get_mapped_range().unwrap();
-    bytemuck::pod_collect_to_vec(&mapped)
+    bytemuck::pod_collect_to_vec(&graphs::resource_bytes(gpu, provider, name))
 }
 
 /// Maps by which f64 rounds in all its ways: near and far, small and large, with ties, cancelling.

@@ -345,25 +345,6 @@ fn a_scene_at_rest_moves_too() {
     }
 }
 
-/// All bytes of a resource.
-fn contents(gpu: &Gpu, scene: &mut SceneProvider, name: &str) -> Vec<u8> {
-    let buffer = scene.build(name, &gpu.device, &gpu.queue).unwrap();
-    scene.submit_built(&gpu.device, &gpu.queue).unwrap();
-    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: buffer.size(),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(&buffer, 0, &copy, 0, None);
-    gpu.queue.submit([encoder.finish()]);
-    copy.map_async(wgpu::MapMode::Read, .., |done| done.unwrap());
-    let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-    waited.unwrap();
-    copy.get_mapped_range(..).unwrap().to_vec()
-}
-
 /// Each resource is built again with the bytes that it had, also after several changes.
 #[test]
 fn what_is_built_again_is_what_there_was() {
@@ -392,7 +373,9 @@ fn what_is_built_again_is_what_there_was() {
         names.retain(|name| is_deformed || !name.starts_with("scene.light_space"));
         let read = |gpu: &Gpu, scene: &mut SceneProvider| -> Vec<Vec<u8>> {
             let names = names.iter();
-            names.map(|name| contents(gpu, scene, name)).collect()
+            names
+                .map(|name| graphs::resource_bytes(gpu, scene, name))
+                .collect()
         };
         let before = read(&gpu, &mut stage.scene);
         for next in others(&gpu) {

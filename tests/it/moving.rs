@@ -175,28 +175,9 @@ fn the_trees_of_parts_that_lay_on_each_other_are_only_fitted() {
     let nodes = |provider: &mut SceneProvider| {
         let buffer = provider.build("scene.bvh_nodes", &gpu.device, &gpu.queue);
         provider.submit_built(&gpu.device, &gpu.queue).unwrap();
-        contents(&gpu, &buffer.unwrap())
+        graphs::buffer_bytes(&gpu, &buffer.unwrap())
     };
     assert!(nodes(&mut provider) == nodes(&mut apart));
-}
-
-/// Reads a buffer back.
-fn contents(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u8> {
-    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: buffer.size(),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
-    gpu.queue.submit([encoder.finish()]);
-    copy.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    gpu.device
-        .poll(wgpu::PollType::wait_indefinitely())
-        .unwrap();
-    let mapped = copy.slice(..).get_mapped_range().unwrap();
-    mapped.to_vec()
 }
 
 /// Work that a change is for the provider and an executor of it.
@@ -822,7 +803,7 @@ fn materials_are_uploaded_of_the_part_that_is_added() {
     let uploads = |provider: &mut SceneProvider| {
         let buffers = names.map(|name| provider.build(name, &gpu.device, &gpu.queue).unwrap());
         provider.submit_built(&gpu.device, &gpu.queue).unwrap();
-        buffers.map(|buffer| contents(&gpu, &buffer))
+        buffers.map(|buffer| graphs::buffer_bytes(&gpu, &buffer))
     };
     let maps = rows(4);
     let mut provider = provider(Movable::joined(&[&trees; 3]));

@@ -6,7 +6,7 @@ use crate::support::{
     meshes,
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use skiagraph_gpu::{Executor, Provider, device::Gpu};
+use skiagraph_gpu::{Executor, device::Gpu};
 use skiagraph_passes::{SceneProvider, Work};
 use skiagraph_scene::{DirectionalLight, Group, Mesh, Movable, View};
 
@@ -62,26 +62,6 @@ fn shown(gpu: &Gpu, executor: &mut Executor) -> Vec<Vec<u32>> {
         .to_vec()
 }
 
-/// A resource of a scene, read back.
-fn contents(gpu: &Gpu, provider: &mut SceneProvider, name: &str) -> Vec<u8> {
-    let buffer = provider.build(name, &gpu.device, &gpu.queue).unwrap();
-    provider.submit_built(&gpu.device, &gpu.queue).unwrap();
-    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: buffer.size(),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(&buffer, 0, &copy, 0, buffer.size());
-    gpu.queue.submit([encoder.finish()]);
-    copy.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-    let polled = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-    polled.unwrap();
-    let mapped = copy.slice(..).get_mapped_range().unwrap();
-    mapped.to_vec()
-}
-
 fn bytes_of(positions: &[Vec3]) -> Vec<u8> {
     let items: Vec<[f32; 4]> = positions
         .iter()
@@ -126,7 +106,7 @@ fn frames_of_parts_are_those_of_the_mesh_of_their_places() {
             }
             executor.refresh(&mut scene).unwrap();
             let mesh = parts.moved(&now).unwrap();
-            let positions = contents(&gpu, &mut scene, "scene.positions");
+            let positions = graphs::resource_bytes(&gpu, &mut scene, "scene.positions");
             assert!(positions == bytes_of(&mesh.positions), "{preset}, {turn}");
             let mut alone = SceneProvider::from_mesh(mesh.clone(), sun());
             alone.set_camera(&view().camera(VIEWPORT));
@@ -136,7 +116,7 @@ fn frames_of_parts_are_those_of_the_mesh_of_their_places() {
                 "{preset}"
             );
             assert!(shown(&gpu, &mut executor) == expected, "{preset}, {turn}");
-            let light = |scene: &mut SceneProvider| contents(&gpu, scene, "light");
+            let light = |scene: &mut SceneProvider| graphs::resource_bytes(&gpu, scene, "light");
             assert!(light(&mut scene) == light(&mut alone), "{preset}, {turn}");
             // The scene tells where they are, in whatever order it is asked.
             if turn % 2 == 0 {
@@ -200,7 +180,7 @@ fn parts_cut_from_a_mesh_move_with_what_is_outside_of_them() {
             let shifted = whole.rest.positions.iter();
             let shifted = shifted.map(|at| (at.as_dvec3() + shift).as_vec3());
             assert!(shifted.eq(moved.positions.iter().copied()), "{turn}");
-            let positions = contents(&gpu, &mut scene, "scene.positions");
+            let positions = graphs::resource_bytes(&gpu, &mut scene, "scene.positions");
             assert!(positions == bytes_of(&moved.positions), "{preset}, {turn}");
             let mut alone = seen_from_the_view(SceneProvider::from_mesh(moved, sun()));
             let expected = shown(&gpu, &mut start(&gpu, preset, &mut alone));
@@ -214,7 +194,7 @@ fn parts_cut_from_a_mesh_move_with_what_is_outside_of_them() {
             scene.set_transforms(&[map; 3]).unwrap();
             executor.refresh(&mut scene).unwrap();
             let moved = parts.moved(&[map; 3]).unwrap();
-            let positions = contents(&gpu, &mut scene, "scene.positions");
+            let positions = graphs::resource_bytes(&gpu, &mut scene, "scene.positions");
             assert!(positions == bytes_of(&moved.positions), "{preset}, {turn}");
             let mut alone = seen_from_the_view(SceneProvider::from_mesh(moved, sun()));
             let expected = shown(&gpu, &mut start(&gpu, preset, &mut alone));

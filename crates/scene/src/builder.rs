@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 pub(crate) struct Corner {
     pub position: u32,
     pub normal: Option<DVec3>,
-    /// Place in [`MeshBuilder::kept`] of the index of `normal`, if that is kept.
+    /// Place in [`MeshBuilder::shared_normals`] of the index of `normal`, if it has one there.
     pub slot: Option<u32>,
     pub uv: Option<Vec2>,
 }
@@ -27,7 +27,7 @@ pub(crate) struct MeshBuilder {
     pub positions: Welder,
     normals: Welder,
     /// Indices of normals that corners share, once a triangle has used them.
-    pub kept: Vec<Option<u32>>,
+    pub shared_normals: Vec<Option<u32>>,
     uvs: UvWelder,
     /// Triangles of which a corner has no texture coordinates, or none that are finite.
     without_uvs: Vec<u32>,
@@ -56,15 +56,17 @@ impl MeshBuilder {
         }
         let mut own = None;
         let normal_indices = corners.map(|corner| {
-            let kept = corner.slot.map(|slot| &mut self.kept[slot as usize]);
-            if let Some(Some(index)) = kept {
+            let shared = corner
+                .slot
+                .map(|slot| &mut self.shared_normals[slot as usize]);
+            if let Some(Some(index)) = shared {
                 return *index;
             }
             let given = corner.normal.map(DVec3::try_normalize);
             self.report.normals_replaced += usize::from(given == Some(None));
             let mut index = |normal: DVec3| self.normals.index(normal.as_vec3());
             match given.flatten() {
-                Some(given) => *kept.unwrap_or(&mut None).insert(index(given)),
+                Some(given) => *shared.unwrap_or(&mut None).insert(index(given)),
                 None => *own.get_or_insert_with(|| {
                     let own = geometric_normal(points).or_else(&normal);
                     index(own.unwrap_or(DVec3::Y))

@@ -199,3 +199,27 @@ pub fn shares(report: &FrameReport, name: &str) -> Vec<f32> {
     };
     content.as_f32().or_else(whole).unwrap()
 }
+
+/// Reads a resource of a provider back.
+pub fn resource_bytes(gpu: &Gpu, provider: &mut SceneProvider, name: &str) -> Vec<u8> {
+    let buffer = provider.build(name, &gpu.device, &gpu.queue).unwrap();
+    provider.submit_built(&gpu.device, &gpu.queue).unwrap();
+    buffer_bytes(gpu, &buffer)
+}
+
+/// Reads a buffer back.
+pub fn buffer_bytes(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<u8> {
+    let copy = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: buffer.size(),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, None);
+    gpu.queue.submit([encoder.finish()]);
+    copy.map_async(wgpu::MapMode::Read, .., |done| done.unwrap());
+    let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    waited.unwrap();
+    copy.get_mapped_range(..).unwrap().to_vec()
+}

@@ -120,8 +120,10 @@ impl Import<'_> {
                 .iter()
                 .map(|point| positions.index(Vec3::from(*point)));
             let welded: Vec<u32> = welded.collect();
-            self.builder.kept.clear();
-            self.builder.kept.resize(mesh.normals.len() / 3, None);
+            self.builder.shared_normals.clear();
+            self.builder
+                .shared_normals
+                .resize(mesh.normals.len() / 3, None);
             for (range, record) in faces(mesh).zip(&mut records) {
                 polygon.clear();
                 let first = range.start;

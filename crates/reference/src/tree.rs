@@ -78,7 +78,7 @@ pub(crate) struct Tree<'a> {
 impl<'a> Tree<'a> {
     /// Builds the hierarchy of a mesh.
     pub(crate) fn new(mesh: &'a Mesh) -> Self {
-        let bvh = Bvh::build(mesh);
+        let bvh = Bvh::build_quickly(mesh);
         let open = open_edges(mesh);
         let corner = |index: u32| mesh.positions[index as usize].to_array();
         let caster = |&primitive: &u32| Caster {

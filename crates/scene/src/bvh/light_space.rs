@@ -4,13 +4,13 @@
 //! longest component is the last, then sheared so that the direction is the z axis.
 
 use super::{
+    build::Effort,
     node::{BvhNode, MAX_DEPTH},
-    tree::Bvh,
+    tree::{Bvh, around},
     two_level::TwoLevelBvh,
 };
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3, Vec2, Vec3};
-use obvhs::triangle::Triangle;
 
 /// Weight of depth beside width when triangles are put together: half the surface of a flat box is
 /// its area, the chance of a ray to be in it, but rays that begin behind a box miss it. On the
@@ -119,16 +119,15 @@ impl LightSpace {
         let steepness = d.length() / d.abs().max_element();
         let corner = |index: u32| {
             let (seen, up) = self.place(mesh.positions[index as usize]);
-            seen.extend(DEPTH * steepness * up.z).as_vec3().into()
+            seen.extend(DEPTH * steepness * up.z).as_vec3()
         };
         let casters = mesh.casters();
-        let triangle = |&primitive: &u32| {
-            let [v0, v1, v2] = mesh.triangles[primitive as usize].map(corner);
-            Triangle { v0, v1, v2 }
+        let boxed = |place: u32| {
+            let primitive = casters[place as usize];
+            around(mesh.triangles[primitive as usize].map(corner))
         };
-        let triangles: Vec<Triangle> = casters.iter().map(triangle).collect();
-        let tree = Bvh::by_ploc(&triangles);
-        let own = || Bvh::over(mesh, casters.iter().copied(), MAX_DEPTH);
+        let tree = Bvh::by_ploc(casters.len() as u32, boxed, Effort::Thorough);
+        let own = || Bvh::over(mesh, &casters, MAX_DEPTH, Effort::Thorough);
         let mut tree = tree.unwrap_or_else(own);
         for primitive in &mut tree.primitives {
             *primitive = casters[*primitive as usize];

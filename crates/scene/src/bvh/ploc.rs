@@ -14,8 +14,6 @@ use obvhs::{
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
-/// Number of neighbours on each side that a box chooses from: those of obvhs's `slow_build`.
-const REACH: usize = 24;
 /// Number of first passes, in which a box chooses from its next neighbours alone.
 const NARROW: usize = 2;
 /// A pass that merges less than this share of its boxes is followed by one that merges more. No
@@ -24,16 +22,16 @@ const FEW: usize = 32;
 /// Marks a box that has been merged.
 const MERGED: u32 = u32::MAX;
 
-/// Builds a tree with one box in each leaf. There is at least one box, and the box of all of them
-/// has a finite surface.
-pub(super) fn cluster(boxes: &[Aabb]) -> Bvh2 {
+/// Builds a tree with one box in each leaf. A box chooses from `reach` neighbours on each side.
+/// There is at least one box, and the box of all of them has a finite surface.
+pub(super) fn cluster(boxes: &[Aabb], reach: usize) -> Bvh2 {
     let mut tree = Bvh2::zeroed(boxes.len());
     tree.primitive_indices = (0..boxes.len() as u32).collect();
     let mut open = in_morton_order(boxes);
     let mut free = tree.nodes.len();
     let (mut pass, mut is_stuck) = (0, false);
     while open.len() > 1 {
-        let mut chosen = choices(&open, if pass < NARROW { 1 } else { REACH });
+        let mut chosen = choices(&open, if pass < NARROW { 1 } else { reach });
         let before = open.len();
         for one in 0..before {
             let other = chosen[one] as usize;
@@ -124,7 +122,7 @@ mod tests {
         ];
         for (kind, make) in kinds.iter().enumerate() {
             let boxes: Vec<Aabb> = (0..COUNT).map(|index| make(f32::from(index))).collect();
-            let tree = cluster(&boxes);
+            let tree = cluster(&boxes, 24);
             assert!(
                 tree.max_depth < 200,
                 "kind {kind}: {} passes",

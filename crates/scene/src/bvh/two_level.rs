@@ -2,6 +2,7 @@
 //! level over the pieces, in one list of nodes. It is walked like any other.
 
 use super::{
+    build::Effort,
     levels::levels,
     node::{BvhNode, MAX_DEPTH, area},
     top::{Split, deepest, over_boxes},
@@ -110,8 +111,8 @@ impl TwoLevelBvh {
         // One after the other: a thread of a pool that waits for one tree takes up the next on the
         // same stack, which thousands of pieces overflow.
         let trees = (0..pieces.len()).filter(is_first).map(|piece| {
-            let ids = pieces[piece].triangles.iter().copied();
-            (piece, Bvh::over(at_rest, ids, depth))
+            let ids = pieces[piece].triangles;
+            (piece, Bvh::over(at_rest, ids, depth, Effort::Thorough))
         });
         let trees: BTreeMap<usize, Bvh> = trees.collect();
         let mut trees = merged(trees, pieces, most);
@@ -239,7 +240,8 @@ impl TwoLevelBvh {
     /// pieces.
     pub fn add(&mut self, piece: usize, at_rest: &Mesh, first: u32) {
         let mut ids = at_rest.casters();
-        let tree = Bvh::over(at_rest, ids.iter().copied(), depth_left(self.filled() + 1));
+        let depth = depth_left(self.filled() + 1);
+        let tree = Bvh::over(at_rest, &ids, depth, Effort::Quick);
         ids.iter_mut().for_each(|id| *id += first);
         self.add_built(piece, &tree, tree.order().into(), &ids);
     }
@@ -433,7 +435,7 @@ impl TwoLevelBvh {
         let mut ids = self.primitives[slots.clone()].to_vec();
         ids.sort_unstable();
         let depth = depth_left(self.filled());
-        let tree = Bvh::over(mesh, ids.iter().copied(), depth).merged(most);
+        let tree = Bvh::over(mesh, &ids, depth, Effort::Quick).merged(most);
         let order = tree.order().into();
         self.put(piece, &tree, order, &ids);
         self.pieces[piece].cost = self.cost(piece);

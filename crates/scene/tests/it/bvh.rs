@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use skiagraph_scene::{
     Bvh, LightSpace, LightSpaceNode, Mesh, TwoLevelBvh,
     bvh::{MAX_DEPTH, Moved, Piece},
+    generate::Generator,
 };
 
 pub fn mesh(triangles: &[[Vec3; 3]]) -> Mesh {
@@ -134,6 +135,14 @@ fn fits_light_space(mesh: &Mesh, direction: Vec3, most: usize) -> bool {
     assert!(seen.iter().all(|&count| count == 1), "{seen:?}");
     assert_eq!(visited, nodes.len(), "unreachable nodes");
     true
+}
+
+/// More than 524,288 triangles are built in pieces.
+#[test]
+fn large_meshes_in_pieces() {
+    let mesh = "forest:540000".parse::<Generator>().unwrap().build();
+    check_tree(&mesh, Bvh::build(&mesh));
+    check_tree(&mesh, Bvh::build_quickly(&mesh));
 }
 
 #[test]

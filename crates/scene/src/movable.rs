@@ -28,12 +28,13 @@ pub struct Movable {
 struct Part {
     /// Primitive ids.
     triangles: Vec<u32>,
+    /// In ascending order.
     positions: Vec<u32>,
     /// Bounds of these.
     bounds: [Vec3; 2],
     /// Border of the corners at rest; of copies, that of the first is asked for.
     border: OnceLock<Border>,
-    /// Normals, each with the position at which it stands.
+    /// Normals in ascending order, each with the position at which it stands.
     normals: Vec<(u32, u32)>,
     /// Positions that triangles use, where not all of them do.
     corners: Option<Vec<u32>>,
@@ -278,9 +279,15 @@ impl Movable {
     /// # Panics
     /// If there is no part of that number.
     pub fn ranges(&self, part: usize) -> [Range<usize>; 2] {
-        let part = &self.parts[part];
-        let normals = part.normals.iter().map(|(normal, _)| *normal);
-        [around(part.positions.iter().copied()), around(normals)]
+        let Part {
+            positions, normals, ..
+        } = &self.parts[part];
+        let of_positions = [positions.first(), positions.last()].map(|at| Some(*at?));
+        let of_normals = [normals.first(), normals.last()].map(|pair| Some(pair?.0));
+        [of_positions, of_normals].map(|ends| match ends {
+            [Some(first), Some(last)] => first as usize..last as usize + 1,
+            _ => 0..0,
+        })
     }
 
     /// Returns the number of the first part that was [joined](Self::joined) from the same mesh (the
@@ -472,13 +479,6 @@ fn in_range(part: usize, from: Vec3, to: DVec3) -> Result<Vec3, MoveError> {
     }
 }
 
-/// The smallest range that holds some indices.
-fn around(indices: impl Iterator<Item = u32>) -> Range<usize> {
-    let ranges = indices.map(|index| index as usize..index as usize + 1);
-    let range = ranges.reduce(|one, other| one.start.min(other.start)..one.end.max(other.end));
-    range.unwrap_or_default()
-}
-
 impl Part {
     fn append(rest: &mut Mesh, mesh: &Mesh, copy_of: usize) -> Self {
         let [first, first_position] =
@@ -572,8 +572,10 @@ fn bounds_of(mesh: &Mesh, positions: &[u32]) -> [Vec3; 2] {
     bounds(places).map_or_else(Default::default, |(low, high)| [low, high])
 }
 
-/// New normals, each with the position at which it stands.
+/// New normals in ascending order, each with the position at which it stands.
 fn at_positions(own: &BTreeMap<(u32, u32), u32>) -> Vec<(u32, u32)> {
     let pair = |(&(_, position), &normal): (&(u32, u32), &u32)| (normal, position);
-    own.iter().map(pair).collect()
+    let mut pairs: Vec<(u32, u32)> = own.iter().map(pair).collect();
+    pairs.sort_unstable();
+    pairs
 }

@@ -186,21 +186,33 @@ impl Buffers {
     ) -> Result<(), Error> {
         /// Items that are brought at once, so that no list of all is made.
         const PIECE: usize = 4096;
+        /// Bytes that wait in memory of their own until they are submitted.
+        const STAGED: usize = 16 << 20;
         let stride = size_of::<T>();
         let bytes = (count.max(1) * stride) as u64;
         check_binding(name, bytes, on.device)?;
         let buffer = self.create(name, bytes, on.device);
+        let mut piece = Vec::with_capacity(PIECE.min(count));
         // Nothing that was encoded reads it yet; without items it stays zero.
-        let size = wgpu::BufferSize::new((count * stride) as u64);
-        let view = size.and_then(|size| on.queue.write_buffer_with(&buffer, 0, size));
-        if let Some(mut view) = view {
-            let mut piece = Vec::with_capacity(PIECE.min(count));
-            for first in (0..count).step_by(PIECE) {
-                let range = first..count.min(first + PIECE);
+        let most = (STAGED / stride).max(1);
+        for begin in (0..count).step_by(most) {
+            let end = count.min(begin + most);
+            let size = wgpu::BufferSize::new(((end - begin) * stride) as u64);
+            let offset = (begin * stride) as u64;
+            let view = size.and_then(|size| on.queue.write_buffer_with(&buffer, offset, size));
+            let Some(mut view) = view else {
+                continue;
+            };
+            for first in (begin..end).step_by(PIECE) {
+                let range = first..end.min(first + PIECE);
                 piece.clear();
                 items(range.clone(), &mut piece);
-                let mut to = view.slice(stride * range.start..stride * range.end);
+                let mut to = view.slice(stride * (first - begin)..stride * (range.end - begin));
                 to.copy_from_slice(bytemuck::cast_slice(&piece));
+            }
+            drop(view);
+            if end < count {
+                on.queue.submit([]);
             }
         }
         self.work.uploaded += bytes;

@@ -178,32 +178,42 @@ fn boxes_of_clusters_are_around_all_corners_that_are_places() {
     }
 }
 
-/// The share of clusters that are live, in percent: of city and forest with a million triangles, as
-/// docs/light_buffer.md has it.
-#[test]
-#[ignore = "a suite: `./test.sh --all` runs it"]
-fn clusters_leave_few_triangles_of_a_million() {
-    for (name, view, expected) in [
-        ("city:1000000", "overview", 47.6),
-        ("city:1000000", "street", 5.7),
-        ("forest:1000000", "overview", 59.8),
-    ] {
+/// The share of clusters that are live, in percent, in views of 512² pixels.
+fn assert_clusters_leave(expected: &[(&str, &str, f64)]) {
+    for &(name, view, expected) in expected {
         let scene = load(name);
         let view = scene.views.iter().find(|one| one.name == view).unwrap();
         let viewport = [512, 512];
         let mut provider = provider(&scene, view, viewport);
-        let plan = plan(
-            "pipelines/light_buffer.ron",
-            &provider,
-            viewport,
-            |request| {
-                request.captures.push(Capture::new("live_clusters"));
-            },
-        );
+        let path = "pipelines/light_buffer.ron";
+        let plan = plan(path, &provider, viewport, |request| {
+            request.captures.push(Capture::new("live_clusters"));
+        });
         let report = run_on(&open(), plan, &mut provider, &["live_clusters"]);
         let live = values(&report, "live_clusters");
         let share = 100.0 * f64::from(live[3]) / (live.len() - 4) as f64;
         println!("{name}, {}: {share:.2} % of the clusters", view.name);
         assert!((0.9..1.1).contains(&(share / expected)), "{name}: {share}");
     }
+}
+
+/// As docs/light_buffer.md has it.
+#[test]
+#[ignore = "a suite: `./test.sh --all` runs it"]
+fn clusters_leave_few_triangles_of_a_million() {
+    assert_clusters_leave(&[
+        ("city:1000000", "overview", 47.6),
+        ("city:1000000", "street", 5.7),
+        ("forest:1000000", "overview", 59.8),
+    ]);
+}
+
+#[test]
+#[ignore = "takes minutes: `.ci/long` runs it"]
+fn ci_long_clusters_leave_few_triangles_of_ten_million() {
+    assert_clusters_leave(&[
+        ("city:10000000", "overview", 35.0),
+        ("city:10000000", "street", 3.5),
+        ("forest:10000000", "overview", 60.0),
+    ]);
 }

@@ -44,6 +44,7 @@ LISTS = """(
     format: 3,
     extends: "light_buffer_area.ron",
     lights: [directional, spot, point],
+    set: {"unlisted": rays},
     passes: [
         Change(pass: "weigh.choose_lists", shader: "choose_no_rays"),
         Change(pass: "test_samples", shader: "leave_unsure"),
@@ -164,7 +165,7 @@ def judge(runs, lists, cell, samples):
     first = without = None
     if samples == 16:
         few = f"max_entries={FIRST_FRAME}"
-        first, _ = runs.run("light_buffer_area", cell, samples, few)
+        first, _ = runs.run("light_buffer_area", cell, samples, few, "unlisted=rays")
         without, _ = runs.run("light_buffer_area", cell, samples, few, "unlisted=receivers")
     penumbra = sum(0 < share(bits) < 1 for bits in rays)
     asked = sum(value == ASKED_RAYS for value in status)

@@ -1,7 +1,5 @@
 // Stage to ask, for each receiver, the casters that are listed in its texel, by the tracer's own
-// test. Receivers that no complete list answers are uncertain. `fragment`: a full-screen
-// triangle, as some adapters take long to write texels in a compute stage; `compute`: one thread
-// per pixel, as others take long to draw.
+// test; a thread for each pixel. Receivers that no complete list answers are uncertain.
 
 #import "shared/answer.wgsl"
 #import "shared/asked_list.wgsl"
@@ -10,19 +8,8 @@
 // One item: 1 if a receiver is uncertain.
 var<storage, read_write> is_any_uncertain: array<atomic<u32>>;
 
-struct Answer {
-    @location(0) visibility: u32,
-    @location(1) status: u32,
-}
-
-@fragment
-fn fragment(@builtin(position) centre: vec4<f32>) -> Answer {
-    let pixel_status = answer(vec2<u32>(centre.xy));
-    return Answer(initial_visibility(pixel_status), pixel_status);
-}
-
 @compute @workgroup_size(8, 8)
-fn compute(@builtin(global_invocation_id) thread: vec3<u32>) {
+fn main(@builtin(global_invocation_id) thread: vec3<u32>) {
     if all(thread.xy < textureDimensions(primitive)) {
         store_answer(thread.xy, answer(thread.xy));
     }

@@ -280,6 +280,22 @@ fn lists_answer_each_sample_as_its_ray_does() {
 }
 
 #[test]
+fn only_wide_suns_ask_for_a_hierarchy() {
+    let (position, radius) = (DVec3::new(1.5, 6.0, -1.0), 0.7);
+    let lamp = LightKind::Point(PointLight { position, radius });
+    let suns = [(0.0, false), (2.2, false), (2.4, true)];
+    let suns = suns.map(|(angle, is_wide)| (LightKind::from(sun(angle)), is_wide));
+    for (light, is_wide) in [suns[0], suns[1], suns[2], (lamp, false)] {
+        let scene = scene(light);
+        let provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let document = preset("light_buffer_area", "");
+        let plan = plan_files(&[("test.ron", &document)], &provider, VIEWPORT);
+        let reads = plan.provided().contains(&"scene.bvh_nodes");
+        assert_eq!(reads, is_wide, "{light:?}");
+    }
+}
+
+#[test]
 fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
     let at = DVec3::new;
     let spot = |position, cone_degrees, radius| {
@@ -300,7 +316,8 @@ fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
         (point(at(1.0, 1.9, 0.9), 0.4), 16, true),
         (spot(at(0.5, 2.4, 0.2), 170.0, 0.5), 16, true),
     ] {
-        for set in ["", r#", "unlisted": receivers"#] {
+        for word in ["receivers", "rays"] {
+            let set = &format!(r#", "unlisted": {word}"#);
             let unlisted = assert_lists_answer_as_rays_do(&scene(light), samples, set);
             assert_eq!(
                 unlisted > 0,
@@ -315,7 +332,8 @@ fn lists_answer_each_sample_of_lamps_as_its_ray_does() {
         spot(at(1.5, 6.0, -1.0), 100.0, 0.3),
         point(at(0.3, 1.0, 0.2), 0.1),
     ] {
-        let unlisted = assert_lists_answer_as_rays_do(&scene_of(leaves(), light), 33, "");
+        let set = r#", "unlisted": receivers"#;
+        let unlisted = assert_lists_answer_as_rays_do(&scene_of(leaves(), light), 33, set);
         let pixels = (VIEWPORT[0] * VIEWPORT[1]) as usize;
         assert!(
             4 * unlisted < pixels,

@@ -100,10 +100,9 @@ fn presets_keep_the_contract() {
                 !on_request.iter().any(|pass| name.ends_with(pass))
             })
             .collect();
-        // `position` is not kept where passes find receivers anew; rays are written on request;
-        // light_buffer_area lists no receivers unless it is asked to.
+        // `position` is not kept where passes find receivers anew; rays are written on request.
         let is_needed = |name: &&&String| {
-            let left_out = ["gbuffer.surface", ".write_rays", "reset_state"];
+            let left_out = ["gbuffer.surface", ".write_rays"];
             !left_out.iter().any(|pass| name.ends_with(pass))
         };
         let culled: Vec<_> = culled.iter().filter(is_needed).collect();

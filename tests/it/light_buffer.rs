@@ -62,8 +62,6 @@ struct Bench {
     gpu: Gpu,
     provider: SceneProvider,
     viewport: [u32; 2],
-    /// The param `stage`.
-    stage: &'static str,
     /// The param `unlisted`.
     unlisted: &'static str,
 }
@@ -82,7 +80,6 @@ impl Bench {
             gpu: open(),
             provider: provider(scene, &scene.views[0], viewport),
             viewport,
-            stage: "fragment",
             unlisted: "receivers",
         }
     }
@@ -90,11 +87,7 @@ impl Bench {
     fn executor(&mut self, fit: &str, params: &[(&str, u32)], captured: &[&str]) -> Executor {
         let path = "pipelines/light_buffer.ron";
         let plan = plan(path, &self.provider, self.viewport, |request| {
-            let words = [
-                ("fit", fit),
-                ("stage", self.stage),
-                ("unlisted", self.unlisted),
-            ];
+            let words = [("fit", fit), ("unlisted", self.unlisted)];
             for (name, word) in words {
                 let word = ParamValue::Choice(word.to_owned());
                 request.params.insert(name.to_owned(), word);
@@ -481,22 +474,16 @@ fn a_list_that_is_too_long_is_not_looked_at() {
     }
 }
 
-/// In a picture whose edges are no multiple of a workgroup's.
 #[test]
-fn compute_threads_answer_as_fragments_do() {
+fn edges_of_a_picture_may_be_no_multiple_of_a_workgroups() {
     let scene = mixed(1);
     let mut bench = Bench::from_scene(&scene, [61, 43]);
+    let rays = bench.by_rays();
     for longest in [4, 2048] {
-        let params = [("map_size", 16), ("longest_list", longest)];
-        bench.stage = "fragment";
-        let by_fragments = bench.by_lists("receivers", &params);
-        bench.stage = "compute";
-        let by_threads = bench.by_lists("receivers", &params);
-        let asked = by_fragments.lit + by_fragments.shadow;
+        let lists = bench.by_lists("receivers", &[("map_size", 16), ("longest_list", longest)]);
+        let asked = lists.lit + lists.shadow;
         assert!(asked > 500, "{asked}");
-        assert!(by_threads.visibility == by_fragments.visibility);
-        let counts = |answer: &Answer| [answer.lit, answer.shadow, answer.unlisted];
-        assert_eq!(counts(&by_threads), counts(&by_fragments));
+        assert!(lists.visibility == rays, "{longest}");
     }
 }
 

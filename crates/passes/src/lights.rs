@@ -30,6 +30,19 @@ pub(crate) fn provided_kind(light: &LightKind) -> ProvidedKind {
     }
 }
 
+/// The extent of a light, as plans and shaders know it.
+pub(crate) fn provided_extent(light: &LightKind) -> ProvidedKind {
+    /// Radius of a sun at the distance 1: 2.3 degrees across. In four scenes no receiver had a list
+    /// longer than 3,008 under 2 degrees (64 samples, 128² pixels); under 5 degrees 6 of 16,384.
+    const WIDE: f64 = 0.02;
+    let is_sun = matches!(light, LightKind::Directional(_));
+    let (_, radius) = light.disk();
+    ProvidedKind {
+        words: &["none", "narrow", "wide"],
+        number: u32::from(radius > 0.0) + u32::from(is_sun && radius > WIDE),
+    }
+}
+
 /// Names of the lists, and of what is in them.
 pub(crate) fn names(count: usize) -> impl Iterator<Item = String> {
     [LIGHTS, LIGHT_AREAS].into_iter().flat_map(move |list| {
@@ -75,12 +88,13 @@ pub(crate) fn describe(name: &str, lights: &[LightKind]) -> Option<Provided> {
         let (binding, items) = (ProvidedBinding::Storage, lights.len() as u64);
         return Some(Provided::new(binding, Some(items), bytes as u64));
     };
-    let kind = provided_kind(lights.get(number)?);
+    let light = lights.get(number)?;
+    let kind = match list {
+        LIGHTS => provided_kind(light),
+        _ => provided_extent(light),
+    };
     let provided = Provided::new(ProvidedBinding::Uniform, Some(1), bytes as u64);
-    Some(match list {
-        LIGHTS => provided.with_kind(kind),
-        _ => provided,
-    })
+    Some(provided.with_kind(kind))
 }
 
 /// The bytes of what stands behind one of these names; `lay` lays a light around the scene.

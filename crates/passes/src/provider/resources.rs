@@ -112,7 +112,10 @@ resources! {
             it.upload_items(name, &[light], on)
         };
     "light_area", "[`LightAreaUniform`](crate::uniforms::LightAreaUniform)", Light, Uniform,
-        |_, _| uniform::<LightAreaUniform>(),
+        |it, _| {
+            let extent = lights::provided_extent(&it.light());
+            Some(uniform::<LightAreaUniform>()?.with_kind(extent))
+        },
         |it, _, name, on| {
             let light = LightAreaUniform::from(&it.checked(it.light())?);
             it.upload_items(name, &[light], on)

@@ -54,8 +54,7 @@ fn check_value(document: &Document, name: &Located<Name>, reports: &mut Reports)
 /// The name of an open include is set as a param is, and told apart from them.
 fn check_openings(document: &Document, reports: &mut Reports) {
     for (name, _) in document.openings() {
-        let mut params = document.params.iter();
-        if let Some(param) = params.find(|param| *param.name.value == *name.value.as_str()) {
+        if let Some(param) = document.param(name.as_str()) {
             let (what, first) = ("param and open include", param.name.span.clone());
             reports.report(ComposeError::SameName(what, name.text(), first));
         }

@@ -4,7 +4,7 @@ use crate::fields::prose;
 use crate::{
     diagnostics::Diagnostic,
     errors::document::DocumentError,
-    language::{Expr, ExprKind, Name, Value, Word},
+    language::{Expr, ExprKind, Name, Value},
     param::{Param, ParamType, ParamValue},
     source::Located,
 };
@@ -125,10 +125,7 @@ fn constant(expr: &Expr) -> Option<Value> {
     };
     Some(match &expr.kind {
         ExprKind::Literal(value) => value.clone(),
-        ExprKind::Word(word) => Value::Word(Word {
-            word: word.clone(),
-            of: None,
-        }),
+        ExprKind::Word(word) => Value::word(word),
         ExprKind::Tuple(list) => Value::List(list.iter().map(scalar).collect::<Option<_>>()?),
         _ => return None,
     })

@@ -5,7 +5,7 @@ use super::{
     raw::Invalid,
 };
 use crate::{
-    diagnostics::ErrorGuaranteed,
+    diagnostics::{ErrorGuaranteed, Reported},
     errors::document::DocumentError,
     fields::{Mentions, by_text, prose, short_or_long},
     kinds::{PassKind, ShaderUse},
@@ -234,7 +234,7 @@ pub(crate) struct Include {
     pub is_named: bool,
     pub expose: Expose,
     /// The included document; `None` until it is read.
-    pub document: Option<Result<Arc<Document>, ErrorGuaranteed>>,
+    pub document: Option<Reported<Arc<Document>>>,
 }
 
 impl Include {
@@ -284,6 +284,11 @@ impl Document {
     /// includes.
     pub fn is_own(&self, span: &Span) -> bool {
         span.file.name == self.file.name
+    }
+
+    /// Returns the param with a name, its own or an exposed one.
+    pub fn param(&self, name: &str) -> Option<&Param> {
+        self.params.iter().find(|param| param.name.value == name)
     }
 
     /// Returns the number of extensions between this document and the one that `span` lies in: 0

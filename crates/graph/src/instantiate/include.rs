@@ -72,10 +72,8 @@ pub(super) fn said<'e>(
         let mut border = inputs.chain(document.outputs.iter().map(|output| &output.name));
         border.any(|name| name.as_str() == bound.name.as_str()) || at.is_of_scene(bound.name)
     });
-    settings.set.retain(|setting| {
-        let mut params = document.params.iter();
-        params.any(|param| param.name.value == **setting.name)
-    });
+    let is_param = |setting: &Inherited<'_, Expr>| document.param(setting.name).is_some();
+    settings.set.retain(is_param);
     settings
 }
 
@@ -184,8 +182,7 @@ impl<'e> Call<'e> {
         let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
         for setting in &self.settings.set {
             let (name, expr, place) = (setting.name, setting.value, setting.position);
-            let mut params = self.document.params.iter();
-            if !params.any(|param| param.name.value == name.value) {
+            if self.document.param(name).is_none() {
                 let params = self.document.params.iter();
                 self.unused(name, params.map(|param| param.name.value.clone()), at);
                 continue;

@@ -275,10 +275,7 @@ fn check_samples(
     }
     let format = texture.format;
     let flags = format.guaranteed_format_features(features).flags;
-    let counts = [1, 2, 4, 8, 16];
-    let counts = counts.into_iter();
-    let supported = counts.filter(|count| flags.sample_count_supported(*count));
-    let supported: Vec<u32> = supported.collect();
+    let supported = flags.supported_sample_counts();
     if supported.contains(&texture.samples) {
         Ok(())
     } else {

@@ -2,7 +2,7 @@
 
 use super::step::{Names, Operand, Program, Scratch, ShaderUse, Step, Threads};
 use crate::{
-    diagnostics::{Code, Diagnostic, ErrorGuaranteed},
+    diagnostics::{Code, Diagnostic, Reported},
     errors::evaluation::EvaluationError,
     expressions::{Environment, eval},
     fields::Chosen,
@@ -177,7 +177,7 @@ impl<'a> Lowering<'a> {
     fn evaluate<T>(
         &mut self,
         fallback: T,
-        evaluator: impl FnOnce(&mut dyn Environment) -> Result<T, ErrorGuaranteed>,
+        evaluator: impl FnOnce(&mut dyn Environment) -> Reported<T>,
     ) -> T {
         match &mut self.environment {
             Some(environment) => evaluator(&mut **environment).unwrap_or(fallback),

@@ -154,11 +154,8 @@ fn sweep(
         for value in ends(param) {
             let mut changed = request.clone();
             changed.params.insert(name.clone(), value.clone());
-            diagnostics.extend(wrong_with(
-                graph,
-                &changed,
-                &format!("with `{name}` = {value}"),
-            ));
+            let condition = format!("with `{name}` = {value}");
+            diagnostics.extend(wrong_with(graph, &changed, &condition));
         }
     }
     for feature in plan_inputs.features.iter() {

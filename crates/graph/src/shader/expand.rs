@@ -28,7 +28,7 @@ pub(crate) type Replaced = BTreeMap<String, String>;
 const DEEPEST_IMPORT: usize = 64;
 
 /// Text of a shader with its imports in place.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Expanded {
     /// WGSL of the shader, with the modules that it imports in the place of the import lines.
     pub text: String,
@@ -59,11 +59,8 @@ impl Expanded {
     /// Begins the expansion of a file, without text.
     pub fn new(file: SourceFile) -> Self {
         Self {
-            text: String::new(),
             file,
-            pieces: Vec::new(),
-            imports: Vec::new(),
-            constants: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -8,7 +8,7 @@ use super::{
     wgsl_errors::unknown_name,
 };
 use crate::{
-    diagnostics::{ErrorGuaranteed, Reports},
+    diagnostics::{ErrorGuaranteed, Reported, Reports},
     document::Document,
     errors::shader::{ImportError, ShaderError},
     kinds::ShaderUse,
@@ -60,7 +60,7 @@ impl Shaders {
         document: &Document,
         shader: &ShaderUse,
         around: &Replaced,
-    ) -> Option<Result<Arc<Shader>, ErrorGuaranteed>> {
+    ) -> Option<Reported<Arc<Shader>>> {
         let shader = self.variant(document, shader, around)?.clone();
         Some(shader.map_err(|invalid| invalid.reported))
     }

@@ -43,7 +43,8 @@ use crate::measuring::guarantee::{self, WITHOUT_CULLING};
 use crate::measuring::steady;
 use crate::measuring::stop::Stop;
 use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
-use crate::records::stress::{Case, Casters, Cell, Column, Counts, OutsideBand, Verdict};
+use crate::records::results::{Adapter, PROGRAM};
+use crate::records::stress::{Case, Casters, Cell, Column, Counts, OutsideBand, Report, Verdict};
 use crate::sink::{Session, Sink};
 use itertools::Itertools;
 use skiagraph_cases::HardCase;
@@ -147,6 +148,18 @@ pub struct HardCaseContext<'a> {
 }
 
 impl HardCaseContext<'_> {
+    /// Begins the report on these methods, without any case.
+    pub fn report(&self, adapter: Adapter) -> Report {
+        Report {
+            schema: 1,
+            program: PROGRAM.into(),
+            adapter,
+            viewport: self.viewport,
+            methods: self.methods.iter().map(|run| run.column.clone()).collect(),
+            cases: Vec::new(),
+        }
+    }
+
     /// Runs on a case every method that is not [unavailable](Column::unavailable) and takes the
     /// case's kind of light. Returns the case with the pixel counts and verdict of each.
     ///

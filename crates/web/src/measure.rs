@@ -23,10 +23,8 @@ use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::Sources;
 use skiagraph_passes::EmbeddedSources;
 use skiagraph_report::summary_table::summaries;
-use std::{
-    cell::{Cell, RefCell},
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::cell::{Cell, RefCell};
+use std::sync::atomic::{AtomicBool, Ordering};
 use wasm_bindgen::prelude::*;
 
 /// Set by [`stop`].

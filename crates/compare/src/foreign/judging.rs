@@ -45,12 +45,10 @@ use crate::wording::{percent, plural, size, thousands};
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
 use skiagraph_reference::{Class, GroundTruth, OracleMode, Statistics, candidates, unattributable};
 use skiagraph_scene::{Scene, View};
-use std::{
-    borrow::Cow,
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Source of the surface that each pixel shows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,28 +1,22 @@
 //! [`Loaded`]: a document that was read, with its shaders and pictures.
 
-use super::{
-    reader::{IncludeSite, Reader, label},
-    used::{Used, drop_unused},
-};
-use crate::{
-    diagnostics::{Diagnostic, Diagnostics, Reported, Reports, Severity},
-    document::{Document, ImportEntry},
-    errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
-    expressions::parser,
-    kinds::{Registry, StandIn},
-    language::{Leaf, Name},
-    param::{Param, ParamError, find},
-    picture::Picture,
-    shader::{ShaderFiles, Shaders, mixed, store, unused},
-    source::{
-        Located, SourceFile, Sources, Span,
-        paths::{escapes, include_candidates, module_candidates},
-    },
-};
-use std::{
-    collections::{BTreeMap, BTreeSet, HashMap},
-    sync::Arc,
-};
+use super::reader::{IncludeSite, Reader, label};
+use super::used::{Used, drop_unused};
+use crate::diagnostics::{Diagnostic, Diagnostics, Reported, Reports, Severity};
+use crate::document::{Document, ImportEntry};
+use crate::errors::compose::ComposeError;
+use crate::errors::resource::SizeError;
+use crate::errors::shader::ShaderError;
+use crate::expressions::parser;
+use crate::kinds::{Registry, StandIn};
+use crate::language::{Leaf, Name};
+use crate::param::{Param, ParamError, find};
+use crate::picture::Picture;
+use crate::shader::{ShaderFiles, Shaders, mixed, store, unused};
+use crate::source::paths::{escapes, include_candidates, module_candidates};
+use crate::source::{Located, SourceFile, Sources, Span};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// A document that was read, with all documents, shaders and pictures that it names.
 #[derive(Debug)]

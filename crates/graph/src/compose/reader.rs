@@ -1,26 +1,19 @@
 //! Reads a document with all that it extends and includes.
 
 use super::unique;
-use crate::{
-    diagnostics::{Diagnostic, ErrorGuaranteed, Label, Reported, Reports, suggest::likeness},
-    document::{
-        Document, Entry, Include, Invalid, RawDocument, What, extend::extend, raw, read,
-        typed::each_include,
-    },
-    errors::compose::ComposeError,
-    kinds::Registry,
-    language::{Expr, Leaf, Name},
-    param::Param,
-    source::{
-        Located, SourceFile, Sources, Span,
-        paths::{escapes, folder_of, include_candidates},
-        sources,
-    },
-};
-use std::{
-    collections::{BTreeMap, BTreeSet, HashMap},
-    sync::Arc,
-};
+use crate::diagnostics::suggest::likeness;
+use crate::diagnostics::{Diagnostic, ErrorGuaranteed, Label, Reported, Reports};
+use crate::document::extend::extend;
+use crate::document::typed::each_include;
+use crate::document::{Document, Entry, Include, Invalid, RawDocument, What, raw, read};
+use crate::errors::compose::ComposeError;
+use crate::kinds::Registry;
+use crate::language::{Expr, Leaf, Name};
+use crate::param::Param;
+use crate::source::paths::{escapes, folder_of, include_candidates};
+use crate::source::{Located, SourceFile, Sources, Span, sources};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Deepest chain of includes or extended documents; far above any sensible house, far below the
 /// stack.

@@ -1,13 +1,11 @@
 //! Checks that names are unique: those of materials, groups, includes and their outputs, of passes,
 //! and of a document's outputs.
 
-use crate::{
-    diagnostics::Reports,
-    document::{Document, Entry, Invalid, What},
-    errors::compose::ComposeError,
-    language::{Name, wgsl_identifier},
-    source::Located,
-};
+use crate::diagnostics::Reports;
+use crate::document::{Document, Entry, Invalid, What};
+use crate::errors::compose::ComposeError;
+use crate::language::{Name, wgsl_identifier};
+use crate::source::Located;
 use std::collections::HashMap;
 
 /// Reports each name that is declared twice. Conditions do not count: two declarations may not

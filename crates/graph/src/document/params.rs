@@ -1,13 +1,11 @@
 //! Reads the params that a document declares.
 
+use crate::diagnostics::Diagnostic;
+use crate::errors::document::DocumentError;
 use crate::fields::prose;
-use crate::{
-    diagnostics::Diagnostic,
-    errors::document::DocumentError,
-    language::{Expr, ExprKind, Name, Value},
-    param::{Param, ParamType, ParamValue},
-    source::Located,
-};
+use crate::language::{Expr, ExprKind, Name, Value};
+use crate::param::{Param, ParamType, ParamValue};
+use crate::source::Located;
 use serde::Deserialize;
 use skiagraph_located_ron::{fields::from_fields, reader::Field};
 use std::collections::{BTreeMap, HashSet};

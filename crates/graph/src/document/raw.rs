@@ -1,18 +1,13 @@
 //! A document as sections of raw RON. [`extend`](super::extend) edits the sections, and
 //! [`typed`](super::typed) reads them.
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reported, Reports},
-    errors::{document::DocumentError, edit::EditError},
-    source::{Located, SourceFile, Span},
-};
-use skiagraph_located_ron::{
-    mistakes::{field_twice, unknown_field},
-    reader::{Field, Node},
-};
-use std::{
-    collections::{HashMap, HashSet},
-    sync::Arc,
-};
+use crate::diagnostics::{ErrorGuaranteed, Reported, Reports};
+use crate::errors::document::DocumentError;
+use crate::errors::edit::EditError;
+use crate::source::{Located, SourceFile, Span};
+use skiagraph_located_ron::mistakes::{field_twice, unknown_field};
+use skiagraph_located_ron::reader::{Field, Node};
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 /// Most entries of a list or map as it is written; each may name all others, so time may grow with
 /// the square.

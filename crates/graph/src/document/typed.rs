@@ -1,18 +1,14 @@
 //! The typed form of a document: every value is parsed, no name is looked up yet.
 
-use super::{
-    materials::{Input, Material},
-    raw::Invalid,
-};
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reported},
-    errors::document::DocumentError,
-    fields::{Mentions, by_text, prose, short_or_long},
-    kinds::{PassKind, ShaderUse},
-    language::{Expr, Leaf, Name, Reference},
-    param::Param,
-    source::{Located, SourceFile, Span},
-};
+use super::materials::{Input, Material};
+use super::raw::Invalid;
+use crate::diagnostics::{ErrorGuaranteed, Reported};
+use crate::errors::document::DocumentError;
+use crate::fields::{Mentions, by_text, prose, short_or_long};
+use crate::kinds::{PassKind, ShaderUse};
+use crate::language::{Expr, Leaf, Name, Reference};
+use crate::param::Param;
+use crate::source::{Located, SourceFile, Span};
 use serde::Deserialize;
 use skiagraph_located_ron::reader::{read, refuse};
 use std::{collections::BTreeSet, sync::Arc};

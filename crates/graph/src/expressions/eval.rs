@@ -1,15 +1,13 @@
 //! Evaluates expressions.
 
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reported, Reports},
-    errors::evaluation::EvaluationError,
-    language::{
-        AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference,
-        Scalar, Subject, Unary, Value, Word,
-    },
-    provided_kind::ProvidedKind,
-    source::Span,
+use crate::diagnostics::{ErrorGuaranteed, Reported, Reports};
+use crate::errors::evaluation::EvaluationError;
+use crate::language::{
+    AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference, Scalar,
+    Subject, Unary, Value, Word,
 };
+use crate::provided_kind::ProvidedKind;
+use crate::source::Span;
 use std::{cmp::Ordering, mem::discriminant};
 
 /// Gives the names in an expression their values, at the place where the expression stands.

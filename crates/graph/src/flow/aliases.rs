@@ -2,19 +2,13 @@
 //! in one allocation; buffers of any size lie at places of one, those that are needed at the same
 //! time apart.
 
-use super::{
-    lifetimes::Lifetimes,
-    placing::{ALIGNMENT, Candidate, Placing, Slot, candidates},
-    view::GraphView,
-};
-use crate::{
-    link::{Access, LinkedPass, PassId},
-    resource::{Resource, ResourceId, ResourceKind, SubresourceRange},
-};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    ops::Range,
-};
+use super::lifetimes::Lifetimes;
+use super::placing::{ALIGNMENT, Candidate, Placing, Slot, candidates};
+use super::view::GraphView;
+use crate::link::{Access, LinkedPass, PassId};
+use crate::resource::{Resource, ResourceId, ResourceKind, SubresourceRange};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use wgt::TextureAspect;
 
 /// One allocation: a texture or buffer on the device, and the resources that use it in a frame.

@@ -1,22 +1,18 @@
 //! Includes: a document gets inputs and params by name or by the settings of the include, and gives
 //! its outputs back.
 
-use super::{
-    flat::{EntryContext, PlanInputs},
-    params::{Given, Params, SetParam},
-    scopes::{Instance, Names, Outer, Position, ScopeId, Scopes, Symbol},
-    settings::{Inherited, Settings},
-    symbols::At,
-};
-use crate::{
-    diagnostics::Reported,
-    document::{Document, Entry, Include, Input, InputKind, Material},
-    errors::instantiate::InterfaceError,
-    expressions::{Environment, eval},
-    language::{Expr, ExprKind, Name, Reference},
-    resource::{ResourceKind, Target},
-    source::Located,
-};
+use super::flat::{EntryContext, PlanInputs};
+use super::params::{Given, Params, SetParam};
+use super::scopes::{Instance, Names, Outer, Position, ScopeId, Scopes, Symbol};
+use super::settings::{Inherited, Settings};
+use super::symbols::At;
+use crate::diagnostics::Reported;
+use crate::document::{Document, Entry, Include, Input, InputKind, Material};
+use crate::errors::instantiate::InterfaceError;
+use crate::expressions::{Environment, eval};
+use crate::language::{Expr, ExprKind, Name, Reference};
+use crate::resource::{ResourceKind, Target};
+use crate::source::Located;
 use std::{collections::BTreeMap, sync::Arc};
 
 /// Material of the outer document that an output is written into, with the place that says so.

@@ -1,23 +1,18 @@
 //! Draws: colour, depth and stencil attachments, their formats and sizes, outputs of the fragment
 //! shader.
 
-use super::{
-    canvas, dispatch, limits,
-    pass::{Attachment, Ids, LinkedProgram, Usage},
-    programs,
-    scope::PassScope,
-    textures::scalar_of,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    kinds::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
-    language::Reference,
-    resource::{ResourceKind, Target, Texture},
-    scalar_class::ItemScalar,
-    shader::{Varying, Varyings},
-    source::{Located, Span},
-};
+use super::pass::{Attachment, Ids, LinkedProgram, Usage};
+use super::scope::PassScope;
+use super::textures::scalar_of;
+use super::{canvas, dispatch, limits, programs};
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::kinds::{ColorTarget, DepthTarget, Draw, Names, StencilTarget};
+use crate::language::Reference;
+use crate::resource::{ResourceKind, Target, Texture};
+use crate::scalar_class::ItemScalar;
+use crate::shader::{Varying, Varyings};
+use crate::source::{Located, Span};
 use wgt::{
     Features, TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages,
 };

@@ -1,16 +1,12 @@
 //! Programs: their entry points, and the bindings that they need.
 
-use super::{
-    bindings, limits as device, params,
-    pass::{LinkedBinding, LinkedProgram},
-    scope::PassScope,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    kinds::Program,
-    shader::{Global, Shader},
-};
+use super::pass::{LinkedBinding, LinkedProgram};
+use super::scope::PassScope;
+use super::{bindings, limits as device, params};
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::kinds::Program;
+use crate::shader::{Global, Shader};
 use naga::ShaderStage;
 use wgt::BindingType as Type;
 

@@ -5,20 +5,16 @@
 //! Names stay as written, so that errors, captures and bindings use the author's names.
 
 use super::text::{BREAKS, Comments, declares};
-use crate::{
-    diagnostics::{Diagnostic, suggest::likeness},
-    errors::shader::ImportError,
-    source::{
-        Located, SourceFile, Sources, Span,
-        paths::{escapes, folder_of, import_candidates, module_candidates, shader_candidates},
-        sources,
-    },
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::suggest::likeness;
+use crate::errors::shader::ImportError;
+use crate::source::paths::{
+    escapes, folder_of, import_candidates, module_candidates, shader_candidates,
 };
-use std::{
-    collections::{BTreeMap, HashMap},
-    ops::Range,
-    sync::Arc,
-};
+use crate::source::{Located, SourceFile, Sources, Span, sources};
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// WGSL modules that replace others in imports: path of the replaced module, to path of the module
 /// that is imported instead.

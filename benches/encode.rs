@@ -3,15 +3,10 @@
 //! not: no frame is submitted.
 
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, measurement::WallTime};
-use skiagraph_benches::{
-    Shaders, VIEWPORT,
-    chain::{ByHand, Kind, executor},
-    graph, median, open,
-};
-use skiagraph_gpu::{
-    Executor, Frame,
-    device::{Gpu, Wanted},
-};
+use skiagraph_benches::chain::{ByHand, Kind, executor};
+use skiagraph_benches::{Shaders, VIEWPORT, graph, median, open};
+use skiagraph_gpu::device::{Gpu, Wanted};
+use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{NoProvider, ParamValue, Plan, PlanRequest, Registry};
 use std::time::{Duration, Instant};
 

@@ -7,10 +7,8 @@
 
 use glam::{DAffine3, DVec3};
 use skiagraph_benches::{open, planned};
-use skiagraph_gpu::{
-    Executor, Frame,
-    device::{self, Gpu},
-};
+use skiagraph_gpu::device::{self, Gpu};
+use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{ParamValue, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, Work, registry};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};

@@ -6,10 +6,8 @@
 //! A start ends when the first frame is done, since some drivers compile when they first draw.
 
 use skiagraph_benches::{median, open_quietly, planned};
-use skiagraph_gpu::{
-    Executor, Frame, Pipelines,
-    device::{Gpu, Wanted},
-};
+use skiagraph_gpu::device::{Gpu, Wanted};
+use skiagraph_gpu::{Executor, Frame, Pipelines};
 use skiagraph_graph::{Plan, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
 use skiagraph_scene::{DirectionalLight, Indexed};

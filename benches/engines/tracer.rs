@@ -7,10 +7,8 @@ use skiagraph_graph::{Capture, Describe, MemorySources, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, Engine, SceneProvider, registry};
 use skiagraph_scene::{Scene, generate::numbers::Random};
 use skiagraph_tests::extended::Extended;
-use std::{
-    sync::Arc,
-    time::{Duration, Instant},
-};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// A ray as the shaders have it: it is blocked by a triangle at t if `t_min` < t ≤ `t_max`.
 #[repr(C)]

@@ -1,9 +1,7 @@
 //! Defines cases of casters with gaps between them, both narrower than a texel.
 
-use crate::{
-    case::HardCase,
-    shape::{Block, LIGHT, Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Block, LIGHT, Shape, seen};
 
 const FLOOR: Block = [[-2.5, -0.5, -2.5], [2.5, 0.0, 2.5]];
 

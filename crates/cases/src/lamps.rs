@@ -1,10 +1,8 @@
 //! Defines cases of spot and point lights: their positions, and the borders of the space that they
 //! light.
 
-use crate::{
-    case::HardCase,
-    shape::{Block, Seen, Shape, seen_under},
-};
+use crate::case::HardCase;
+use crate::shape::{Block, Seen, Shape, seen_under};
 use glam::DVec3;
 use skiagraph_scene::{LightKind, PointLight, SpotLight};
 

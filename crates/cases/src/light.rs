@@ -1,9 +1,7 @@
 //! Defines cases in which the light is parallel, or nearly so, to surfaces.
 
-use crate::{
-    case::HardCase,
-    shape::{Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Shape, seen};
 use glam::DVec3;
 
 const GRAZING: DVec3 = DVec3::new(1.0, -0.02, 0.13);

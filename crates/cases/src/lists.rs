@@ -1,10 +1,8 @@
 //! Defines cases that are hard for lists of casters per texel: many casters in few texels, and
 //! casters that cover many texels.
 
-use crate::{
-    case::HardCase,
-    shape::{Block, LIGHT, Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Block, LIGHT, Shape, seen};
 use glam::DVec3;
 use skiagraph_scene::generate::numbers::Random;
 

@@ -1,9 +1,7 @@
 //! Defines cases in which casters or receivers have special places in the shadow map.
 
-use crate::{
-    case::HardCase,
-    shape::{Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Shape, seen};
 use glam::DVec3;
 
 /// The light is fitted to 500 units and a margin of 1.002, 501 in all: a texel of a map of 64 is

@@ -1,9 +1,7 @@
 //! Defines cases with alpha masks, which cut holes into triangles.
 
-use crate::{
-    case::HardCase,
-    shape::{Seen, Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Seen, Shape, seen};
 use glam::{DVec3, Vec2, Vec3};
 use skiagraph_scene::{Mask, Material, Scene, Wrap};
 use std::sync::Arc;

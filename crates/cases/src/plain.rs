@@ -1,9 +1,7 @@
 //! Defines simple cases, and cases with few triangles or none.
 
-use crate::{
-    case::HardCase,
-    shape::{Block, Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Block, Shape, seen};
 use glam::DVec3;
 
 const BOX: [Block; 2] = [

@@ -1,9 +1,7 @@
 //! Defines cases with gaps, extents and positions at which f32 runs out of digits.
 
-use crate::{
-    case::{Edges, HardCase},
-    shape::{Block, LIGHT, Seen, Shape, seen},
-};
+use crate::case::{Edges, HardCase};
+use crate::shape::{Block, LIGHT, Seen, Shape, seen};
 
 /// Four slabs, each smaller than the one below and `gap` above it; their tops are at multiples of a
 /// quarter.

@@ -1,9 +1,7 @@
 //! Defines cases that filtered shadow maps get wrong.
 
-use crate::{
-    case::HardCase,
-    shape::{Block, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Block, seen};
 use glam::DVec3;
 
 const OBLIQUE: DVec3 = DVec3::new(1.0, -1.0, 0.1);

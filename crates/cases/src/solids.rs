@@ -1,9 +1,7 @@
 //! Defines cases of closed surfaces, some of which touch.
 
-use crate::{
-    case::HardCase,
-    shape::{Block, LIGHT, Seen, Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Block, LIGHT, Seen, Shape, seen};
 use glam::DVec3;
 use skiagraph_scene::generate::numbers::{Random, turn};
 

@@ -1,9 +1,7 @@
 //! Defines cases with thin triangles, and triangles without an area.
 
-use crate::{
-    case::HardCase,
-    shape::{Block, LIGHT, Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Block, LIGHT, Shape, seen};
 use glam::{DVec3, Vec3};
 use skiagraph_scene::generate::numbers::Random;
 

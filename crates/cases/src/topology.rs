@@ -1,9 +1,7 @@
 //! Defines cases of sheets whose triangles meet in ways that those of a solid do not.
 
-use crate::{
-    case::HardCase,
-    shape::{Seen, Shape, seen},
-};
+use crate::case::HardCase;
+use crate::shape::{Seen, Shape, seen};
 use glam::DVec3;
 use skiagraph_scene::generate::numbers::turn;
 

@@ -1,16 +1,12 @@
 //! Drawing area, colours and text of all figures.
 
-use crate::{
-    colours::{INK, as_variables},
-    error::Error,
-    text::{HEAD, clean, width},
-};
-use plotters::{
-    coord::Shift,
-    drawing::DrawingAreaErrorKind,
-    prelude::*,
-    style::text_anchor::{HPos, Pos, VPos},
-};
+use crate::colours::{INK, as_variables};
+use crate::error::Error;
+use crate::text::{HEAD, clean, width};
+use plotters::coord::Shift;
+use plotters::drawing::DrawingAreaErrorKind;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::io;
 
 /// Drawing area, in pixels.

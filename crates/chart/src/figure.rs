@@ -1,15 +1,12 @@
 //! Lays out a figure: title, notes and legend, then the panels in rows.
 
-use crate::{
-    canvas::{Canvas, WIDTH, words},
-    data::{Kind, Mark, Panel},
-    error::Error,
-    frames,
-    legend::{Entry, Legend, Sign},
-    marker::Look,
-    panel,
-    text::{BODY, TITLE, wrap},
-};
+use crate::canvas::{Canvas, WIDTH, words};
+use crate::data::{Kind, Mark, Panel};
+use crate::error::Error;
+use crate::legend::{Entry, Legend, Sign};
+use crate::marker::Look;
+use crate::text::{BODY, TITLE, wrap};
+use crate::{frames, panel};
 use plotters::prelude::*;
 
 /// Free at the left border, pixels.

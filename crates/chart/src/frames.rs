@@ -1,13 +1,11 @@
 //! Draws a panel over the frames of a camera path: linear axes from 0, the marks of a series
 //! joined.
 
-use crate::{
-    canvas::{Canvas, panel_title},
-    data::{Mark, Panel, Series},
-    error::Error,
-    marker::Look,
-    panel::{ABOVE, builder, draw_line, draw_mark, label},
-};
+use crate::canvas::{Canvas, panel_title};
+use crate::data::{Mark, Panel, Series};
+use crate::error::Error;
+use crate::marker::Look;
+use crate::panel::{ABOVE, builder, draw_line, draw_mark, label};
 
 /// Free above the highest mark, as a share of its height.
 const MARGIN: f64 = 0.06;

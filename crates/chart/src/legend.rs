@@ -1,12 +1,10 @@
 //! Lays out and draws the legend: rows of entries above the panels.
 
-use crate::{
-    canvas::{Root, WIDTH, words},
-    colours::{FRONT, GUIDE},
-    error::Error,
-    marker::Look,
-    text::{BODY, width},
-};
+use crate::canvas::{Root, WIDTH, words};
+use crate::colours::{FRONT, GUIDE};
+use crate::error::Error;
+use crate::marker::Look;
+use crate::text::{BODY, width};
 use plotters::{element::DashedPathElement, prelude::*};
 
 /// Width of what stands before an entry's words, pixels.

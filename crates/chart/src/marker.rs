@@ -1,10 +1,8 @@
 //! Colours and shapes of series: 48 combinations before one repeats.
 
-use crate::{
-    canvas::Root,
-    colours::{AXIS, LOOKS},
-    error::Error,
-};
+use crate::canvas::Root;
+use crate::colours::{AXIS, LOOKS};
+use crate::error::Error;
 use plotters::prelude::*;
 
 /// Corners in tenths of the radius; none for a circle.

@@ -1,15 +1,13 @@
 //! Draws one logarithmic panel: axes, the strip for values of 0, lines, Pareto front, marks.
 
-use crate::{
-    canvas::{Canvas, Root, panel_title, style},
-    colours::{AXIS, FRONT, GRID, GUIDE, STRIP},
-    data::{Kind, Mark, Panel, Series},
-    error::Error,
-    front::front,
-    marker::Look,
-    scale::Scale,
-    text::{BODY, HEAD, clean, width, xml},
-};
+use crate::canvas::{Canvas, Root, panel_title, style};
+use crate::colours::{AXIS, FRONT, GRID, GUIDE, STRIP};
+use crate::data::{Kind, Mark, Panel, Series};
+use crate::error::Error;
+use crate::front::front;
+use crate::marker::Look;
+use crate::scale::Scale;
+use crate::text::{BODY, HEAD, clean, width, xml};
 use plotters::{
     chart::MeshStyle, coord::cartesian::Cartesian2d, element::DashedPathElement, prelude::*,
 };

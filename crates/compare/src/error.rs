@@ -12,11 +12,9 @@
 use itertools::Itertools;
 use skiagraph_gpu::ExecuteError;
 use skiagraph_graph::{Diagnostic, diagnostics};
-use std::{
-    error::Error,
-    io, iter,
-    path::{Path, PathBuf},
-};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::{io, iter};
 
 /// The outcome of a comparison, or of a part of it.
 pub type Result<T, E = CompareError> = std::result::Result<T, E>;

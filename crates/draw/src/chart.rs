@@ -1,11 +1,9 @@
 //! Elements of the chart and their positions, in pixels. They are plain numbers, so tests can check
 //! that nothing overlaps.
 
-use crate::{
-    drawing::{Edge, Material, Pass},
-    legend::Item,
-    words::Label,
-};
+use crate::drawing::{Edge, Material, Pass};
+use crate::legend::Item;
+use crate::words::Label;
 use skiagraph_graph::Hazard;
 use std::collections::HashMap;
 

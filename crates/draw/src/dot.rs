@@ -1,9 +1,7 @@
 //! Writes a plan as a graph of nodes and links for Graphviz.
 
-use crate::{
-    drawing::{Access, Drawing, Edge, Material, Origin, Pass},
-    text, words,
-};
+use crate::drawing::{Access, Drawing, Edge, Material, Origin, Pass};
+use crate::{text, words};
 use skiagraph_graph::Hazard;
 use std::collections::{BTreeMap, HashMap, HashSet};
 

@@ -1,16 +1,12 @@
 //! Converts a plan into a [`Drawing`].
 
-use crate::{
-    drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason},
-    reduction::implied,
-};
+use crate::drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason};
+use crate::reduction::implied;
 use skiagraph_graph::{
     Hazard, LinkedPass, PassId, Plan, Resource, ResourceKind, Run, SubresourceRange, step::Step,
 };
-use std::{
-    collections::{BTreeMap, HashMap},
-    ops::Range,
-};
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
 
 /// Converts a graph's plan into plain values that can be serialised, or drawn by
 /// [`to_svg`](crate::to_svg) and [`to_dot`](crate::to_dot). The title is empty.

@@ -1,18 +1,14 @@
 //! The grid of the chart: rows, columns, and how far apart they stand.
 
-use crate::{
-    chart::{Arc, Area, BESIDE, COLUMN, Chart, Column, MARGIN, Row, SLANT, numbers},
-    drawing::{Drawing, Edge, Material, Pass},
-    legend,
-    marks::{group, mark, name_beginnings, reach},
-    text::{self, SMALL},
-    words::{self, Label, MOST},
-};
+use crate::chart::{Arc, Area, BESIDE, COLUMN, Chart, Column, MARGIN, Row, SLANT, numbers};
+use crate::drawing::{Drawing, Edge, Material, Pass};
+use crate::legend;
+use crate::marks::{group, mark, name_beginnings, reach};
+use crate::text::{self, SMALL};
+use crate::words::{self, Label, MOST};
 use skiagraph_graph::text::cut;
-use std::{
-    cmp::Reverse,
-    collections::{HashMap, HashSet},
-};
+use std::cmp::Reverse;
+use std::collections::{HashMap, HashSet};
 
 const ROW: f64 = 26.0;
 const LINE: f64 = 14.0;

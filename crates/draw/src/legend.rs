@@ -1,10 +1,8 @@
 //! Legend of a chart, with only the signs that occur in it.
 
-use crate::{
-    drawing::{Drawing, Kind, Material},
-    text::{self, SMALL},
-    words::{self, Unit},
-};
+use crate::drawing::{Drawing, Kind, Material};
+use crate::text::{self, SMALL};
+use crate::words::{self, Unit};
 use skiagraph_graph::Hazard;
 use std::collections::{BTreeSet, HashMap, HashSet};
 

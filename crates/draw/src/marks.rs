@@ -1,12 +1,10 @@
 //! Marks on the grid of the chart, names where materials begin, brackets.
 
-use crate::{
-    chart::{Chart, Column, Group, Mark, numbers},
-    drawing::Access,
-    legend::Item,
-    text::{self, NOTE, SMALL},
-    words::{self, MOST},
-};
+use crate::chart::{Chart, Column, Group, Mark, numbers};
+use crate::drawing::Access;
+use crate::legend::Item;
+use crate::text::{self, NOTE, SMALL};
+use crate::words::{self, MOST};
 use skiagraph_graph::text::{bytes, cut};
 use std::collections::BTreeMap;
 

@@ -1,14 +1,12 @@
 //! Draws the chart as SVG, at the positions that the layout has chosen.
 
-use crate::{
-    canvas::Canvas,
-    chart::{Arc, Area, BESIDE, COLUMN, Chart, Column, Group, MARGIN, Mark, Row, SLANT},
-    drawing::Drawing,
-    layout::chart,
-    legend::{Item, SIGN, Tint},
-    text::{NAME, NOTE, SMALL, xml},
-    words::{self, Label},
-};
+use crate::canvas::Canvas;
+use crate::chart::{Arc, Area, BESIDE, COLUMN, Chart, Column, Group, MARGIN, Mark, Row, SLANT};
+use crate::drawing::Drawing;
+use crate::layout::chart;
+use crate::legend::{Item, SIGN, Tint};
+use crate::text::{NAME, NOTE, SMALL, xml};
+use crate::words::{self, Label};
 use skiagraph_graph::Hazard;
 
 const INK: &str = "#1a1a1a";

@@ -1,13 +1,9 @@
 //! Writes texts about passes and materials for charts and graphs.
 
-use crate::{
-    drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason},
-    text::{self, NAME, plural},
-};
-use skiagraph_graph::{
-    Hazard,
-    text::{bytes, cut},
-};
+use crate::drawing::{Access, Aspect, Drawing, Edge, Kind, Material, Origin, Part, Pass, Reason};
+use crate::text::{self, NAME, plural};
+use skiagraph_graph::Hazard;
+use skiagraph_graph::text::{bytes, cut};
 use std::ops::Range;
 
 /// Greatest number of characters of a name in a picture. Longer names are cut; tooltips show them

@@ -1,10 +1,9 @@
 //! Deserialisation of names, expressions, references and words in the fields of documents.
-use crate::{
-    errors::{document::DocumentError, language::SyntaxFault},
-    expressions::parser,
-    language::{Expr, ExprKind, Name, Reference, Scalar, Value},
-    source::{SourceFile, Span},
-};
+use crate::errors::document::DocumentError;
+use crate::errors::language::SyntaxFault;
+use crate::expressions::parser;
+use crate::language::{Expr, ExprKind, Name, Reference, Scalar, Value};
+use crate::source::{SourceFile, Span};
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 use skiagraph_located_ron::reader::{raw, read, refuse};
 use std::{cell::RefCell, ops::Range};

@@ -1,20 +1,18 @@
 //! [`Graph`]: a document with its shaders, ready to be planned.
 
-use crate::{
-    compose::{Loaded, Reader, reader::label},
-    diagnostics::{Diagnostic, Diagnostics, Reports},
-    document::flat::{flat, keep},
-    instantiate::{
-        Claim, Surroundings,
-        params::{checked, claims},
-    },
-    kinds::Registry,
-    language::Name,
-    param::{Param, ParamError, ParamValue},
-    plan::{Plan, check::check},
-    request::PlanRequest,
-    source::{Located, Sources},
-};
+use crate::compose::reader::label;
+use crate::compose::{Loaded, Reader};
+use crate::diagnostics::{Diagnostic, Diagnostics, Reports};
+use crate::document::flat::{flat, keep};
+use crate::instantiate::params::{checked, claims};
+use crate::instantiate::{Claim, Surroundings};
+use crate::kinds::Registry;
+use crate::language::Name;
+use crate::param::{Param, ParamError, ParamValue};
+use crate::plan::Plan;
+use crate::plan::check::check;
+use crate::request::PlanRequest;
+use crate::source::{Located, Sources};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// A render graph loaded from a document (a RON file): its materials (textures, buffers and

@@ -1,11 +1,9 @@
 //! Params: the typed settings that a document takes from its host or from the document that
 //! includes it.
 
-use crate::{
-    diagnostics::suggest::{likeness, suggestion},
-    language::{Expr, Name, Scalar, Value, Word},
-    source::Located,
-};
+use crate::diagnostics::suggest::{likeness, suggestion};
+use crate::language::{Expr, Name, Scalar, Value, Word};
+use crate::source::Located;
 use serde::Serialize;
 use std::{collections::BTreeMap, fmt, sync::Arc};
 

@@ -1,11 +1,9 @@
 //! Requests for plans.
 
-use crate::{
-    adapter_facts::AdapterFacts,
-    instantiate::params::Surroundings,
-    param::ParamValue,
-    provider::{Describe, Import},
-};
+use crate::adapter_facts::AdapterFacts;
+use crate::instantiate::params::Surroundings;
+use crate::param::ParamValue;
+use crate::provider::{Describe, Import};
 use std::collections::BTreeMap;
 
 /// A graphics backend that lacks part of WebGPU, such as OpenGL. A graph that passed its checks on

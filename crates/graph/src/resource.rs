@@ -1,12 +1,10 @@
 //! Textures, buffers and samplers of a plan, and parts of them.
 
-use crate::{
-    document::{Address, Filter},
-    picture::Picture,
-    provided_kind::ProvidedKind,
-    provider::Provided,
-    source::Span,
-};
+use crate::document::{Address, Filter};
+use crate::picture::Picture;
+use crate::provided_kind::ProvidedKind;
+use crate::provider::Provided;
+use crate::source::Span;
 use std::{ops::Range, sync::Arc};
 
 /// Id of a [`Resource`] of one plan: its index in [`Plan::resources`](crate::Plan::resources).

@@ -1,27 +1,23 @@
 //! JSON Schema of documents, made from the types that read them.
 
-use crate::{
-    document::{
-        entries::{Header, IncludeFields, PassFields},
-        extend::PLACES,
-        materials::{
-            BufferEntry, BufferInput, Data, FormatEntry, Mips, SamplerEntry, SamplerInput,
-            TextureEntry, TextureInput,
-        },
-        params::ParamFields,
-        raw::{FORMAT, SECTIONS},
-        typed::{ClaimEntry, ClaimFields, Expose, ImportEntry, Narrow, Output, OutputFields},
-    },
-    errors::document::PARAM_TYPES,
-    fields::{Chosen, Load},
-    kinds::registry::{Kind, Registry},
-    language::{
-        name::Name,
-        syntax::{Expr, Reference},
-    },
-    source::span::Located,
-    written::{short_or_long, written},
+use crate::document::entries::{Header, IncludeFields, PassFields};
+use crate::document::extend::PLACES;
+use crate::document::materials::{
+    BufferEntry, BufferInput, Data, FormatEntry, Mips, SamplerEntry, SamplerInput, TextureEntry,
+    TextureInput,
 };
+use crate::document::params::ParamFields;
+use crate::document::raw::{FORMAT, SECTIONS};
+use crate::document::typed::{
+    ClaimEntry, ClaimFields, Expose, ImportEntry, Narrow, Output, OutputFields,
+};
+use crate::errors::document::PARAM_TYPES;
+use crate::fields::{Chosen, Load};
+use crate::kinds::registry::{Kind, Registry};
+use crate::language::name::Name;
+use crate::language::syntax::{Expr, Reference};
+use crate::source::span::Located;
+use crate::written::{short_or_long, written};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 use skiagraph_located_ron::schema::plain;

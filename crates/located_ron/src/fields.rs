@@ -1,15 +1,11 @@
 //! Reads structs from fields that are split already, each from its own text.
 
-use crate::{
-    diagnostics::Diagnostic,
-    mistakes::{explain, field_twice, place_of, unknown_field},
-    reader::{Field, READING, fail, options},
-    span::Span,
-};
-use serde::de::{
-    DeserializeOwned, DeserializeSeed, Error as _, IntoDeserializer, MapAccess,
-    value::MapAccessDeserializer,
-};
+use crate::diagnostics::Diagnostic;
+use crate::mistakes::{explain, field_twice, place_of, unknown_field};
+use crate::reader::{Field, READING, fail, options};
+use crate::span::Span;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{DeserializeOwned, DeserializeSeed, Error as _, IntoDeserializer, MapAccess};
 use std::{cell::Cell, collections::HashSet, iter::Enumerate, slice};
 
 /// Deserialises a struct from fields that [`Node::fields`](crate::reader::Node::fields) returned,

@@ -1,9 +1,7 @@
 //! Mistakes in RON: ron's errors in plain words, each at its place.
 
-use crate::{
-    diagnostics::{Code, Diagnostic},
-    span::{Located, SourceFile, Span},
-};
+use crate::diagnostics::{Code, Diagnostic};
+use crate::span::{Located, SourceFile, Span};
 use std::ops::Range;
 
 /// Returns the place of a ron error, in bytes: `text` begins at `base`.

@@ -1,11 +1,9 @@
 //! Turns panics of libraries into errors: naga, wgpu and ron panic on some texts, and no file may
 //! end the program.
 
-use std::{
-    cell::RefCell,
-    panic::{self, AssertUnwindSafe, PanicHookInfo},
-    sync::Once,
-};
+use std::cell::RefCell;
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::sync::Once;
 
 /// A panic of a library that [`caught`] has caught, with its place in the library's source code.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

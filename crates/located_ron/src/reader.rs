@@ -5,19 +5,15 @@
 //! itself from its raw text. A raw value borrows the source, so the difference of their pointers is
 //! the value's byte offset.
 
-use crate::{
-    diagnostics::{Code, Diagnostic},
-    mistakes::{explain, place_of},
-    panics::{Panicked, caught},
-    span::{Located, SourceFile, Span},
-};
+use crate::diagnostics::{Code, Diagnostic};
+use crate::mistakes::{explain, place_of};
+use crate::panics::{Panicked, caught};
+use crate::span::{Located, SourceFile, Span};
 use ron::value::RawValue;
-use serde::{
-    Deserialize, Deserializer,
-    de::{
-        DeserializeOwned, DeserializeSeed, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
-    },
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, Error as _, MapAccess, SeqAccess, Unexpected, Visitor,
 };
+use serde::{Deserialize, Deserializer};
 use std::{borrow::Cow, cell::RefCell, fmt, ops::Range};
 
 /// The text that is being deserialised on this thread, and the innermost place where it went wrong

@@ -1,10 +1,8 @@
 //! Source files, and places in them.
 
-use std::{
-    fmt,
-    ops::{Deref, Range},
-    sync::Arc,
-};
+use std::fmt;
+use std::ops::{Deref, Range};
+use std::sync::Arc;
 
 /// Path and text of a source file, which places ([`Span`]) refer to. Clones share one text and are
 /// cheap.

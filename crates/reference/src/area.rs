@@ -1,15 +1,13 @@
 //! Share of an area light that each receiver sees: stratified samples in f64.
 
-use crate::{
-    error::Error,
-    ground_truth::{Answer, AreaVisibility, Class, GroundTruth, GroundTruthPixels},
-    oracle::{Oracle, OracleMode},
-    pixels::Progress,
-    ray::Ray,
-    receiver::Receiver,
-    strata::{Strata, disk},
-    tree::{Caster, Cone},
-};
+use crate::error::Error;
+use crate::ground_truth::{Answer, AreaVisibility, Class, GroundTruth, GroundTruthPixels};
+use crate::oracle::{Oracle, OracleMode};
+use crate::pixels::Progress;
+use crate::ray::Ray;
+use crate::receiver::Receiver;
+use crate::strata::{Strata, disk};
+use crate::tree::{Caster, Cone};
 use glam::DVec3;
 use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Towards};
 use std::ops::ControlFlow;

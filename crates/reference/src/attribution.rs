@@ -1,15 +1,13 @@
 //! Finds the pixels of a foreign picture that cannot be held against the truth, as it is unknown
 //! which of several surfaces they show.
 
-use crate::{
-    area::{answered, strata},
-    error::Error,
-    ground_truth::{Class, GroundTruth},
-    oracle::{Oracle, OracleMode},
-    pixels::{BACKGROUND, Progress, check_pixel_count, existing, per_pixel},
-    receiver::Receiver,
-    visible::Candidate,
-};
+use crate::area::{answered, strata};
+use crate::error::Error;
+use crate::ground_truth::{Class, GroundTruth};
+use crate::oracle::{Oracle, OracleMode};
+use crate::pixels::{BACKGROUND, Progress, check_pixel_count, existing, per_pixel};
+use crate::receiver::Receiver;
+use crate::visible::Candidate;
 use skiagraph_scene::{Camera, LightKind};
 
 /// Greatest difference of two shares of light that 8 bits cannot show.

@@ -5,12 +5,10 @@
 //! each front face; an open part, such as a leaf or a curtain, may have none, and what it shadows
 //! then looks lit to the map, with certainty.
 
-use crate::{
-    error::Error,
-    oracle::{Oracle, OracleMode},
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place},
-    receiver::Receiver,
-};
+use crate::error::Error;
+use crate::oracle::{Oracle, OracleMode};
+use crate::pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place};
+use crate::receiver::Receiver;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use skiagraph_scene::{Camera, LightKind, Parts};

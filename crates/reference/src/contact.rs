@@ -8,11 +8,9 @@
 //! all around; but two triangles that merely abut, without a common edge, move each on its own, and
 //! a ray between them is indeterminate.
 
-use crate::{
-    error_bound::{Uncertainty, caster_error},
-    ray::{Corners, Ray},
-    tree::Caster,
-};
+use crate::error_bound::{Uncertainty, caster_error};
+use crate::ray::{Corners, Ray};
+use crate::tree::Caster;
 use glam::DVec3;
 use skiagraph_scene::Towards;
 use skiagraph_scene::mask::Asked;

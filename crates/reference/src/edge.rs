@@ -3,13 +3,11 @@
 //! The distances tell the causes apart: the steps of a map's texels stay within a texel of an edge,
 //! acne lies anywhere on lit surfaces, and a bias lights the shadow beside its caster.
 
-use crate::{
-    error::Error,
-    ground_truth::{Class, GroundTruthPixels},
-    pixels::{check_pixel_count, neighbours, place},
-    shimmer::Seen,
-    statistics::{Verdict, for_each_verdict},
-};
+use crate::error::Error;
+use crate::ground_truth::{Class, GroundTruthPixels};
+use crate::pixels::{check_pixel_count, neighbours, place};
+use crate::shimmer::Seen;
+use crate::statistics::{Verdict, for_each_verdict};
 use rayon::prelude::*;
 use rstar::RTree;
 use serde::{Deserialize, Serialize};

@@ -1,12 +1,10 @@
 //! Errors of soft-shadow pictures, whose pixels show shares of light, against the reference.
 
-use crate::{
-    error::Error,
-    flip::flip,
-    ground_truth::GroundTruthPixels,
-    image::{Image, error},
-    pixels::check_pixel_count,
-};
+use crate::error::Error;
+use crate::flip::flip;
+use crate::ground_truth::GroundTruthPixels;
+use crate::image::{Image, error};
+use crate::pixels::check_pixel_count;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 

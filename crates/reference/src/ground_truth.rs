@@ -1,11 +1,9 @@
 //! The ground truth of a view: the oracle's answer at each pixel.
 
-use crate::{
-    error::Error,
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place},
-    receiver::{self, Receiver},
-    status,
-};
+use crate::error::Error;
+use crate::pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place};
+use crate::receiver::{self, Receiver};
+use crate::status;
 use rayon::prelude::*;
 use skiagraph_scene::{Camera, LightKind, Mesh};
 use std::borrow::Cow;

@@ -1,12 +1,10 @@
 //! Pictures as RGB bytes; the caller encodes them if it needs a file.
 
-use crate::{
-    error::Error,
-    ground_truth::{Class, GroundTruthPixels},
-    pixels::check_pixel_count,
-    statistics::{UNANSWERED, Verdict, for_each_verdict},
-    status,
-};
+use crate::error::Error;
+use crate::ground_truth::{Class, GroundTruthPixels};
+use crate::pixels::check_pixel_count;
+use crate::statistics::{UNANSWERED, Verdict, for_each_verdict};
+use crate::status;
 
 type Colour = [u8; 3];
 

@@ -1,13 +1,11 @@
 //! Jump of the error where two layers of a shadow map meet: at the planes between the splits of the
 //! eye's frustum, or at the edges of a cube's faces.
 
-use crate::{
-    error::Error,
-    ground_truth::GroundTruthPixels,
-    image::error,
-    pixels::check_pixel_count,
-    shimmer::{Seen, Surface},
-};
+use crate::error::Error;
+use crate::ground_truth::GroundTruthPixels;
+use crate::image::error;
+use crate::pixels::check_pixel_count;
+use crate::shimmer::{Seen, Surface};
 use serde::{Deserialize, Serialize};
 
 /// Differences in error between neighbouring pixels, where two layers of a shadow map (cascades or

@@ -2,10 +2,8 @@
 
 use crate::error_bound::F32_ROUNDING;
 use glam::DVec2;
-use skiagraph_scene::{
-    Mesh,
-    mask::{Asked, Mask},
-};
+use skiagraph_scene::Mesh;
+use skiagraph_scene::mask::{Asked, Mask};
 
 /// Roundings of a texture coordinate that is interpolated in f32, in units of the largest
 /// coordinate of the corners: two differences, two products, two sums and the weights' own

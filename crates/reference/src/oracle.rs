@@ -1,16 +1,14 @@
 //! The oracle, the reference's ray tracer: primary and shadow rays in f64 for every pixel, on all
 //! cores.
 
-use crate::{
-    contact::{Contact, FuzzyRay},
-    error::Error,
-    error_bound::Uncertainty,
-    ground_truth::{Answer, Class, GroundTruthPixels},
-    pixels::{BACKGROUND, Progress, per_pixel},
-    ray::Ray,
-    receiver::Receiver,
-    tree::Tree,
-};
+use crate::contact::{Contact, FuzzyRay};
+use crate::error::Error;
+use crate::error_bound::Uncertainty;
+use crate::ground_truth::{Answer, Class, GroundTruthPixels};
+use crate::pixels::{BACKGROUND, Progress, per_pixel};
+use crate::ray::Ray;
+use crate::receiver::Receiver;
+use crate::tree::Tree;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use skiagraph_scene::{Camera, LIGHT_GAP, LightKind, Mesh, Parts, Towards};

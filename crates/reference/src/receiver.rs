@@ -1,11 +1,9 @@
 //! The receiver of a pixel: the point where the pixel's ray meets its primitive in the G-buffer,
 //! and the bounds of its f32 error.
 
-use crate::{
-    error::Error,
-    error_bound::{F32_ROUNDING, Uncertainty},
-    pixels::shown,
-};
+use crate::error::Error;
+use crate::error_bound::{F32_ROUNDING, Uncertainty};
+use crate::pixels::shown;
 use glam::DVec3;
 use skiagraph_scene::{Camera, LightKind, Mesh, Towards};
 

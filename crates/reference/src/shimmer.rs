@@ -1,11 +1,9 @@
 //! Shimmer: shadows of a method that change from one frame to the next though the ground truth does
 //! not.
 
-use crate::{
-    error::Error,
-    ground_truth::GroundTruth,
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place, shown},
-};
+use crate::error::Error;
+use crate::ground_truth::GroundTruth;
+use crate::pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, place, shown};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use skiagraph_scene::{Camera, Mesh};

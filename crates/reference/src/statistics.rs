@@ -1,10 +1,8 @@
 //! Counts of a method's right and wrong pixels, as `results.json` holds them.
 
-use crate::{
-    error::Error,
-    ground_truth::{Class, GroundTruthPixels},
-    pixels::check_pixel_count,
-};
+use crate::error::Error;
+use crate::ground_truth::{Class, GroundTruthPixels};
+use crate::pixels::check_pixel_count;
 use serde::{Deserialize, Serialize};
 
 pub use crate::status;

@@ -1,11 +1,9 @@
 //! Counts of several frames, added up.
 
-use crate::{
-    blockers::BlockerCounts,
-    graded::{Invalid, OffBy},
-    shimmer::Shimmer,
-    statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts},
-};
+use crate::blockers::BlockerCounts;
+use crate::graded::{Invalid, OffBy};
+use crate::shimmer::Shimmer;
+use crate::statistics::{CertainCounts, ClassSplit, PixelCounts, Split, Statistics, WrongCounts};
 use std::ops::AddAssign;
 
 /// Adds field by field; a field that is left out does not compile.

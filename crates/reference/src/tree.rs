@@ -1,9 +1,7 @@
 //! Traversal of the scene's hierarchy by f64 rays.
 
-use crate::{
-    masked::Masked,
-    ray::{Corners, Hit, Ray},
-};
+use crate::masked::Masked;
+use crate::ray::{Corners, Hit, Ray};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 use skiagraph_scene::{Bvh, Mesh, Towards};

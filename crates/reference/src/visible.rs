@@ -1,13 +1,11 @@
 //! Finds the primitives that each pixel may show, and checks those of a G-buffer.
 
-use crate::{
-    error::Error,
-    error_bound::F32_ROUNDING,
-    oracle::Oracle,
-    pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, shown},
-    ray::{Corners, Ray},
-    tree::Caster,
-};
+use crate::error::Error;
+use crate::error_bound::F32_ROUNDING;
+use crate::oracle::Oracle;
+use crate::pixels::{BACKGROUND, Progress, check_pixel_count, per_pixel, shown};
+use crate::ray::{Corners, Ray};
+use crate::tree::Caster;
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{Camera, mask::Asked};
 use std::ops::ControlFlow;

@@ -6,18 +6,15 @@ use skiagraph_compare::error::{CompareError, Result};
 use skiagraph_compare::files::write::{check_folder, write_whole};
 use skiagraph_compare::records::cell_files::{self, Joined};
 use skiagraph_compare::records::cells::Cells;
-use skiagraph_compare::records::read_back;
-use skiagraph_compare::records::results_csv;
 use skiagraph_compare::records::sources::{Kept, Source, merged, sources};
 use skiagraph_compare::records::stress::Report;
+use skiagraph_compare::records::{read_back, results_csv};
 use skiagraph_compare::sink::Sink;
 use skiagraph_compare::wording::plural;
-use std::{
-    collections::BTreeSet,
-    fs,
-    path::{Path, PathBuf},
-    time::SystemTime,
-};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// Name of the page's file in a folder of results.
 pub const FILE: &str = "report.html";

@@ -4,14 +4,9 @@
 use glam::DVec2;
 use skiagraph_reference::{Error, GroundTruth, Oracle, OracleMode, Progress, ground_truth};
 use skiagraph_scene::{Camera, LightKind, Scene};
-use std::{
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc,
-    },
-    thread,
-};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
+use std::thread;
 
 /// Distances in pixels, along rows and columns, between traced pixels of the first, second and
 /// third answer to a question. They are odd, so that the centre of a block of so many pixels is

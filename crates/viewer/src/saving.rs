@@ -3,10 +3,8 @@
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::write::write_new;
 use skiagraph_scene::{SceneFile, SceneLibrary, View, view_text};
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Writes a copy of the file of the scene named `scene`, with the view added. The copy is beside
 /// the original, or in the working directory for a built-in scene, under a name that is free.

@@ -12,10 +12,8 @@ use skiagraph_compare::measuring::device::{self, GpuRequest};
 use skiagraph_compare::sink::Sink;
 use skiagraph_gpu::{block_on, timing::Trust};
 use skiagraph_scene::SceneLibrary;
-use std::{
-    collections::BTreeSet,
-    sync::{Arc, mpsc},
-};
+use std::collections::BTreeSet;
+use std::sync::{Arc, mpsc};
 
 /// Callback that makes the window call [`Viewer::update`]; the threads call it after each event or
 /// answer.

@@ -1,29 +1,22 @@
 //! The window: passes winit's events to egui, and egui's shapes to the painter.
 
+use crate::start::{Opening, start};
 use crate::state::Viewer;
-use crate::{
-    start::{Opening, start},
-    ui,
-};
+use crate::ui;
 use egui::ViewportId;
-use egui_wgpu::{
-    RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew, winit::Painter,
-};
+use egui_wgpu::winit::Painter;
+use egui_wgpu::{RendererOptions, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use skiagraph_compare::error::CompareError;
 use skiagraph_compare::files::watch::Watch;
 use skiagraph_compare::sink::Sink;
 use skiagraph_graph::caught;
-use std::{
-    sync::Arc,
-    time::{Duration, Instant},
-};
-use winit::{
-    application::ApplicationHandler,
-    dpi::LogicalSize,
-    event::{StartCause, WindowEvent},
-    event_loop::{ActiveEventLoop, ControlFlow, EventLoop},
-    window::{Window, WindowId},
-};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::window::{Window, WindowId};
 
 /// Something has happened: draw again, after so long.
 #[derive(Debug)]

@@ -10,13 +10,10 @@ use skiagraph_compare::sink::{Session, Silent};
 use skiagraph_gpu::{block_on, device::Gpu, timing::Trust};
 use skiagraph_graph::Sources;
 use skiagraph_scene::{Scene, View};
-use std::{
-    error::Error,
-    io,
-    sync::{Arc, mpsc},
-    thread,
-    time::{Duration, Instant},
-};
+use std::error::Error;
+use std::sync::{Arc, mpsc};
+use std::time::{Duration, Instant};
+use std::{io, thread};
 
 /// Commands of the window to the thread that runs the graphs.
 pub enum Command {

@@ -7,10 +7,8 @@ use skiagraph_graph::{
     Diagnostic, Graph, LayeredSources, MemorySources, Severity, Sources, diagnostics,
 };
 use skiagraph_passes::{EmbeddedSources, registry};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::{Arc, Mutex, PoisonError},
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, PoisonError};
 use wasm_bindgen::prelude::*;
 
 /// Texts by their paths.

@@ -16,17 +16,15 @@ use skiagraph_compare::measuring::hard_case::{HardCaseContext, MethodRun};
 use skiagraph_compare::measuring::hard_cases::{cases, plan};
 use skiagraph_compare::measuring::series::Series;
 use skiagraph_compare::measuring::view_or_path::ViewOrPath;
-use skiagraph_compare::records::results::{Adapter, Measured, PROGRAM, Results};
+use skiagraph_compare::records::results::{Adapter, Measured, Results};
 use skiagraph_compare::records::stress::{Report, Verdict};
 use skiagraph_compare::sink::{Session, Sink};
 use skiagraph_gpu::device::Gpu;
 use skiagraph_graph::Sources;
 use skiagraph_passes::EmbeddedSources;
 use skiagraph_report::summary_table::summaries;
-use std::{
-    cell::{Cell, RefCell},
-    sync::atomic::{AtomicBool, Ordering},
-};
+use std::cell::{Cell, RefCell};
+use std::sync::atomic::{AtomicBool, Ordering};
 use wasm_bindgen::prelude::*;
 
 /// Set by [`stop`].
@@ -147,14 +145,7 @@ pub async fn conformance((gpu, adapter): (&Gpu, Adapter), request: &str) -> Answ
         viewport,
         pictures: None,
     };
-    let mut report = Report {
-        schema: 1,
-        program: PROGRAM.into(),
-        adapter,
-        viewport,
-        methods: methods.iter().map(|run| run.column.clone()).collect(),
-        cases: Vec::new(),
-    };
+    let mut report = context.report(adapter);
     for case in &cases {
         match context.run(case).await {
             Ok(judged) => {

@@ -19,12 +19,10 @@ use skiagraph_viewer::live::{
     Clock, DesiredMethod, DesiredState, FrameSnapshot, Loaded, MethodSnapshot, Reading, Show, Slot,
     Stage, draw,
 };
-use std::{
-    cell::{Cell, RefCell},
-    collections::BTreeSet,
-    sync::Arc,
-    time::Duration,
-};
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::time::Duration;
 use wasm_bindgen::prelude::*;
 
 /// Longest time that a frame may take; the browser itself ends most devices before.

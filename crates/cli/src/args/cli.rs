@@ -2,14 +2,12 @@
 //! 3 no usable GPU, or it was lost or hangs, 4 a condition of `--fail-if` does not hold, 5 worse
 //! than `--baseline`, 130 stopped by Ctrl-C.
 
-use crate::args::{
-    commands::{
-        ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, DoctorArgs, GraphArgs, JudgeArgs,
-        MergeArgs, NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs, ShowArgs,
-        StressArgs, TruthArgs, ViewArgs,
-    },
-    shared::GpuArgs,
+use crate::args::commands::{
+    ChartArgs, CheckArgs, CompareArgs, CompletionsArgs, DoctorArgs, GraphArgs, JudgeArgs,
+    MergeArgs, NewArgs, PresetsArgs, ProfileArgs, ReportArgs, RunArgs, SchemaArgs, ShowArgs,
+    StressArgs, TruthArgs, ViewArgs,
 };
+use crate::args::shared::GpuArgs;
 use clap::{Parser, Subcommand};
 
 /// Runs, times and judges shadow methods that are written as RON graphs and WGSL shaders.

@@ -10,19 +10,15 @@ use crate::terminal::{Terminal, interrupt, stop};
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::files::watch::{self, Watch};
 use skiagraph_compare::graphs::faults::{GraphFaults, warn};
-use skiagraph_compare::graphs::idle_params;
-use skiagraph_compare::graphs::light_kinds;
 use skiagraph_compare::graphs::planning::{self, Capabilities, Checked, Trial};
-use skiagraph_compare::graphs::preset;
+use skiagraph_compare::graphs::{idle_params, light_kinds, preset};
 use skiagraph_compare::measuring::device;
 use skiagraph_compare::records::check::{CheckReport, FileReport};
 use skiagraph_graph::{Diagnostics, Graph, Plan, Sources};
 use skiagraph_passes::{names::LIGHT, registry};
 use skiagraph_scene::{DirectionalLight, LightKind};
-use std::{
-    sync::{Arc, mpsc},
-    time::Duration,
-};
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
 
 /// Time until Ctrl-C is noticed at the latest.
 const LISTENING: Duration = Duration::from_millis(100);

@@ -24,10 +24,8 @@ use skiagraph_report::overview::Overview;
 use skiagraph_report::summary_table::{self, Summary};
 use skiagraph_report::table::terminal;
 use skiagraph_report::{baseline_text, markdown, matrices, page, results_table};
-use std::{
-    io::IsTerminal,
-    path::{Path, PathBuf},
-};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
 
 /// Checks all arguments, then measures the methods on each scene and prints and saves the results.
 ///

@@ -12,13 +12,11 @@ use skiagraph_compare::graphs::method::{self, Method};
 use skiagraph_compare::graphs::planning::Capabilities;
 use skiagraph_compare::graphs::{preset, shadow_method};
 use skiagraph_compare::lists::unique;
-use skiagraph_compare::measuring::{
-    device,
-    frame_sequence::MovingParts,
-    ground_truth::PrimaryVisibility,
-    scene_folders::{check_kind, scene_folders},
-    view_or_path::{ViewOrPath, under_lights},
-};
+use skiagraph_compare::measuring::device;
+use skiagraph_compare::measuring::frame_sequence::MovingParts;
+use skiagraph_compare::measuring::ground_truth::PrimaryVisibility;
+use skiagraph_compare::measuring::scene_folders::{check_kind, scene_folders};
+use skiagraph_compare::measuring::view_or_path::{ViewOrPath, under_lights};
 use skiagraph_compare::records::{budgets::Budgets, published};
 use skiagraph_compare::sink::Session;
 use skiagraph_compare::size::Size;

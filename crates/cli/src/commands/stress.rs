@@ -9,16 +9,13 @@ use itertools::Itertools;
 use skiagraph_cases::HardCase;
 use skiagraph_compare::files::json::to_text;
 use skiagraph_compare::files::write::write_whole;
-use skiagraph_compare::graphs::shadow_method;
-use skiagraph_compare::graphs::{method, preset};
+use skiagraph_compare::graphs::{method, preset, shadow_method};
 use skiagraph_compare::measuring::device;
 use skiagraph_compare::measuring::ground_truth::PrimaryVisibility;
 use skiagraph_compare::measuring::hard_case::{HardCaseContext, MethodRun};
 use skiagraph_compare::measuring::hard_cases::{cases, check_exact, check_pictures, claim, plan};
-use skiagraph_compare::records::results::PROGRAM;
 use skiagraph_compare::records::stress::{Column, Report, Verdict};
-use skiagraph_compare::sink::Session;
-use skiagraph_compare::sink::Sink;
+use skiagraph_compare::sink::{Session, Sink};
 use skiagraph_compare::wording::{command_line, plural};
 use skiagraph_gpu::timing::Trust;
 use skiagraph_report::stress_matrix;
@@ -62,15 +59,8 @@ pub async fn stress(args: &StressArgs, gpu: &GpuArgs) -> Result<(), CliError> {
         viewport,
         pictures: args.save.as_deref(),
     };
-    let mut report = Report {
-        schema: 1,
-        program: PROGRAM.into(),
-        // Nothing is timed, so whether timestamps can be trusted is of no interest.
-        adapter: device::describe(&gpu, Trust::Trusted),
-        viewport,
-        methods: methods.iter().map(|run| run.column.clone()).collect(),
-        cases: Vec::new(),
-    };
+    // Nothing is timed, so whether timestamps can be trusted is of no interest.
+    let mut report = context.report(device::describe(&gpu, Trust::Trusted));
     interrupt::install()?;
     progress::begin_quietly("hard cases", cases.len() as u64, "cases");
     let outcome = run(&context, &cases, &mut report, args).await;

@@ -3,10 +3,8 @@
 use crate::error::CliError;
 use skiagraph_compare::error::{CompareError, advice, causes, io_advice, rendered};
 use skiagraph_gpu::ExecuteError;
-use std::{
-    io::{self, IsTerminal, Write},
-    process::ExitCode,
-};
+use std::io::{self, IsTerminal, Write};
+use std::process::ExitCode;
 
 /// True if standard error takes colours: it is a terminal, and `NO_COLOR` (<https://no-color.org>)
 /// is not set.

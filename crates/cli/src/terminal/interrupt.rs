@@ -4,12 +4,10 @@
 use crate::error::CliError;
 use crate::terminal::{console, progress::Terminal, stop};
 use skiagraph_compare::{files::write::remove_unfinished, sink::Sink};
-use std::{
-    process,
-    sync::{Mutex, MutexGuard, PoisonError, atomic::Ordering},
-    thread,
-    time::Duration,
-};
+use std::sync::atomic::Ordering;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use std::{process, thread};
 
 /// Work that looks for a stop does so ten times a second. Other work (a hierarchy that is built, a
 /// shader that a driver compiles, a file that is read) may take minutes.

@@ -8,12 +8,11 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use skiagraph_compare::sink::Sink;
 use skiagraph_compare::wording::or_nothing;
 use skiagraph_graph::{Diagnostic, diagnostics};
-use std::{
-    io::{self, IsTerminal},
-    sync::{Mutex, MutexGuard, Once, PoisonError, atomic::AtomicBool},
-    thread,
-    time::{Duration, Instant},
-};
+use std::io::{self, IsTerminal};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// Time between two lines in a pipe.
 const PERIOD: Duration = Duration::from_secs(5);

@@ -1,10 +1,8 @@
 //! State of a stop that Ctrl-C requests: whether one is requested, and which part of the program
 //! ends it.
 
-use std::{
-    sync::atomic::{AtomicBool, AtomicU8, Ordering},
-    thread,
-};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::thread;
 
 static RAISED: AtomicBool = AtomicBool::new(false);
 

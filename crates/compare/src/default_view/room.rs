@@ -3,9 +3,8 @@
 use crate::records::statistics::median;
 use glam::{DVec2, DVec3};
 use itertools::Itertools;
-use skiagraph_reference::{
-    BACKGROUND, Class, GroundTruthPixels, Oracle, OracleMode, Progress, sight::Sight, sight::sights,
-};
+use skiagraph_reference::sight::{Sight, sights};
+use skiagraph_reference::{BACKGROUND, Class, GroundTruthPixels, Oracle, OracleMode, Progress};
 use skiagraph_scene::{Camera, LightKind, Mesh, Parts, PointLight, View};
 use std::cell::OnceCell;
 use std::collections::BTreeMap;

@@ -17,15 +17,11 @@
 //! ```
 
 use skiagraph_graph::{Picture, Sources};
-use skiagraph_scene::{
-    Light, Mesh,
-    packed_masks::{mask_words, shadow_words},
-};
-use std::{
-    collections::BTreeMap,
-    fmt,
-    sync::{Arc, Mutex, PoisonError},
-};
+use skiagraph_scene::packed_masks::{mask_words, shadow_words};
+use skiagraph_scene::{Light, Mesh};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A hash of texts and numbers, the same on every machine. FNV-1a of 64 bits (Fowler, Noll, Vo): it
 /// detects changes, not forgeries.

@@ -13,14 +13,11 @@
 
 use crate::error::{CompareError, Result};
 use crate::sink::Sink;
-use std::{
-    fs::{File, TryLockError},
-    io,
-    path::Path,
-    sync::atomic::Ordering,
-    thread,
-    time::Duration,
-};
+use std::fs::{File, TryLockError};
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+use std::{io, thread};
 use web_time::Instant;
 
 /// Name of the lock file for stress.json, the results of one `skiagraph stress` command. The lock

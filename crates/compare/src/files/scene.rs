@@ -17,10 +17,8 @@
 use crate::error::{CompareError, Result};
 use crate::files::write::{folder_of, write_new};
 use skiagraph_scene::{MeshSource, SceneFile, View, scene_text};
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Writes a scene file to `path`, whole or not at all. Its views are `first`, then the views of
 /// `scene` whose names are not among these. The path of its mesh is written relative to the file's

@@ -12,13 +12,11 @@
 
 use crate::files::write::folder_of;
 use notify::{EventKind, RecursiveMode, Watcher};
-use std::{
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-    sync::mpsc,
-    thread,
-    time::Duration,
-};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
 
 /// Editors write a file in several steps; after the first one it is waited so long for the rest.
 const SETTLING: Duration = Duration::from_millis(60);

@@ -13,13 +13,10 @@
 //! ```
 
 use crate::error::{CompareError, Result};
-use std::{
-    fs,
-    io::{self, Write},
-    mem,
-    path::{Component, Path, PathBuf},
-    sync::{Mutex, MutexGuard, PoisonError},
-};
+use std::io::{self, Write};
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::{fs, mem};
 
 /// Checks, before anything runs, that files can be written: their folders exist and are writable,
 /// and no two files are the same. Each item is a file with the name of the option or work that

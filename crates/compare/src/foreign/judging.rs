@@ -32,7 +32,7 @@ use crate::graphs::ground_truth::Judgement;
 use crate::graphs::shadow_method::Outputs;
 use crate::measuring::device::{self, GpuRequest};
 use crate::measuring::ground_truth::{
-    GroundTruthView, PrimaryVisibility, REFERENCE_SAMPLES, by_rows, own_counts,
+    GroundTruthView, PrimaryVisibility, REFERENCE_SAMPLES, built_oracle, by_rows, own_counts,
 };
 use crate::measuring::view_or_path::ViewOrPath;
 use crate::pictures::run_pictures::{
@@ -40,20 +40,15 @@ use crate::pictures::run_pictures::{
 };
 use crate::records::judged_pictures::{JudgedPicture, JudgedPictures};
 use crate::records::results::{Answer, AreaReference, Images, PROGRAM};
-use crate::sink::{Session, Sink, Step};
+use crate::sink::{Session, Sink};
 use crate::wording::{percent, plural, size, thousands};
 use skiagraph_passes::{EmbeddedSources, SceneProvider};
-use skiagraph_reference::{
-    Class, GroundTruth, Oracle, OracleMode, Statistics, candidates, unattributable,
-};
+use skiagraph_reference::{Class, GroundTruth, OracleMode, Statistics, candidates, unattributable};
 use skiagraph_scene::{Scene, View};
-use std::{
-    borrow::Cow,
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-    rc::Rc,
-    sync::Arc,
-};
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Source of the surface that each pixel shows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -256,9 +251,8 @@ pub(crate) async fn truth<'a>(
     sink: &dyn Sink,
 ) -> Result<Truth<'a>> {
     let (camera, light) = (view.camera(viewport), scene.light_of(view));
-    let step = Step::begin(sink, &format!("hierarchy of {}", scene.name), 1, "steps");
-    let oracle = Rc::new(Oracle::new(&scene.mesh));
-    step.end();
+    let name = format!("hierarchy of {}", scene.name);
+    let oracle = built_oracle(&scene.mesh, &name, sink);
     let what = format!("{} {}", view.name, size(viewport));
     let traced = |primitives: Vec<u32>| {
         let heard = (&*what, sink);

@@ -14,11 +14,10 @@
 use crate::error::{CompareError, Result};
 use crate::files::fingerprint::Fingerprint;
 use crate::graphs::argument::{Assignment, MethodArgument};
-use crate::graphs::contract;
-use crate::graphs::openings;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::preset::{self, Preset};
 use crate::graphs::variants::{self, MAP_SIZE, Setting};
+use crate::graphs::{contract, openings};
 use crate::lists::unique;
 use crate::wording::unknown;
 use itertools::Itertools;

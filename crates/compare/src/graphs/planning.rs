@@ -13,10 +13,8 @@
 
 use crate::graphs::light_kinds;
 use glam::Vec3;
-use skiagraph_gpu::{
-    Provider,
-    device::{Gpu, adapter_facts, partial},
-};
+use skiagraph_gpu::Provider;
+use skiagraph_gpu::device::{Gpu, adapter_facts, partial};
 use skiagraph_graph::{
     AdapterFacts, Code, Diagnostic, Diagnostics, Graph, PartialBackend, Plan, PlanRequest,
     Registry, Sources, Span,

@@ -25,11 +25,9 @@ use skiagraph_graph::{
     Sources,
 };
 use skiagraph_passes::{EmbeddedSources, registry};
-use std::{
-    collections::BTreeMap,
-    path::Path,
-    sync::{Arc, Once},
-};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Arc, Once};
 
 /// Name of the output with the share of light that reaches each pixel, from 0 in shadow to 1 in
 /// full light.

@@ -25,11 +25,9 @@ use skiagraph_gpu::Content;
 use skiagraph_graph::{Code, Diagnostic, Diagnostics, Sources};
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Class, GroundTruthPixels, image::Shown, statistics::status};
-use std::{
-    borrow::Cow,
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Loads graphs by names or paths, and refuses those that are not shadow methods: the output
 /// `visibility` is missing, or a kind of light is unknown.

@@ -12,10 +12,8 @@
 use crate::measuring::device::{adapter, describe, machine, timestamp_trust};
 use crate::records::abilities::{Abilities, Ability, Limits};
 use crate::records::results::{Adapter, PROGRAM};
-use skiagraph_gpu::{
-    block_on,
-    device::{self, Gpu},
-};
+use skiagraph_gpu::block_on;
+use skiagraph_gpu::device::{self, Gpu};
 use skiagraph_scene::{SceneLibrary, library::ASSETS_VARIABLE};
 
 /// Lists the adapters of this machine through all backends, the preferred one first.

@@ -23,11 +23,9 @@ use crate::error::{CompareError, Result, with_causes};
 use crate::files::write::{folder_of, write_whole};
 use crate::records::results::{Adapter, Machine};
 use crate::wording::or_nothing;
-use skiagraph_gpu::{
-    Pipelines, block_on,
-    device::{self, Gpu, GpuError, Wanted},
-    timing::{self, Trust},
-};
+use skiagraph_gpu::device::{self, Gpu, GpuError, Wanted};
+use skiagraph_gpu::timing::{self, Trust};
+use skiagraph_gpu::{Pipelines, block_on};
 use skiagraph_graph::Graph;
 use skiagraph_scene::Limit;
 use std::{path::PathBuf, time::Duration};

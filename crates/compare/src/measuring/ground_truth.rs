@@ -34,7 +34,7 @@ use skiagraph_reference::{
     shimmer::{Seen, same_receivers},
     texels, wrong_surfaces,
 };
-use skiagraph_scene::{Camera, LightKind};
+use skiagraph_scene::{Camera, LightKind, Mesh};
 use std::rc::Rc;
 
 /// The graph that every comparison draws first, as far as its output `primitive` needs: which one
@@ -266,6 +266,14 @@ impl<'a> GroundTruthView<'a> {
         let jump = LayerJump::measured(self.seen(), [&shown, &shares], layers, truth);
         jump.map_err(|error| CompareError::Input(format!("no jump between layers: {error}")))
     }
+}
+
+/// Builds the oracle of a mesh, as a step with this name.
+pub(crate) fn built_oracle<'m>(mesh: &'m Mesh, name: &str, sink: &dyn Sink) -> Rc<Oracle<'m>> {
+    let step = Step::begin(sink, name, 1, "steps");
+    let oracle = Rc::new(Oracle::new(mesh));
+    step.end();
+    oracle
 }
 
 /// Runs the oracle as [`GroundTruthView::new`] does, and returns its answers alone.

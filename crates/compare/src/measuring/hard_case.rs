@@ -35,27 +35,26 @@ use crate::graphs::light_kinds;
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::graphs::shadow_method::Outputs;
-use crate::measuring::frame;
 use crate::measuring::ground_truth::{
     GroundTruthView, PrimaryVisibility, REFERENCE_SAMPLES, own_counts,
 };
 use crate::measuring::guarantee::{self, WITHOUT_CULLING};
-use crate::measuring::steady;
 use crate::measuring::stop::Stop;
+use crate::measuring::{frame, steady};
 use crate::pictures::run_pictures::{PicturePlace, draw_pictures, stem, write_pictures};
-use crate::records::stress::{Case, Casters, Cell, Column, Counts, OutsideBand, Verdict};
+use crate::records::results::{Adapter, PROGRAM};
+use crate::records::stress::{Case, Casters, Cell, Column, Counts, OutsideBand, Report, Verdict};
 use crate::sink::{Session, Sink};
 use itertools::Itertools;
 use skiagraph_cases::HardCase;
 use skiagraph_passes::SceneProvider;
 use skiagraph_reference::{Class, Error, GroundTruth, Oracle, OracleMode, PixelCounts, Statistics};
 use skiagraph_scene::Scene;
-use std::{
-    borrow::Cow,
-    iter,
-    path::Path,
-    sync::{Arc, atomic::AtomicBool},
-};
+use std::borrow::Cow;
+use std::iter;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// A method to be run on stress cases, with its guarantee.
 pub struct MethodRun {
@@ -147,6 +146,18 @@ pub struct HardCaseContext<'a> {
 }
 
 impl HardCaseContext<'_> {
+    /// Begins the report on these methods, without any case.
+    pub fn report(&self, adapter: Adapter) -> Report {
+        Report {
+            schema: 1,
+            program: PROGRAM.into(),
+            adapter,
+            viewport: self.viewport,
+            methods: self.methods.iter().map(|run| run.column.clone()).collect(),
+            cases: Vec::new(),
+        }
+    }
+
     /// Runs on a case every method that is not [unavailable](Column::unavailable) and takes the
     /// case's kind of light. Returns the case with the pixel counts and verdict of each.
     ///

@@ -31,11 +31,9 @@ use crate::records::shard::Shard;
 use crate::sink::{Session, Silent};
 use crate::wording::plural;
 use itertools::Itertools;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fs,
-    path::{Path, PathBuf},
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// One scene of a plan.
 #[derive(Clone, Copy)]

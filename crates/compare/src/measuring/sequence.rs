@@ -9,8 +9,9 @@ use crate::records::results::Answer;
 use crate::records::samples::TimedFrame;
 use crate::records::sequence::{FrameCost, Sequence, SequenceFrame};
 use crate::records::statistics::ms;
+use skiagraph_reference::shimmer::shimmer;
 use skiagraph_reference::{
-    BlockerCounts, EdgeDistances, Graded, JudgedPixels, Shimmer, Statistics, shimmer::shimmer,
+    BlockerCounts, EdgeDistances, Graded, JudgedPixels, Shimmer, Statistics,
 };
 use std::collections::VecDeque;
 

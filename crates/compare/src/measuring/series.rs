@@ -32,7 +32,7 @@ use crate::graphs::faults::{is_mistake, reasons};
 use crate::graphs::method::Method;
 use crate::graphs::planning::Capabilities;
 use crate::measuring::frame_sequence::FrameSequence;
-use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView, trace};
+use crate::measuring::ground_truth::{GroundTruthFrames, GroundTruthView, built_oracle, trace};
 use crate::measuring::resume::Kept;
 use crate::measuring::run::{Judged, MeasureContext};
 use crate::measuring::stop::attempt;
@@ -99,12 +99,6 @@ pub async fn run(comparison: &Comparison, session: Session<'_>) -> Result<Result
         broken if broken.is_empty() => Ok(series.results),
         broken => Err(CompareError::InvalidOutputs(broken)),
     }
-}
-
-/// The message on a method whose document is at fault.
-fn mistake(run: &Run) -> String {
-    let reason = run.unavailable.as_deref().unwrap_or_default();
-    format!("`{}` cannot run: {reason}", run.preset)
 }
 
 /// Bytes of methods that are timed in turns, where the device does not tell what it has.
@@ -378,8 +372,7 @@ impl<'a> Series<'a> {
         // The anchor's run is that of its first group.
         let anchors = usize::from(index > 0);
         for (place, mut run) in places.iter().zip(runs).skip(anchors) {
-            let (published, scene) = (&self.comparison.published, &self.results.scene.name);
-            attach(published, scene, &mut run);
+            self.attach_published(&mut run);
             let kept = self.done_before(*place);
             self.results.runs[kept] = run;
         }
@@ -404,8 +397,7 @@ impl<'a> Series<'a> {
             Ok(plan) => plan,
             Err(refusal) => {
                 let run = unavailable(reasons(refusal.iter()));
-                let is_mistake = is_mistake(refusal.iter());
-                self.broken.extend(is_mistake.then(|| mistake(&run)));
+                self.blame(&refusal, &run);
                 return Ok(Err(run));
             }
         };
@@ -434,6 +426,15 @@ impl<'a> Series<'a> {
                 step.end();
                 Ok(outcome?.map_err(unavailable))
             }
+        }
+    }
+
+    /// Keeps a message on a method whose document is at fault for its refusal.
+    fn blame(&mut self, refusal: &Diagnostics, run: &Run) {
+        if is_mistake(refusal.iter()) {
+            let reason = run.unavailable.as_deref().unwrap_or_default();
+            let message = format!("`{}` cannot run: {reason}", run.preset);
+            self.broken.insert(message);
         }
     }
 
@@ -482,8 +483,7 @@ impl<'a> Series<'a> {
                     unavailable: Some(reasons(refusal.iter())),
                     ..run.clone()
                 };
-                let is_mistake = is_mistake(refusal.iter());
-                self.broken.extend(is_mistake.then(|| mistake(&run)));
+                self.blame(&refusal, &run);
                 self.done(place, run);
                 self.save(&[])?;
             }
@@ -555,19 +555,17 @@ impl<'a> Series<'a> {
     /// Returns the oracle of the scene's own mesh.
     fn still_oracle(&self) -> Rc<Oracle<'a>> {
         let scene = &self.comparison.scene;
-        let oracle = self.oracle.get_or_init(|| {
-            let name = format!("hierarchy of {}", scene.name);
-            let step = Step::begin(self.session.sink, &name, 1, "steps");
-            let oracle = Oracle::new(&scene.mesh);
-            step.end();
-            Rc::new(oracle)
-        });
-        oracle.clone()
+        let name = format!("hierarchy of {}", scene.name);
+        let build = || built_oracle(&scene.mesh, &name, self.session.sink);
+        self.oracle.get_or_init(build).clone()
+    }
+
+    fn attach_published(&self, run: &mut Run) {
+        attach(&self.comparison.published, &self.results.scene.name, run);
     }
 
     fn done(&mut self, place: usize, mut run: Run) {
-        let (published, scene) = (&self.comparison.published, &self.results.scene.name);
-        attach(published, scene, &mut run);
+        self.attach_published(&mut run);
         let index = self.done_before(place);
         self.results.runs.insert(index, run);
         self.is_done[place] = true;

@@ -11,11 +11,9 @@ use crate::records::steady::{Cycle, EarlyPicture, Steady};
 use crate::sink::Session;
 use skiagraph_gpu::{Content, Executor};
 use skiagraph_reference::GroundTruth;
-use std::{
-    collections::VecDeque,
-    hash::{DefaultHasher, Hash, Hasher},
-    rc::Rc,
-};
+use std::collections::VecDeque;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::rc::Rc;
 
 /// The longest period that is looked for, unless the plan tells a longer one.
 const LONGEST: usize = 16;

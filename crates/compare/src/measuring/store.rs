@@ -14,10 +14,8 @@ use crate::records::results::{Results, Run};
 use crate::records::results_csv;
 use crate::sink::{Silent, Sink};
 use itertools::Itertools;
-use std::{
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 /// The cells in a folder, and what else a comparison writes there.
 pub struct Store {

@@ -12,10 +12,8 @@ use crate::records::results::PROGRAM;
 use crate::sink::Sink;
 use crate::wording::{plural, thousands};
 use skiagraph_scene::{Camera, LightKind, Mesh};
-use std::{
-    fs, io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// A folder with a file for each frame of which the reference's answers are known.
 pub struct TruthFolder {

@@ -29,7 +29,7 @@ use crate::error::{CompareError, Result};
 use crate::graphs::method::{Method, ParamValues, as_json};
 use crate::graphs::variants::MAP_SIZE;
 use crate::lists::entry;
-use crate::measuring::ground_truth::GroundTruthView;
+use crate::measuring::ground_truth::{GroundTruthView, built_oracle};
 use crate::measuring::search::{Axis, Trial, search};
 use crate::measuring::trial::{Limits, TrialView, Trials};
 use crate::measuring::view_or_path::ViewOrPath;
@@ -41,9 +41,8 @@ use itertools::Itertools;
 use skiagraph_gpu::timing::Trust;
 use skiagraph_graph::{Param, ParamType, ParamValue};
 use skiagraph_passes::SceneProvider;
-use skiagraph_reference::Oracle;
 use skiagraph_scene::{Scene, View};
-use std::{rc::Rc, sync::Arc};
+use std::sync::Arc;
 
 /// Work of a new executor with its pipelines, as a multiple of that of a frame. Of each run there
 /// are two, for answers and for diagnostics of the map; a search has one, and changes it.
@@ -313,9 +312,7 @@ async fn trial_views<'s>(
     provider: &mut SceneProvider,
     (views, viewport): (Vec<View>, [u32; 2]),
 ) -> Result<Vec<TrialView<'s>>> {
-    let step = Step::begin(session.sink, "hierarchy to tune with", 1, "steps");
-    let oracle = Rc::new(Oracle::new(&scene.mesh));
-    step.end();
+    let oracle = built_oracle(&scene.mesh, "hierarchy to tune with", session.sink);
     let protocol = &comparison.protocol;
     let how = (protocol.oracle, protocol.reference_samples);
     let mut trial_views = Vec::with_capacity(views.len());

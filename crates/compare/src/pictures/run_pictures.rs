@@ -18,10 +18,8 @@ use crate::pictures::png;
 use crate::records::results::Images;
 use crate::wording::size;
 use skiagraph_reference::{Error, Footprint, GroundTruth, GroundTruthPixels, Image};
-use std::{
-    collections::BTreeMap,
-    path::{Path, PathBuf},
-};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// A picture or data file in memory. It is written together with the figures of its run.
 #[derive(Clone)]

@@ -20,11 +20,9 @@ use crate::records::sources::Kept;
 use crate::wording::plural;
 use itertools::Itertools;
 use serde_json::Value;
-use std::{
-    collections::BTreeMap,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Name of the folder of the files of cells, below that of the results.
 pub(crate) const FOLDER: &str = "cells";

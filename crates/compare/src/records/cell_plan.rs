@@ -24,10 +24,8 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 use skiagraph_graph::SourceFile;
 use skiagraph_scene::Limit;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    path::{Component, Path},
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Component, Path};
 
 /// Name of the copy of the plan in a folder of cells.
 pub const FILE: &str = "cells.jsonl";

@@ -23,12 +23,10 @@ use crate::files::write::{write_durable, write_new};
 use crate::records::cell_files::{FOLDER, read};
 use crate::records::results::{Results, Run};
 use itertools::Itertools;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fs,
-    path::{Path, PathBuf},
-    time::SystemTime,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// When a file was written last, and its length; `None` if there is none.
 type Stamp = Option<(SystemTime, u64)>;

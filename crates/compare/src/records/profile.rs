@@ -22,10 +22,8 @@ use crate::records::statistics::{Series, Spread};
 use crate::wording::size;
 use serde::{Deserialize, Serialize};
 use skiagraph_graph::{MemoryEntry, PassSummary};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    path::Path,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 /// Value of [`Profile::kind`], which tells a profile from the results of `compare`.
 pub const KIND: &str = "profile";

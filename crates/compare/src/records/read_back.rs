@@ -24,10 +24,8 @@ use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::Value;
 use skiagraph_graph::SourceFile;
 use skiagraph_scene::Limit;
-use std::{
-    fs, io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// Advice for messages on a `results.json` that cannot be used: how to go on without it.
 pub const WITHOUT_RESULTS: &str =

@@ -24,12 +24,11 @@
 
 use crate::error::{CompareError, Result};
 use crate::lists::unique;
-use crate::records::read_back;
 use crate::records::regimes::{AT_REST_MS, Regime};
 use crate::records::results::{Measured, Results, Run};
 use crate::records::statistics::{FrameTimes, Spread};
 use crate::records::turns::{LEAST_TURNS, Ratio};
-use crate::records::unpaired;
+use crate::records::{read_back, unpaired};
 use crate::wording::{plural, size, thousands};
 use itertools::Itertools;
 use std::path::Path;

@@ -1,28 +1,22 @@
 //! [`Loaded`]: a document that was read, with its shaders and pictures.
 
-use super::{
-    reader::{IncludeSite, Reader, label},
-    used::{Used, drop_unused},
-};
-use crate::{
-    diagnostics::{Diagnostic, Diagnostics, Reported, Reports, Severity},
-    document::{Document, ImportEntry},
-    errors::{compose::ComposeError, resource::SizeError, shader::ShaderError},
-    expressions::parser,
-    kinds::{Registry, StandIn},
-    language::{Leaf, Name},
-    param::{Param, ParamError, find},
-    picture::Picture,
-    shader::{ShaderFiles, Shaders, mixed, store, unused},
-    source::{
-        Located, SourceFile, Sources, Span,
-        paths::{escapes, include_candidates, module_candidates},
-    },
-};
-use std::{
-    collections::{BTreeMap, BTreeSet, HashMap},
-    sync::Arc,
-};
+use super::reader::{IncludeSite, Reader, label};
+use super::used::{Used, drop_unused};
+use crate::diagnostics::{Diagnostic, Diagnostics, Reported, Reports, Severity};
+use crate::document::{Document, ImportEntry};
+use crate::errors::compose::ComposeError;
+use crate::errors::resource::SizeError;
+use crate::errors::shader::ShaderError;
+use crate::expressions::parser;
+use crate::kinds::{Registry, StandIn};
+use crate::language::{Leaf, Name};
+use crate::param::{Param, ParamError, find};
+use crate::picture::Picture;
+use crate::shader::{ShaderFiles, Shaders, mixed, store, unused};
+use crate::source::paths::{escapes, include_candidates, module_candidates};
+use crate::source::{Located, SourceFile, Sources, Span};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// A document that was read, with all documents, shaders and pictures that it names.
 #[derive(Debug)]
@@ -150,32 +144,30 @@ impl Loaded {
     fn unused(&self, reports: &mut Reports) {
         let document = &self.document;
         let used = Used::new(document, &self.shaders);
+        let mut check = |what, name: Located<String>, is_used: bool| {
+            if document.is_own(&name.span) && !is_used {
+                reports.warn(ComposeError::Unused(what, name));
+            }
+        };
         for material in &document.materials {
             let name = material.name();
-            if document.is_own(&name.span) && !used.materials.contains(name.as_str()) {
-                reports.warn(ComposeError::Unused("material", name.text()));
-            }
+            let is_used = used.materials.contains(name.as_str());
+            check("material", name.text(), is_used);
         }
         for (name, _) in &document.values {
             let is_used =
                 used.params.contains(name.as_str()) || used.materials.contains(name.as_str());
-            if document.is_own(&name.span) && !is_used {
-                reports.warn(ComposeError::Unused("value", name.text()));
-            }
+            check("value", name.text(), is_used);
         }
         for param in &document.params[..document.declared] {
-            if document.is_own(&param.name.span) && !used.params.contains(&param.name.value) {
-                reports.warn(ComposeError::Unused("param", param.name.clone()));
-            }
+            let is_used = used.params.contains(&param.name.value);
+            check("param", param.name.clone(), is_used);
         }
         let imported = self.shaders.imported();
         for entry in &document.imports {
             let path = self.shaders.module(&entry.of);
-            if document.is_own(&entry.of.span)
-                && path.is_some_and(|path| !imported.contains(&**path))
-            {
-                reports.warn(ComposeError::Unused("import", entry.of.clone()));
-            }
+            let is_used = path.is_none_or(|path| imported.contains(&**path));
+            check("import", entry.of.clone(), is_used);
         }
         for (unused, shader) in self.unused_in_shaders() {
             reports.warn(ShaderError::Unused(unused.what, unused.name, shader));

@@ -1,26 +1,19 @@
 //! Reads a document with all that it extends and includes.
 
 use super::unique;
-use crate::{
-    diagnostics::{Diagnostic, ErrorGuaranteed, Label, Reports, suggest::likeness},
-    document::{
-        Document, Entry, Include, Invalid, RawDocument, What, extend::extend, raw, read,
-        typed::each_include,
-    },
-    errors::compose::ComposeError,
-    kinds::Registry,
-    language::{Expr, Leaf, Name},
-    param::Param,
-    source::{
-        Located, SourceFile, Sources, Span,
-        paths::{escapes, folder_of, include_candidates},
-        sources,
-    },
-};
-use std::{
-    collections::{BTreeMap, BTreeSet, HashMap},
-    sync::Arc,
-};
+use crate::diagnostics::suggest::likeness;
+use crate::diagnostics::{Diagnostic, ErrorGuaranteed, Label, Reported, Reports};
+use crate::document::extend::extend;
+use crate::document::typed::each_include;
+use crate::document::{Document, Entry, Include, Invalid, RawDocument, What, raw, read};
+use crate::errors::compose::ComposeError;
+use crate::kinds::Registry;
+use crate::language::{Expr, Leaf, Name};
+use crate::param::Param;
+use crate::source::paths::{escapes, folder_of, include_candidates};
+use crate::source::{Located, SourceFile, Sources, Span, sources};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Deepest chain of includes or extended documents; far above any sensible house, far below the
 /// stack.
@@ -36,7 +29,7 @@ pub(crate) struct Reader<'a> {
     sources: &'a dyn Sources,
     pub reports: &'a mut Reports,
     /// By path.
-    read: HashMap<String, Result<Arc<Document>, ErrorGuaranteed>>,
+    read: HashMap<String, Reported<Arc<Document>>>,
     /// The documents that are being read, outermost first, with the include that asks for each.
     open: Vec<(String, Option<Span>)>,
     /// Every place where a document is extended or included, in the order in which they were read.
@@ -71,7 +64,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads the document at `path` with all that it includes.
-    pub fn root(&mut self, path: &str) -> Result<Document, ErrorGuaranteed> {
+    pub fn root(&mut self, path: &str) -> Reported<Document> {
         let file = self.file(path)?;
         let document = self.document(file, None)?;
         let openings = document.openings();
@@ -88,12 +81,12 @@ impl<'a> Reader<'a> {
 
     /// Reads the document at `path`, with the documents that it extends merged in. Includes are not
     /// read.
-    pub fn flat(&mut self, path: &str) -> Result<RawDocument, ErrorGuaranteed> {
+    pub fn flat(&mut self, path: &str) -> Reported<RawDocument> {
         let file = self.file(path)?;
         self.raw(file, &mut Vec::new())
     }
 
-    fn file(&mut self, path: &str) -> Result<SourceFile, ErrorGuaranteed> {
+    fn file(&mut self, path: &str) -> Reported<SourceFile> {
         let error = match sources::read(self.sources, path) {
             Ok(Some(text)) => return Ok(SourceFile::new(path, text)),
             Ok(None) => {
@@ -113,11 +106,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads a document, which is asked for at `by`.
-    fn document(
-        &mut self,
-        file: SourceFile,
-        by: Option<Span>,
-    ) -> Result<Document, ErrorGuaranteed> {
+    fn document(&mut self, file: SourceFile, by: Option<Span>) -> Reported<Document> {
         self.open.push((file.name.to_string(), by));
         let raw = self.raw(file, &mut Vec::new());
         let document = raw.map(|raw| {
@@ -136,11 +125,7 @@ impl<'a> Reader<'a> {
 
     /// The sections of a document with those of the documents that it extends; `chain` are the ones
     /// that extend it.
-    fn raw(
-        &mut self,
-        file: SourceFile,
-        chain: &mut Vec<String>,
-    ) -> Result<RawDocument, ErrorGuaranteed> {
+    fn raw(&mut self, file: SourceFile, chain: &mut Vec<String>) -> Reported<RawDocument> {
         let mut own = raw::split(file, self.reports)?;
         let Some(node) = own.extends.take() else {
             return Ok(own);
@@ -176,7 +161,7 @@ impl<'a> Reader<'a> {
         depth
     }
 
-    fn include(&mut self, include: &mut Include) -> Result<Arc<Document>, ErrorGuaranteed> {
+    fn include(&mut self, include: &mut Include) -> Reported<Arc<Document>> {
         let file = match self.chosen_for(include) {
             Some(path) => {
                 include.graph.value = path.clone();
@@ -239,7 +224,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The file of a document, beside the one in which its name is written or in `pipelines/`.
-    fn find(&mut self, graph: &Located<String>) -> Result<SourceFile, ErrorGuaranteed> {
+    fn find(&mut self, graph: &Located<String>) -> Reported<SourceFile> {
         if escapes(graph) {
             return Err(self.reports.report(ComposeError::Outside(graph.clone())));
         }
@@ -297,8 +282,7 @@ impl<'a> Reader<'a> {
         let mut exposed: Vec<(Param, Span)> = Vec::new();
         for (entry, include, inner) in document.includes() {
             for name in &include.expose.names {
-                let mut params = inner.params.iter();
-                let Some(param) = params.find(|param| *param.name.value == **name) else {
+                let Some(param) = inner.param(name) else {
                     self.reports.report(no_param(name.clone(), inner));
                     continue;
                 };

@@ -1,13 +1,11 @@
 //! Checks that names are unique: those of materials, groups, includes and their outputs, of passes,
 //! and of a document's outputs.
 
-use crate::{
-    diagnostics::Reports,
-    document::{Document, Entry, Invalid, What},
-    errors::compose::ComposeError,
-    language::{Name, wgsl_identifier},
-    source::Located,
-};
+use crate::diagnostics::Reports;
+use crate::document::{Document, Entry, Invalid, What};
+use crate::errors::compose::ComposeError;
+use crate::language::{Name, wgsl_identifier};
+use crate::source::Located;
 use std::collections::HashMap;
 
 /// Reports each name that is declared twice. Conditions do not count: two declarations may not
@@ -54,8 +52,7 @@ fn check_value(document: &Document, name: &Located<Name>, reports: &mut Reports)
 /// The name of an open include is set as a param is, and told apart from them.
 fn check_openings(document: &Document, reports: &mut Reports) {
     for (name, _) in document.openings() {
-        let mut params = document.params.iter();
-        if let Some(param) = params.find(|param| *param.name.value == *name.value.as_str()) {
+        if let Some(param) = document.param(name.as_str()) {
             let (what, first) = ("param and open include", param.name.span.clone());
             reports.report(ComposeError::SameName(what, name.text(), first));
         }

@@ -1,17 +1,14 @@
 //! Finds the names that a document uses, and drops what it inherits by `extends` without using it.
 
-use crate::{
-    diagnostics::Reports,
-    document::{Document, typed::each_include},
-    errors::compose::ComposeError,
-    language::{Leaf, Name},
-    shader::{Shader, Shaders},
-    source::{Located, Span},
-};
-use std::{
-    collections::{BTreeSet, HashMap},
-    sync::Arc,
-};
+use crate::diagnostics::Reports;
+use crate::document::Document;
+use crate::document::typed::each_include;
+use crate::errors::compose::ComposeError;
+use crate::language::{Leaf, Name};
+use crate::shader::{Shader, Shaders};
+use crate::source::{Located, Span};
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Names of materials and params that a document uses.
 #[derive(Default)]

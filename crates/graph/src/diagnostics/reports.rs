@@ -55,7 +55,7 @@ impl Reports {
 
     /// Reports that the device cannot do something that the graph needs. If the device is not known
     /// ([`any_adapter`](Self::any_adapter)), this is a warning, and the result is `Ok`.
-    pub fn unsupported(&mut self, mistake: impl Into<Diagnostic>) -> Result<(), ErrorGuaranteed> {
+    pub fn unsupported(&mut self, mistake: impl Into<Diagnostic>) -> Reported<()> {
         if self.any_adapter {
             self.warn(mistake);
             return Ok(());

@@ -1,23 +1,17 @@
 //! Reads the entries of `passes`: passes, included documents, and groups of entries.
 
-use super::{
-    raw::{Invalid, RawEntry, RawMap, stem},
-    typed::{Entry, Expose, Include, Pass, Run, What},
-};
-use crate::{
-    diagnostics::{Diagnostic, Reports},
-    errors::document::DocumentError,
-    fields::Mentions,
-    kinds::{Lowering, OF_PASS, Program, Registry, Step},
-    language::{Expr, Name, RESERVED, Reference},
-    source::Located,
-};
+use super::raw::{Invalid, RawEntry, RawMap, stem};
+use super::typed::{Entry, Expose, Include, Pass, Run, What};
+use crate::diagnostics::{Diagnostic, Reports};
+use crate::errors::document::DocumentError;
+use crate::fields::Mentions;
+use crate::kinds::{Lowering, OF_PASS, Program, Registry, Step};
+use crate::language::{Expr, Name, RESERVED, Reference};
+use crate::source::Located;
 use serde::Deserialize;
-use skiagraph_located_ron::{
-    fields::{from_fields, from_some_fields},
-    mistakes::{missing_field, unknown_field},
-    reader::{Field, Node},
-};
+use skiagraph_located_ron::fields::{from_fields, from_some_fields};
+use skiagraph_located_ron::mistakes::{missing_field, unknown_field};
+use skiagraph_located_ron::reader::{Field, Node};
 
 /// The tags that are no pass kinds.
 const COMPOSITION: [&str; 2] = ["Include", "Group"];

@@ -1,9 +1,7 @@
 //! `extends`: a document is another one with edits, as if the result had been written out.
 
-use super::{
-    raw::{Invalid, REMOVE, RawDocument, RawEntry, RawItem, RawMap},
-    typed::{Narrow, Output},
-};
+use super::raw::{Invalid, REMOVE, RawDocument, RawEntry, RawItem, RawMap};
+use super::typed::{Narrow, Output};
 use crate::{diagnostics::Reports, errors::edit::EditError, source::Located};
 use skiagraph_located_ron::reader::{Field, Node};
 use std::collections::HashMap;

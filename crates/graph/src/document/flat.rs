@@ -1,9 +1,7 @@
 //! Writes a document out with everything that it extends, each line with its origin.
 
-use super::{
-    raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap},
-    typed::Document,
-};
+use super::raw::{Invalid, RawDocument, RawEntry, RawItem, RawMap};
+use super::typed::Document;
 use crate::source::Span;
 use skiagraph_located_ron::reader::{Field, Node};
 

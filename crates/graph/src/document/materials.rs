@@ -1,17 +1,13 @@
 //! Materials: the textures, buffers and samplers of a document ("material" is Nau3D's word for what
 //! passes share), and the inputs that an includer or the host gives.
 
-use crate::{
-    errors::document::DocumentError,
-    fields::{Compare, by_text},
-    language::{Expr, FORMATS, Leaf, Name, Reference, format_named},
-    source::Located,
-};
+use crate::errors::document::DocumentError;
+use crate::fields::{Compare, by_text};
+use crate::language::{Expr, FORMATS, Leaf, Name, Reference, format_named};
+use crate::source::Located;
 use serde::Deserialize;
-use skiagraph_located_ron::{
-    mistakes::unknown_word,
-    reader::{read, refuse},
-};
+use skiagraph_located_ron::mistakes::unknown_word;
+use skiagraph_located_ron::reader::{read, refuse};
 
 /// A declared material.
 #[derive(Clone, Debug)]

@@ -1,13 +1,11 @@
 //! Reads the params that a document declares.
 
+use crate::diagnostics::Diagnostic;
+use crate::errors::document::DocumentError;
 use crate::fields::prose;
-use crate::{
-    diagnostics::Diagnostic,
-    errors::document::DocumentError,
-    language::{Expr, ExprKind, Name, Value, Word},
-    param::{Param, ParamType, ParamValue},
-    source::Located,
-};
+use crate::language::{Expr, ExprKind, Name, Value};
+use crate::param::{Param, ParamType, ParamValue};
+use crate::source::Located;
 use serde::Deserialize;
 use skiagraph_located_ron::{fields::from_fields, reader::Field};
 use std::collections::{BTreeMap, HashSet};
@@ -125,10 +123,7 @@ fn constant(expr: &Expr) -> Option<Value> {
     };
     Some(match &expr.kind {
         ExprKind::Literal(value) => value.clone(),
-        ExprKind::Word(word) => Value::Word(Word {
-            word: word.clone(),
-            of: None,
-        }),
+        ExprKind::Word(word) => Value::word(word),
         ExprKind::Tuple(list) => Value::List(list.iter().map(scalar).collect::<Option<_>>()?),
         _ => return None,
     })

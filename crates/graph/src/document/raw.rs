@@ -1,18 +1,13 @@
 //! A document as sections of raw RON. [`extend`](super::extend) edits the sections, and
 //! [`typed`](super::typed) reads them.
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reports},
-    errors::{document::DocumentError, edit::EditError},
-    source::{Located, SourceFile, Span},
-};
-use skiagraph_located_ron::{
-    mistakes::{field_twice, unknown_field},
-    reader::{Field, Node},
-};
-use std::{
-    collections::{HashMap, HashSet},
-    sync::Arc,
-};
+use crate::diagnostics::{ErrorGuaranteed, Reported, Reports};
+use crate::errors::document::DocumentError;
+use crate::errors::edit::EditError;
+use crate::source::{Located, SourceFile, Span};
+use skiagraph_located_ron::mistakes::{field_twice, unknown_field};
+use skiagraph_located_ron::reader::{Field, Node};
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 /// Most entries of a list or map as it is written; each may name all others, so time may grow with
 /// the square.
@@ -125,58 +120,32 @@ pub(crate) fn stem(path: &str) -> &str {
 }
 
 /// All sections of a document: each name, with a sentence about its content.
+#[rustfmt::skip] // A section each.
 pub(crate) const SECTIONS: [(&str, &str); 17] = [
     ("format", "The version of the language, 3."),
     ("extends", "Another document, of which this one is an edit."),
     ("description", "A sentence, shown by `skiagraph presets`."),
-    (
-        "requires",
-        "Features of the device, by wgpu's names, without which the graph does not run.",
-    ),
-    (
-        "needs",
-        "Conditions on the viewport, the scene and its lights that must hold for a plan.",
-    ),
+    ("requires", "Features of the device, by wgpu's names, without which the graph does not run."),
+    ("needs", "Conditions on the viewport, the scene and its lights that must hold for a plan."),
     ("params", "Values from outside."),
-    (
-        "set",
-        "Other defaults for params of the extended document, or of included ones that are exposed.",
-    ),
-    (
-        "values",
-        "Expressions with a name, for every expression and shader of the document.",
-    ),
-    (
-        "narrow",
-        "Fewer words for a `Choice`, of this document's own or of an exposed one, with the reason.",
-    ),
-    (
-        "imports",
-        "Modules that shaders import in the place of others.",
-    ),
+    ("set",
+     "Other defaults for params of the extended document, or of included ones that are exposed."),
+    ("values", "Expressions with a name, for every expression and shader of the document."),
+    ("narrow",
+     "Fewer words for a `Choice`, of this document's own or of an exposed one, with the reason."),
+    ("imports", "Modules that shaders import in the place of others."),
     ("inputs", "Materials that the includer gives, or the host."),
-    (
-        "materials",
-        "Textures, buffers and samplers that passes share.",
-    ),
+    ("materials", "Textures, buffers and samplers that passes share."),
     ("passes", "Steps of the method, in this order."),
     ("outputs", "Materials that the graph gives."),
     ("lights", "The kinds of light that the method takes."),
-    (
-        "proven_on",
-        "Backends short of WebGPU, such as `gl`, on which the graph is known to be right.",
-    ),
-    (
-        "claims",
-        "Promises of the method, by `exact` and `certain`.",
-    ),
+    ("proven_on",
+     "Backends short of WebGPU, such as `gl`, on which the graph is known to be right."),
+    ("claims", "Promises of the method, by `exact` and `certain`."),
 ];
 
 /// Splits a document into its sections. Mistakes in a section are reported.
-pub(crate) fn split(
-    file: SourceFile,
-    reports: &mut Reports,
-) -> Result<RawDocument, ErrorGuaranteed> {
+pub(crate) fn split(file: SourceFile, reports: &mut Reports) -> Reported<RawDocument> {
     if !file.text.contains('(') {
         return Err(reports.report(DocumentError::NoDocument(file)));
     }
@@ -241,7 +210,7 @@ struct Sections<'r> {
 }
 
 impl Sections<'_> {
-    fn format(&mut self, file: &SourceFile) -> Result<(), ErrorGuaranteed> {
+    fn format(&mut self, file: &SourceFile) -> Reported<()> {
         let Some(node) = self.nodes.get("format") else {
             let begin = file.span(0..1.min(file.text.len()));
             self.reports.report(DocumentError::NoFormat(begin));
@@ -312,7 +281,7 @@ fn item(node: &Node, section: &'static str) -> Result<RawItem, crate::diagnostic
     Ok(RawItem { tag, fields })
 }
 
-fn list(node: &Node, reports: &mut Reports) -> Result<Vec<Node>, ErrorGuaranteed> {
+fn list(node: &Node, reports: &mut Reports) -> Reported<Vec<Node>> {
     let nodes = reports.check(node.list())?;
     few("list", nodes, |node| node, reports)
 }
@@ -323,7 +292,7 @@ fn few<T>(
     entries: Vec<T>,
     span: fn(&T) -> &Span,
     reports: &mut Reports,
-) -> Result<Vec<T>, ErrorGuaranteed> {
+) -> Reported<Vec<T>> {
     match entries.get(MOST_ENTRIES) {
         None => Ok(entries),
         Some(first) => Err(reports.report(DocumentError::TooMany {

@@ -1,21 +1,19 @@
 //! Reads the sections of a document; a mistake in one part does not hide the others.
 
-use super::{
-    entries,
-    extend::no_edits,
-    materials::{BufferInput, FormatEntry, Input, InputKind, Material, SamplerInput, TextureInput},
-    params,
-    raw::{RawDocument, RawItem, RawMap},
-    typed::Document,
+use super::extend::no_edits;
+use super::materials::{
+    BufferInput, FormatEntry, Input, InputKind, Material, SamplerInput, TextureInput,
 };
-use crate::{
-    diagnostics::{Diagnostic, ErrorGuaranteed, Reports},
-    errors::{document::DocumentError, language::SyntaxFault},
-    fields::one_line,
-    kinds::Registry,
-    language::{Expr, Name, RESERVED},
-    source::Located,
-};
+use super::raw::{RawDocument, RawItem, RawMap};
+use super::typed::Document;
+use super::{entries, params};
+use crate::diagnostics::{Diagnostic, ErrorGuaranteed, Reports};
+use crate::errors::document::DocumentError;
+use crate::errors::language::SyntaxFault;
+use crate::fields::one_line;
+use crate::kinds::Registry;
+use crate::language::{Expr, Name, RESERVED};
+use crate::source::Located;
 use serde::de::DeserializeOwned;
 use skiagraph_located_ron::{fields::from_fields, reader::Node};
 

@@ -1,18 +1,14 @@
 //! The typed form of a document: every value is parsed, no name is looked up yet.
 
-use super::{
-    materials::{Input, Material},
-    raw::Invalid,
-};
-use crate::{
-    diagnostics::ErrorGuaranteed,
-    errors::document::DocumentError,
-    fields::{Mentions, by_text, prose, short_or_long},
-    kinds::{PassKind, ShaderUse},
-    language::{Expr, Leaf, Name, Reference},
-    param::Param,
-    source::{Located, SourceFile, Span},
-};
+use super::materials::{Input, Material};
+use super::raw::Invalid;
+use crate::diagnostics::{ErrorGuaranteed, Reported};
+use crate::errors::document::DocumentError;
+use crate::fields::{Mentions, by_text, prose, short_or_long};
+use crate::kinds::{PassKind, ShaderUse};
+use crate::language::{Expr, Leaf, Name, Reference};
+use crate::param::Param;
+use crate::source::{Located, SourceFile, Span};
 use serde::Deserialize;
 use skiagraph_located_ron::reader::{read, refuse};
 use std::{collections::BTreeSet, sync::Arc};
@@ -234,7 +230,7 @@ pub(crate) struct Include {
     pub is_named: bool,
     pub expose: Expose,
     /// The included document; `None` until it is read.
-    pub document: Option<Result<Arc<Document>, ErrorGuaranteed>>,
+    pub document: Option<Reported<Arc<Document>>>,
 }
 
 impl Include {
@@ -284,6 +280,11 @@ impl Document {
     /// includes.
     pub fn is_own(&self, span: &Span) -> bool {
         span.file.name == self.file.name
+    }
+
+    /// Returns the param with a name, its own or an exposed one.
+    pub fn param(&self, name: &str) -> Option<&Param> {
+        self.params.iter().find(|param| param.name.value == name)
     }
 
     /// Returns the number of extensions between this document and the one that `span` lies in: 0

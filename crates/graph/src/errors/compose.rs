@@ -1,9 +1,7 @@
 //! Documents that cannot be found, or do not go together.
 
-use crate::{
-    language::Name,
-    source::{Located, Span},
-};
+use crate::language::Name;
+use crate::source::{Located, Span};
 
 mistakes! {
     /// A document that cannot be found, or does not go together with another.

@@ -1,9 +1,7 @@
 //! Documents that cannot be read.
 
-use crate::{
-    language::{Name, NameFault, RESERVED},
-    source::{Located, SourceFile, Span},
-};
+use crate::language::{Name, NameFault, RESERVED};
+use crate::source::{Located, SourceFile, Span};
 
 mistakes! {
     /// A mistake in the text of a document.

@@ -1,9 +1,7 @@
 //! Edits of an extended document that cannot be made.
 
-use crate::{
-    language::Name,
-    source::{Located, Span},
-};
+use crate::language::Name;
+use crate::source::{Located, Span};
 
 const PLACES: &str = "say `before`, `after` or `instead: \"entry\"`; without one, an entry stands \
     behind the new one above it";

@@ -1,10 +1,8 @@
 //! Mistakes of expressions that cannot be evaluated.
 
 use super::language::attributes;
-use crate::{
-    language::{Attribute, Name, Scalar, Value},
-    source::{Located, Span},
-};
+use crate::language::{Attribute, Name, Scalar, Value};
+use crate::source::{Located, Span};
 
 mistakes! {
     /// An expression without a value, or with one of the wrong type.

@@ -1,10 +1,8 @@
 //! Mistakes in the order of passes.
 
 use super::link::read_previous;
-use crate::{
-    resource::name_within,
-    source::{Located, Span},
-};
+use crate::resource::name_within;
+use crate::source::{Located, Span};
 
 mistakes! {
     /// A mistake in the order of passes: a read before the write, a cycle, or different run

@@ -1,9 +1,7 @@
 //! Mistakes between documents: params, inputs, outputs, names.
 
-use crate::{
-    param::{Param, ParamFault, ParamValue},
-    source::{Located, Span},
-};
+use crate::param::{Param, ParamFault, ParamValue};
+use crate::source::{Located, Span};
 
 mistakes! {
     /// A param that has no value, or a wrong one.

@@ -1,9 +1,7 @@
 //! Mistakes in expressions and references.
 
-use crate::{
-    language::{Attribute, Function, NameFault},
-    source::{Located, Span},
-};
+use crate::language::{Attribute, Function, NameFault};
+use crate::source::{Located, Span};
 
 mistakes! {
     /// An expression or reference that cannot be read.

@@ -1,11 +1,9 @@
 //! Passes whose shaders, attachments, copies or dispatches do not fit.
 
-use crate::{
-    language::Value,
-    param::Param,
-    scalar_class::{ItemScalar, ShaderType},
-    source::{Located, Span},
-};
+use crate::language::Value;
+use crate::param::Param;
+use crate::scalar_class::{ItemScalar, ShaderType};
+use crate::source::{Located, Span};
 use wgt::TextureFormat;
 
 mistakes! {

@@ -1,15 +1,13 @@
 //! Evaluates expressions.
 
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reports},
-    errors::evaluation::EvaluationError,
-    language::{
-        AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference,
-        Scalar, Subject, Unary, Value, Word,
-    },
-    provided_kind::ProvidedKind,
-    source::Span,
+use crate::diagnostics::{ErrorGuaranteed, Reported, Reports};
+use crate::errors::evaluation::EvaluationError;
+use crate::language::{
+    AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference, Scalar,
+    Subject, Unary, Value, Word,
 };
+use crate::provided_kind::ProvidedKind;
+use crate::source::Span;
 use std::{cmp::Ordering, mem::discriminant};
 
 /// Gives the names in an expression their values, at the place where the expression stands.
@@ -32,12 +30,12 @@ pub(crate) trait Environment {
         false
     }
 
-    fn param(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
+    fn param(&mut self, name: &str, span: &Span) -> Reported<Value>;
 
     /// True if a param or a named value has this name.
     fn is_param(&self, name: &str) -> bool;
 
-    fn index(&mut self, entry: Option<&Name>, span: &Span) -> Result<u32, ErrorGuaranteed>;
+    fn index(&mut self, entry: Option<&Name>, span: &Span) -> Reported<u32>;
 
     /// Returns the remainder of the frame's number by `length`, in a condition on frames; `None`
     /// elsewhere.
@@ -50,9 +48,9 @@ pub(crate) trait Environment {
         material: &Reference,
         attribute: Attribute,
         span: &Span,
-    ) -> Result<Value, ErrorGuaranteed>;
+    ) -> Reported<Value>;
 
-    fn constant(&mut self, name: &str, span: &Span) -> Result<Value, ErrorGuaranteed>;
+    fn constant(&mut self, name: &str, span: &Span) -> Reported<Value>;
 
     /// Returns the kind of a provided resource, by its name; `None` if it has none.
     fn kind(&mut self, _name: &str) -> Option<ProvidedKind> {
@@ -66,13 +64,11 @@ pub(crate) trait Environment {
     }
 }
 
-type Evaluated<T> = Result<T, ErrorGuaranteed>;
-
 /// Evaluates an expression. A mistake in it is reported to `env`.
-pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Value> {
+pub(crate) fn value(expr: &Expr, env: &mut dyn Environment) -> Reported<Value> {
     match &expr.kind {
         ExprKind::Literal(value) => Ok(value.clone()),
-        ExprKind::Word(word) => Ok(word_alone(word)),
+        ExprKind::Word(word) => Ok(Value::word(word)),
         ExprKind::Tuple(list) => {
             let list = list.iter().map(|expr| scalar(expr, env));
             Ok(Value::List(list.collect::<Result<_, _>>()?))
@@ -124,7 +120,7 @@ fn component(
     whole: &Value,
     at: Component,
     env: &mut dyn Environment,
-) -> Evaluated<Value> {
+) -> Reported<Value> {
     let number = match whole {
         Value::List(list) => list.get(at as usize),
         _ => None,
@@ -139,7 +135,7 @@ fn component(
     Ok(Value::Scalar(number))
 }
 
-fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> Evaluated<Value> {
+fn of_viewport(expr: &Expr, attribute: Attribute, env: &mut dyn Environment) -> Reported<Value> {
     let [width, height] = env.viewport();
     Ok(match attribute {
         Attribute::Size => {
@@ -167,25 +163,25 @@ fn wrong(
     env.report(error)
 }
 
-pub(crate) fn boolean(expr: &Expr, env: &mut dyn Environment) -> Evaluated<bool> {
+pub(crate) fn boolean(expr: &Expr, env: &mut dyn Environment) -> Reported<bool> {
     match value(expr, env)? {
         Value::Bool(value) => Ok(value),
         other => Err(wrong(expr, "true or false", &other, env)),
     }
 }
 
-pub(crate) fn scalar(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Scalar> {
+pub(crate) fn scalar(expr: &Expr, env: &mut dyn Environment) -> Reported<Scalar> {
     match value(expr, env)? {
         Value::Scalar(scalar) => Ok(scalar),
         other => Err(wrong(expr, "a number", &other, env)),
     }
 }
 
-pub(crate) fn number(expr: &Expr, env: &mut dyn Environment) -> Evaluated<f64> {
+pub(crate) fn number(expr: &Expr, env: &mut dyn Environment) -> Reported<f64> {
     scalar(expr, env).map(Scalar::number)
 }
 
-pub(crate) fn whole_number(expr: &Expr, env: &mut dyn Environment) -> Evaluated<i64> {
+pub(crate) fn whole_number(expr: &Expr, env: &mut dyn Environment) -> Reported<i64> {
     match value(expr, env)? {
         Value::Scalar(Scalar::Whole(whole)) => Ok(whole),
         other => Err(wrong(expr, "a whole number", &other, env)),
@@ -193,18 +189,18 @@ pub(crate) fn whole_number(expr: &Expr, env: &mut dyn Environment) -> Evaluated<
 }
 
 /// Evaluates an expression that must be an integer of at least 0.
-pub(crate) fn count(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u64> {
+pub(crate) fn count(expr: &Expr, env: &mut dyn Environment) -> Reported<u64> {
     let whole = whole_number(expr, env)?;
     not_negative(expr, whole, 0, env)
 }
 
-fn not_negative(expr: &Expr, number: i64, least: u32, env: &mut dyn Environment) -> Evaluated<u64> {
+fn not_negative(expr: &Expr, number: i64, least: u32, env: &mut dyn Environment) -> Reported<u64> {
     let negative = || EvaluationError::Negative(expr.span.clone(), number, least);
     u64::try_from(number).map_err(|_| env.report(negative()))
 }
 
 /// Evaluates an expression that must be an integer from 0 to `u32::MAX`.
-pub(crate) fn count32(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u32> {
+pub(crate) fn count32(expr: &Expr, env: &mut dyn Environment) -> Reported<u32> {
     let whole = whole_number(expr, env)?;
     let count = not_negative(expr, whole, 1, env)?;
     let large = || EvaluationError::Large(expr.span.clone(), count);
@@ -213,7 +209,7 @@ pub(crate) fn count32(expr: &Expr, env: &mut dyn Environment) -> Evaluated<u32> 
 
 /// Evaluates a size: two or three edges, each an integer of at least 0. A single number is a
 /// square.
-pub(crate) fn edges(expr: &Expr, env: &mut dyn Environment) -> Evaluated<Vec<u64>> {
+pub(crate) fn edges(expr: &Expr, env: &mut dyn Environment) -> Reported<Vec<u64>> {
     let list = match value(expr, env)? {
         Value::Scalar(edge) => vec![edge; 2],
         Value::List(list) if list.len() < 4 => list,
@@ -237,7 +233,7 @@ fn binary(
     operator: Binary,
     [left, right]: &[Expr; 2],
     env: &mut dyn Environment,
-) -> Evaluated<Value> {
+) -> Reported<Value> {
     let holds: fn(Ordering) -> bool = match operator {
         Binary::Or => return Ok(Value::Bool(boolean(left, env)? || boolean(right, env)?)),
         Binary::And => return Ok(Value::Bool(boolean(left, env)? && boolean(right, env)?)),
@@ -277,7 +273,7 @@ fn binary(
     Ok(Value::Bool(order.is_some_and(holds)))
 }
 
-fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool> {
+fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Reported<bool> {
     let a = value(left, env)?;
     let b = match (&a, right.as_param()) {
         // Beside a word a bare name is a word, too.
@@ -287,7 +283,7 @@ fn equal([left, right]: [&Expr; 2], env: &mut dyn Environment) -> Evaluated<bool
             }),
             Some(name),
         ) => match words.iter().find(|word| ***word == *name) {
-            Some(word) => word_alone(word),
+            Some(word) => Value::word(word),
             None => {
                 let is_param = Name::new(name).is_ok() && env.is_param(name);
                 let resolved = is_param.then(|| env.param(name, &right.span).ok());
@@ -318,7 +314,7 @@ fn call(
     function: Function,
     arguments: &[Expr],
     env: &mut dyn Environment,
-) -> Evaluated<Value> {
+) -> Reported<Value> {
     let mut values = arguments.iter().map(|argument| value(argument, env));
     let first = values.next().transpose()?.unwrap_or(Value::whole(0));
     let second = values.next().transpose()?.unwrap_or(Value::whole(1));
@@ -332,7 +328,7 @@ fn call(
 fn whole_numbers<'v>(
     values: impl Iterator<Item = (&'v Value, &'v Expr)>,
     env: &mut dyn Environment,
-) -> Evaluated<()> {
+) -> Reported<()> {
     let is_whole = |value: &Value| match value {
         Value::Scalar(Scalar::Whole(_)) => true,
         Value::List(list) => list.iter().all(|part| matches!(part, Scalar::Whole(_))),
@@ -350,7 +346,7 @@ fn each(
     values: [Value; 2],
     env: &mut dyn Environment,
     apply: impl Fn(Scalar, Scalar) -> Option<Scalar>,
-) -> Evaluated<Value> {
+) -> Reported<Value> {
     let apply = |a, b| apply(a, b).filter(|result| result.number().is_finite());
     let result = match &values {
         [Value::Scalar(a), Value::Scalar(b)] => apply(*a, *b).map(Value::Scalar),
@@ -372,13 +368,6 @@ fn each(
         }
     };
     result.ok_or_else(|| env.report(EvaluationError::Overflow(expr.span.clone())))
-}
-
-fn word_alone(word: &Name) -> Value {
-    Value::Word(Word {
-        word: word.clone(),
-        of: None,
-    })
 }
 
 /// `None` where the result does not fit.

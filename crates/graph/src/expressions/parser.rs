@@ -2,14 +2,12 @@
 //! strength.
 
 use super::lexer::{Token, tokens};
-use crate::{
-    errors::language::SyntaxFault,
-    language::{
-        AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference,
-        Scalar, Segment, Selection, Subject, Unary, Value, format_named,
-    },
-    source::{Located, SourceFile, Span},
+use crate::errors::language::SyntaxFault;
+use crate::language::{
+    AdapterFact, Attribute, Binary, Component, Expr, ExprKind, Function, Name, Reference, Scalar,
+    Segment, Selection, Subject, Unary, Value, format_named,
 };
+use crate::source::{Located, SourceFile, Span};
 use std::ops::Range;
 
 type Parsed<T> = Result<T, SyntaxFault>;

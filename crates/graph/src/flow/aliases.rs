@@ -2,19 +2,14 @@
 //! in one allocation; buffers of any size lie at places of one, those that are needed at the same
 //! time apart.
 
-use super::{
-    lifetimes::Lifetimes,
-    placing::{ALIGNMENT, Candidate, Placing, Slot, candidates},
-    view::GraphView,
-};
-use crate::{
-    link::{Access, LinkedPass, PassId},
-    resource::{Resource, ResourceId, ResourceKind, SubresourceRange},
-};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    ops::Range,
-};
+use super::lifetimes::Lifetimes;
+use super::placing::{ALIGNMENT, Candidate, Placing, Slot, candidates};
+use super::view::GraphView;
+use crate::link::{Access, LinkedPass, PassId};
+use crate::resource::{Resource, ResourceId, ResourceKind, SubresourceRange};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use wgt::TextureAspect;
 
 /// One allocation: a texture or buffer on the device, and the resources that use it in a frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -217,15 +212,10 @@ fn overwritten(pass: &LinkedPass, resource: &Resource, id: ResourceId) -> bool {
             return whole && covers_first(&mut uses());
         }
     };
-    let aspects = [
-        wgt::TextureAspect::DepthOnly,
-        wgt::TextureAspect::StencilOnly,
-    ];
-    let aspects = if texture.format.is_combined_depth_stencil_format() {
-        &aspects[..]
-    } else {
-        &aspects[..1]
-    };
+    let mut aspects = vec![TextureAspect::DepthOnly];
+    if texture.format.is_combined_depth_stencil_format() {
+        aspects.push(TextureAspect::StencilOnly);
+    }
     let covers = |mip: u32, layer: u32| {
         aspects.iter().all(|aspect| {
             let part = SubresourceRange {

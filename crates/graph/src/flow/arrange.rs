@@ -1,20 +1,14 @@
 //! Order of the passes, derived from what they read and write.
 
 use super::view::{GraphView, Subresources};
-use crate::{
-    diagnostics::Reports,
-    errors::flow::OrderError,
-    link::PassId,
-    resource::{ResourceId, name_within},
-};
-use petgraph::{
-    algo::{astar, kosaraju_scc},
-    graph::{DiGraph, Edge, NodeIndex},
-};
-use std::{
-    cmp::Reverse,
-    collections::{BTreeMap, BTreeSet, BinaryHeap},
-};
+use crate::diagnostics::Reports;
+use crate::errors::flow::OrderError;
+use crate::link::PassId;
+use crate::resource::{ResourceId, name_within};
+use petgraph::algo::{astar, kosaraju_scc};
+use petgraph::graph::{DiGraph, Edge, NodeIndex};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 
 /// Reason for which a pass comes before another one.
 #[derive(Clone, Copy)]

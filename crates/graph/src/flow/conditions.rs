@@ -1,13 +1,11 @@
 //! Groups of passes that run or are skipped together in a frame, by their run conditions.
 
 use super::view::GraphView;
-use crate::{
-    diagnostics::Reports,
-    errors::flow::OrderError,
-    instantiate::Run,
-    link::{Access, LinkedPass, PassId},
-    resource::{Origin, ResourceId},
-};
+use crate::diagnostics::Reports;
+use crate::errors::flow::OrderError;
+use crate::instantiate::Run;
+use crate::link::{Access, LinkedPass, PassId};
+use crate::resource::{Origin, ResourceId};
 use petgraph::unionfind::UnionFind;
 use std::collections::{BTreeMap, BTreeSet};
 

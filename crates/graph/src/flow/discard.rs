@@ -1,10 +1,8 @@
 //! Attachments whose content nothing needs after the pass that draws to them.
 
 use super::{aliases::Alone, schedule::Schedule, view::GraphView};
-use crate::{
-    link::{Access, Usage},
-    resource::{Origin, ResourceId, SubresourceRange, Target},
-};
+use crate::link::{Access, Usage};
+use crate::resource::{Origin, ResourceId, SubresourceRange, Target};
 
 /// Returns the attachments of the pass at position `at` that a device need not store: nothing uses
 /// them after the only step of the pass that does, and their memory is cleared as an attachment

@@ -2,10 +2,8 @@
 //! never created.
 
 use super::view::GraphView;
-use crate::{
-    link::{PassId, Usage},
-    resource::ResourceId,
-};
+use crate::link::{PassId, Usage};
+use crate::resource::ResourceId;
 use std::collections::BTreeMap;
 
 /// Lifetimes in a frame, by resource. Only resources of which a scheduled pass uses the content of

@@ -2,18 +2,14 @@
 //! program: each access uses the content that the passes before it left, which gives the edges of
 //! the dependency graph.
 
-use super::{
-    arrange::writers,
-    view::{GraphView, Subresources},
-};
-use crate::{
-    diagnostics::Reports,
-    errors::flow::OrderError,
-    kinds::Step,
-    link::{Access, LinkedPass, PassId},
-    resource::{ResourceId, ResourceKind, Target, name_within},
-    source::Located,
-};
+use super::arrange::writers;
+use super::view::{GraphView, Subresources};
+use crate::diagnostics::Reports;
+use crate::errors::flow::OrderError;
+use crate::kinds::Step;
+use crate::link::{Access, LinkedPass, PassId};
+use crate::resource::{ResourceId, ResourceKind, Target, name_within};
+use crate::source::Located;
 use petgraph::graph::DiGraph;
 use std::collections::{BTreeMap, BTreeSet};
 

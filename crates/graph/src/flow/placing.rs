@@ -1,15 +1,11 @@
 //! Places of resources in allocations: who may share, and where.
 
-use super::{
-    lifetimes::{Lifetime, Lifetimes},
-    view::GraphView,
-};
-use crate::{
-    instantiate::Run,
-    kinds::Step,
-    link::PassId,
-    resource::{Origin, Resource, ResourceId, ResourceKind},
-};
+use super::lifetimes::{Lifetime, Lifetimes};
+use super::view::GraphView;
+use crate::instantiate::Run;
+use crate::kinds::Step;
+use crate::link::PassId;
+use crate::resource::{Origin, Resource, ResourceId, ResourceKind};
 use std::collections::BTreeMap;
 
 /// Every place of a buffer in an allocation is a multiple of this number of bytes: the greatest

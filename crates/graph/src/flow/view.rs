@@ -1,9 +1,7 @@
 //! Input of the steps of this phase: linked passes, and the resources that they use.
 
-use crate::{
-    link::{LinkedPass, PassId},
-    resource::{Resource, ResourceId, ResourceKind, SubresourceRange},
-};
+use crate::link::{LinkedPass, PassId};
+use crate::resource::{Resource, ResourceId, ResourceKind, SubresourceRange};
 use petgraph::graph::{DiGraph, NodeIndex};
 use std::collections::BTreeMap;
 

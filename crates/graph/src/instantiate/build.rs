@@ -1,36 +1,30 @@
 //! Flattens documents: walks their entries and resolves conditions, repetitions, groups and
 //! includes.
 
-use super::{
-    flat::{EntryContext, Flat, FlatPass, Interface, Merge, PlanInputs, Round, Run},
-    imports,
-    include::{self, Call},
-    merge::{Asks, Content, Site},
-    modules::WaitingModules,
-    params::Params,
-    runs::runs,
-    scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol},
-    settings::Settings,
-    state::{Declared, DeclaredValue, ValueState},
-    symbols::SymbolTable,
-};
-use crate::{
-    compose::Loaded,
-    diagnostics::{ErrorGuaranteed, Reported, Reports},
-    document::{Document, Entry, Include, Invalid, Pass, What},
-    errors::instantiate::InterfaceError,
-    expressions::eval,
-    language::{Name, Reference},
-    param::ParamType,
-    request::PlanRequest,
-    resource::{Origin, Resource, ResourceId, ResourceKind},
-    shader::{Replaced, Shader},
-    source::{Located, Span},
-};
-use std::{
-    collections::{BTreeMap, BTreeSet, HashMap},
-    sync::Arc,
-};
+use super::flat::{EntryContext, Flat, FlatPass, Interface, Merge, PlanInputs, Round, Run};
+use super::imports;
+use super::include::{self, Call};
+use super::merge::{Asks, Content, Site};
+use super::modules::WaitingModules;
+use super::params::Params;
+use super::runs::runs;
+use super::scopes::{Instance, InstanceId, Names, Position, ScopeId, Symbol};
+use super::settings::Settings;
+use super::state::{Declared, DeclaredValue, ValueState};
+use super::symbols::SymbolTable;
+use crate::compose::Loaded;
+use crate::diagnostics::{ErrorGuaranteed, Reported, Reports};
+use crate::document::{Document, Entry, Include, Invalid, Pass, What};
+use crate::errors::instantiate::InterfaceError;
+use crate::expressions::eval;
+use crate::language::{Name, Reference};
+use crate::param::ParamType;
+use crate::request::PlanRequest;
+use crate::resource::{Origin, Resource, ResourceId, ResourceKind};
+use crate::shader::{Replaced, Shader};
+use crate::source::{Located, Span};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Greatest number of passes (groups and includes among them), and of materials, of a graph. It
 /// guards against documents that double with each include, which would take absurd time and memory.

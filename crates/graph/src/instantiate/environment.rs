@@ -1,15 +1,13 @@
 //! Params, values, materials and constants, as expressions in a document ask for them.
 
 use super::{parts, scopes::Symbol, symbols::At};
-use crate::{
-    diagnostics::{Reported, Reports},
-    errors::evaluation::EvaluationError,
-    expressions::Environment,
-    language::{AdapterFact, Attribute, Name, Reference, Value, least_common_multiple},
-    provided_kind::ProvidedKind,
-    resource::ResourceKind,
-    source::Span,
-};
+use crate::diagnostics::{Reported, Reports};
+use crate::errors::evaluation::EvaluationError;
+use crate::expressions::Environment;
+use crate::language::{AdapterFact, Attribute, Name, Reference, Value, least_common_multiple};
+use crate::provided_kind::ProvidedKind;
+use crate::resource::ResourceKind;
+use crate::source::Span;
 
 impl Environment for At<'_, '_> {
     fn viewport(&self) -> [u32; 2] {

@@ -1,18 +1,14 @@
 //! Result of flattening the tree of entries: one list of passes.
 
-use super::{
-    scopes::{InstanceId, Position, ScopeId},
-    settings::Settings,
-    symbols::{At, SymbolTable},
-};
-use crate::{
-    diagnostics::Reported,
-    document::{Entry, Pass},
-    expressions::eval,
-    language::{Expr, Leaf, Name, Reference},
-    resource::{ResourceId, Target},
-    source::{Located, Span},
-};
+use super::scopes::{InstanceId, Position, ScopeId};
+use super::settings::Settings;
+use super::symbols::{At, SymbolTable};
+use crate::diagnostics::Reported;
+use crate::document::{Entry, Pass};
+use crate::expressions::eval;
+use crate::language::{Expr, Leaf, Name, Reference};
+use crate::resource::{ResourceId, Target};
+use crate::source::{Located, Span};
 use std::{collections::BTreeSet, ops::Range};
 
 /// Frames in which a pass runs, as its document gives them in the pass's field `run`.

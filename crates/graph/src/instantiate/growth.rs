@@ -1,14 +1,12 @@
 //! Growth of materials between frames: first size, counter and greatest size.
 
-use crate::{
-    diagnostics::Reported,
-    document::{BufferEntry, GrowEntry, TextureEntry},
-    errors::resource::SizeError,
-    expressions::{Environment, eval},
-    language::Reference,
-    resource::{Buffer, Growth, Origin, Resource, ResourceKind, Target, Texture},
-    source::Located,
-};
+use crate::diagnostics::Reported;
+use crate::document::{BufferEntry, GrowEntry, TextureEntry};
+use crate::errors::resource::SizeError;
+use crate::expressions::{Environment, eval};
+use crate::language::Reference;
+use crate::resource::{Buffer, Growth, Origin, Resource, ResourceKind, Target, Texture};
+use crate::source::Located;
 
 /// Environment in which the size of a material is found.
 pub(super) trait Sizing: Environment {

@@ -1,16 +1,12 @@
 //! Materials that the host gives: inputs of the loaded document, and pictures that it replaces.
 
-use super::{
-    include,
-    scopes::Symbol,
-    symbols::{At, SymbolTable},
-};
-use crate::{
-    document::{FormatEntry, Input, InputKind, Material},
-    errors::instantiate::InterfaceError,
-    provider::Import,
-    resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Texture},
-};
+use super::include;
+use super::scopes::Symbol;
+use super::symbols::{At, SymbolTable};
+use crate::document::{FormatEntry, Input, InputKind, Material};
+use crate::errors::instantiate::InterfaceError;
+use crate::provider::Import;
+use crate::resource::{Buffer, Origin, Resource, ResourceKind, Sampler, Texture};
 
 /// Adds the host's import for an input of the loaded document, and returns its meaning.
 pub(super) fn imported(input: &Input, at: &mut At<'_, '_>) -> Symbol {

@@ -1,22 +1,18 @@
 //! Includes: a document gets inputs and params by name or by the settings of the include, and gives
 //! its outputs back.
 
-use super::{
-    flat::{EntryContext, PlanInputs},
-    params::{Given, Params, SetParam},
-    scopes::{Instance, Names, Outer, Position, ScopeId, Scopes, Symbol},
-    settings::{Inherited, Settings},
-    symbols::At,
-};
-use crate::{
-    diagnostics::Reported,
-    document::{Document, Entry, Include, Input, InputKind, Material},
-    errors::instantiate::InterfaceError,
-    expressions::{Environment, eval},
-    language::{Expr, ExprKind, Name, Reference},
-    resource::{ResourceKind, Target},
-    source::Located,
-};
+use super::flat::{EntryContext, PlanInputs};
+use super::params::{Given, Params, SetParam};
+use super::scopes::{Instance, Names, Outer, Position, ScopeId, Scopes, Symbol};
+use super::settings::{Inherited, Settings};
+use super::symbols::At;
+use crate::diagnostics::Reported;
+use crate::document::{Document, Entry, Include, Input, InputKind, Material};
+use crate::errors::instantiate::InterfaceError;
+use crate::expressions::{Environment, eval};
+use crate::language::{Expr, ExprKind, Name, Reference};
+use crate::resource::{ResourceKind, Target};
+use crate::source::Located;
 use std::{collections::BTreeMap, sync::Arc};
 
 /// Material of the outer document that an output is written into, with the place that says so.
@@ -72,10 +68,8 @@ pub(super) fn said<'e>(
         let mut border = inputs.chain(document.outputs.iter().map(|output| &output.name));
         border.any(|name| name.as_str() == bound.name.as_str()) || at.is_of_scene(bound.name)
     });
-    settings.set.retain(|setting| {
-        let mut params = document.params.iter();
-        params.any(|param| param.name.value == **setting.name)
-    });
+    let is_param = |setting: &Inherited<'_, Expr>| document.param(setting.name).is_some();
+    settings.set.retain(is_param);
     settings
 }
 
@@ -184,8 +178,7 @@ impl<'e> Call<'e> {
         let mut set: BTreeMap<String, SetParam> = BTreeMap::new();
         for setting in &self.settings.set {
             let (name, expr, place) = (setting.name, setting.value, setting.position);
-            let mut params = self.document.params.iter();
-            if !params.any(|param| param.name.value == name.value) {
+            if self.document.param(name).is_none() {
                 let params = self.document.params.iter();
                 self.unused(name, params.map(|param| param.name.value.clone()), at);
                 continue;

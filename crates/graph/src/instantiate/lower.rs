@@ -1,15 +1,11 @@
 //! Lowers passes to steps: each pass kind turns its body into GPU work, with the values of this
 //! plan.
 
-use super::{
-    flat::{Flat, FlatPass},
-    scopes::InstanceId,
-};
-use crate::{
-    kinds::{Lowering, Names, Operand, ShaderUse, Step},
-    resource::{Origin, Resource, ResourceId, ResourceKind},
-    source::Located,
-};
+use super::flat::{Flat, FlatPass};
+use super::scopes::InstanceId;
+use crate::kinds::{Lowering, Names, Operand, ShaderUse, Step};
+use crate::resource::{Origin, Resource, ResourceId, ResourceKind};
+use crate::source::Located;
 
 /// A pass with its body lowered to steps.
 pub(crate) struct LoweredPass<'a> {

@@ -1,20 +1,17 @@
 //! Kinds and sizes of materials.
 
-use super::{
-    growth::{Sizing, grow_buffer, grow_texture},
-    state::Declared,
-};
-use crate::{
-    compose::Loaded,
-    diagnostics::{Reported, Reports},
-    document::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry},
-    errors::{evaluation::EvaluationError, resource::SizeError},
-    expressions::eval,
-    language::{Expr, ExprKind, Scalar, Value},
-    request::PlanRequest,
-    resource::{Buffer, Growth, ResourceKind, Sampler, Texture},
-    source::{Located, Span},
-};
+use super::growth::{Sizing, grow_buffer, grow_texture};
+use super::state::Declared;
+use crate::compose::Loaded;
+use crate::diagnostics::{Reported, Reports};
+use crate::document::{BufferEntry, FormatEntry, Material, Mips, SamplerEntry, TextureEntry};
+use crate::errors::evaluation::EvaluationError;
+use crate::errors::resource::SizeError;
+use crate::expressions::eval;
+use crate::language::{Expr, ExprKind, Scalar, Value};
+use crate::request::PlanRequest;
+use crate::resource::{Buffer, Growth, ResourceKind, Sampler, Texture};
+use crate::source::{Located, Span};
 use std::sync::Arc;
 
 /// Finds kind, size and growth of a declared material. `full_name` is its key among the sizes that
@@ -275,10 +272,7 @@ fn check_samples(
     }
     let format = texture.format;
     let flags = format.guaranteed_format_features(features).flags;
-    let counts = [1, 2, 4, 8, 16];
-    let counts = counts.into_iter();
-    let supported = counts.filter(|count| flags.sample_count_supported(*count));
-    let supported: Vec<u32> = supported.collect();
+    let supported = flags.supported_sample_counts();
     if supported.contains(&texture.samples) {
         Ok(())
     } else {

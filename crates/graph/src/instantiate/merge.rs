@@ -1,23 +1,17 @@
 //! Merges includes without a name that have the same document, params and bindings. For example, an
 //! include of the G-buffer beside a method that includes it too is drawn once.
 
-use super::{
-    flat::{Merge, Runs},
-    scopes::Names,
-};
-use crate::{
-    diagnostics::Reported,
-    document::{Document, Include},
-    language::{Leaf, wgsl_identifier},
-    param::ParamValue,
-    resource::Target,
-    shader::{Replaced, Shaders},
-};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    ops::Range,
-    sync::Arc,
-};
+use super::flat::{Merge, Runs};
+use super::scopes::Names;
+use crate::diagnostics::Reported;
+use crate::document::{Document, Include};
+use crate::language::{Leaf, wgsl_identifier};
+use crate::param::ParamValue;
+use crate::resource::Target;
+use crate::shader::{Replaced, Shaders};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Everything that the work of an include depends on: two includes with equal content do the same
 /// work and can be merged.

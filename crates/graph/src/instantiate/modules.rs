@@ -1,14 +1,10 @@
 //! Modules that stand in for others in a document's shaders.
 
-use super::{
-    scopes::{Instance, ScopeId},
-    symbols::{At, SymbolTable},
-};
-use crate::{
-    document::{Document, ImportEntry},
-    expressions::Environment,
-    language::Leaf,
-};
+use super::scopes::{Instance, ScopeId};
+use super::symbols::{At, SymbolTable};
+use crate::document::{Document, ImportEntry};
+use crate::expressions::Environment;
+use crate::language::Leaf;
 
 /// Modules that have not taken effect, each with the scope of its document: its condition may need
 /// a value of an include that is not walked yet.

@@ -1,16 +1,15 @@
 //! Values of params: those of the root document come from the request, those of an included
 //! document from the document that includes it.
 
-use crate::{
-    adapter_facts::AdapterFacts,
-    diagnostics::{ErrorGuaranteed, Reported, Reports},
-    document::{ClaimEntry, Document},
-    errors::{evaluation::EvaluationError, instantiate::ParamError},
-    expressions::{Environment, eval},
-    language::{AdapterFact, Attribute, Expr, Name, Reference, Value, wgsl_identifier},
-    param::{Param, ParamValue, find},
-    source::{Located, Span},
-};
+use crate::adapter_facts::AdapterFacts;
+use crate::diagnostics::{ErrorGuaranteed, Reported, Reports};
+use crate::document::{ClaimEntry, Document};
+use crate::errors::evaluation::EvaluationError;
+use crate::errors::instantiate::ParamError;
+use crate::expressions::{Environment, eval};
+use crate::language::{AdapterFact, Attribute, Expr, Name, Reference, Value, wgsl_identifier};
+use crate::param::{Param, ParamValue, find};
+use crate::source::{Located, Span};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Entry of a document's section `claims`: a property that the document's author promises of the

@@ -1,12 +1,11 @@
 //! Parts of resources: the mips, layers or items that references select, and attributes of parts.
 
-use crate::{
-    diagnostics::Diagnostic,
-    errors::{evaluation::EvaluationError, instantiate::InterfaceError},
-    language::{Attribute, Reference, Scalar, Value},
-    resource::{Resource, ResourceKind, Target},
-    source::{Located, Span},
-};
+use crate::diagnostics::Diagnostic;
+use crate::errors::evaluation::EvaluationError;
+use crate::errors::instantiate::InterfaceError;
+use crate::language::{Attribute, Reference, Scalar, Value};
+use crate::resource::{Resource, ResourceKind, Target};
+use crate::source::{Located, Span};
 use std::ops::Range;
 
 /// Returns the word for a target's parts (`layers`, `slices` or `items`) and their number.

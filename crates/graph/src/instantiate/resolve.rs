@@ -1,14 +1,12 @@
 //! Resolution of references: which resource, and which part of it, a name in a document means.
 
 use super::{growth::Sizing, parts, scopes::Symbol, symbols::At};
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reported},
-    errors::instantiate::InterfaceError,
-    expressions::eval,
-    language::{Expr, Reference, Segment, Selection},
-    resource::{Resource, SubresourceRange, Target},
-    source::Located,
-};
+use crate::diagnostics::{ErrorGuaranteed, Reported};
+use crate::errors::instantiate::InterfaceError;
+use crate::expressions::eval;
+use crate::language::{Expr, Reference, Segment, Selection};
+use crate::resource::{Resource, SubresourceRange, Target};
+use crate::source::Located;
 use std::ops::Range;
 
 impl Sizing for At<'_, '_> {

@@ -1,16 +1,12 @@
 //! Frames in which entries run.
 
-use super::{
-    flat::{Run, Runs},
-    symbols::At,
-};
-use crate::{
-    diagnostics::Reported,
-    document::{Entry, Run as RunEntry},
-    errors::evaluation::EvaluationError,
-    expressions::eval,
-    language::{Expr, least_common_multiple},
-};
+use super::flat::{Run, Runs};
+use super::symbols::At;
+use crate::diagnostics::Reported;
+use crate::document::{Entry, Run as RunEntry};
+use crate::errors::evaluation::EvaluationError;
+use crate::expressions::eval;
+use crate::language::{Expr, least_common_multiple};
 use std::sync::Arc;
 
 /// Greatest number of frames after which the run conditions of a graph repeat: a method is

@@ -3,18 +3,14 @@
 //! between two documents.
 
 use super::params::Params;
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reported},
-    document::{Document, Output},
-    language::{Name, wgsl_identifier},
-    resource::Target,
-    shader::Replaced,
-    source::Located,
-};
-use std::{
-    collections::{BTreeMap, HashMap},
-    sync::Arc,
-};
+use crate::diagnostics::{ErrorGuaranteed, Reported};
+use crate::document::{Document, Output};
+use crate::language::{Name, wgsl_identifier};
+use crate::resource::Target;
+use crate::shader::Replaced;
+use crate::source::Located;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
 /// Index of a scope in [`Scopes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,11 +2,9 @@
 //! and included documents.
 
 use super::scopes::Position;
-use crate::{
-    document::Entry,
-    language::{Expr, Reference},
-    source::Located,
-};
+use crate::document::Entry;
+use crate::language::{Expr, Reference};
+use crate::source::Located;
 
 /// A `bind` or `set` with the position at which its expressions are evaluated.
 #[derive(Clone)]

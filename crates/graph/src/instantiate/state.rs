@@ -1,13 +1,11 @@
 //! States of materials whose sizes, and of values whose results, are found on demand.
 
 use super::scopes::{ScopeId, Scopes, Symbol};
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reported},
-    document::{Document, Material},
-    language::{Expr, Leaf, Name, Value},
-    resource::ResourceId,
-    source::Located,
-};
+use crate::diagnostics::{ErrorGuaranteed, Reported};
+use crate::document::{Document, Material};
+use crate::language::{Expr, Leaf, Name, Value};
+use crate::resource::ResourceId;
+use crate::source::Located;
 use std::sync::Arc;
 
 /// State of finding a resource's size.

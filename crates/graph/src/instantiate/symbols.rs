@@ -1,29 +1,25 @@
 //! Resources and values of a plan, and the resolution of references to them.
 
-use super::{
-    growth::Sizing,
-    materials,
-    scopes::{Instance, Position, ScopeId, Scopes, ValueId},
-    state::{Declared, DeclaredValue, State, ValueState},
+use super::growth::Sizing;
+use super::materials;
+use super::scopes::{Instance, Position, ScopeId, Scopes, ValueId};
+use super::state::{Declared, DeclaredValue, State, ValueState};
+use crate::compose::Loaded;
+use crate::diagnostics::{Diagnostic, ErrorGuaranteed, Reported, Reports};
+use crate::errors::evaluation::EvaluationError;
+use crate::expressions::{eval, parser};
+use crate::language::{Expr, Leaf, Reference, Value, wgsl_identifier};
+use crate::provided_kind::ProvidedKind;
+use crate::provider::{Provided, ProvidedBinding};
+use crate::request::PlanRequest;
+use crate::resource::{
+    FRAME, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target,
 };
-use crate::{
-    compose::Loaded,
-    diagnostics::{Diagnostic, ErrorGuaranteed, Reported, Reports},
-    errors::evaluation::EvaluationError,
-    expressions::{eval, parser},
-    language::{Expr, Leaf, Reference, Value, wgsl_identifier},
-    provided_kind::ProvidedKind,
-    provider::{Provided, ProvidedBinding},
-    request::PlanRequest,
-    resource::{FRAME, Origin, Resource, ResourceId, ResourceKind, SubresourceRange, Target},
-    shader::Shader,
-    source::{Located, SourceFile, Span},
-};
-use std::{
-    cell::RefCell,
-    collections::{BTreeMap, BTreeSet, HashMap},
-    sync::Arc,
-};
+use crate::shader::Shader;
+use crate::source::{Located, SourceFile, Span};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Greatest length of a chain of values that use each other; far above any sensible one, far below
 /// the limit of the stack.

@@ -1,9 +1,7 @@
 //! `Clear`: a texture to a value, or a buffer to zero.
 
-use super::{
-    kind::{Lowering, PassKind},
-    step::{Operand, Step},
-};
+use super::kind::{Lowering, PassKind};
+use super::step::{Operand, Step};
 use crate::language::{Expr, Reference};
 use serde::Deserialize;
 

@@ -1,10 +1,8 @@
 //! `Compute`: one dispatch of so many threads or workgroups, or with its size in a buffer.
 
-use super::{
-    entry_name::EntryName,
-    kind::{Lowering, PassKind},
-    step::{Dispatch, Groups, Operand, Step, Threads},
-};
+use super::entry_name::EntryName;
+use super::kind::{Lowering, PassKind};
+use super::step::{Dispatch, Groups, Operand, Step, Threads};
 use crate::language::{Expr, Reference};
 use serde::Deserialize;
 

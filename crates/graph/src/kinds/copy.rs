@@ -1,10 +1,8 @@
 //! `Copy`: a texture or buffer (or last frame's version of one) onto another of equal format and
 //! size.
 
-use super::{
-    kind::{Lowering, PassKind},
-    step::{Operand, Step},
-};
+use super::kind::{Lowering, PassKind};
+use super::step::{Operand, Step};
 use crate::language::Reference;
 use serde::Deserialize;
 

@@ -1,11 +1,9 @@
 //! `Fullscreen`: a fragment shader once per pixel of its targets.
 
-use super::{
-    entry_name::EntryName,
-    kind::{Lowering, PassKind},
-    step::{Draw, DrawCall, Step},
-    targets::{self, ColorEntry, StencilEntry},
-};
+use super::entry_name::EntryName;
+use super::kind::{Lowering, PassKind};
+use super::step::{Draw, DrawCall, Step};
+use super::targets::{self, ColorEntry, StencilEntry};
 use crate::language::Expr;
 use serde::Deserialize;
 

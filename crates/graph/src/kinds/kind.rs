@@ -1,14 +1,12 @@
 //! Pass kinds: types that deserialise the body of an entry in `passes` and lower it to [`Step`]s.
 
 use super::step::{Names, Operand, Program, Scratch, ShaderUse, Step, Threads};
-use crate::{
-    diagnostics::{Code, Diagnostic, ErrorGuaranteed},
-    errors::evaluation::EvaluationError,
-    expressions::{Environment, eval},
-    fields::Chosen,
-    language::{Attribute, Expr, ExprKind, Name, Reference, Scalar, Subject, Value},
-    source::Located,
-};
+use crate::diagnostics::{Code, Diagnostic, Reported};
+use crate::errors::evaluation::EvaluationError;
+use crate::expressions::{Environment, eval};
+use crate::fields::Chosen;
+use crate::language::{Attribute, Expr, ExprKind, Name, Reference, Scalar, Subject, Value};
+use crate::source::Located;
 use std::fmt;
 
 /// A kind of pass, such as `Raster`. A value of the type is the body of one pass, deserialised from
@@ -177,7 +175,7 @@ impl<'a> Lowering<'a> {
     fn evaluate<T>(
         &mut self,
         fallback: T,
-        evaluator: impl FnOnce(&mut dyn Environment) -> Result<T, ErrorGuaranteed>,
+        evaluator: impl FnOnce(&mut dyn Environment) -> Reported<T>,
     ) -> T {
         match &mut self.environment {
             Some(environment) => evaluator(&mut **environment).unwrap_or(fallback),

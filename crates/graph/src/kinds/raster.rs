@@ -1,16 +1,13 @@
 //! `Raster`: a draw call with vertex pulling into colour, depth and stencil attachments.
 
-use super::{
-    entry_name::EntryName,
-    kind::{Lowering, PassKind},
-    step::{Draw, DrawCall, Operand, Step},
-    targets::{self, ColorEntry, DepthEntry, StencilEntry},
-};
-use crate::{
-    errors::{document::DocumentError, evaluation::EvaluationError},
-    fields::{Chosen, by_text},
-    language::{Expr, Reference},
-};
+use super::entry_name::EntryName;
+use super::kind::{Lowering, PassKind};
+use super::step::{Draw, DrawCall, Operand, Step};
+use super::targets::{self, ColorEntry, DepthEntry, StencilEntry};
+use crate::errors::document::DocumentError;
+use crate::errors::evaluation::EvaluationError;
+use crate::fields::{Chosen, by_text};
+use crate::language::{Expr, Reference};
 use serde::Deserialize;
 use skiagraph_located_ron::reader::read;
 use std::ops::Range;

@@ -1,13 +1,11 @@
 //! Registry of the pass kinds that documents may use. Hosts can add kinds of their own.
 
-use super::{
-    clear::Clear,
-    compute::Compute,
-    copy::Copy,
-    fullscreen::Fullscreen,
-    kind::{OF_PASS, PassKind},
-    raster::Raster,
-};
+use super::clear::Clear;
+use super::compute::Compute;
+use super::copy::Copy;
+use super::fullscreen::Fullscreen;
+use super::kind::{OF_PASS, PassKind};
+use super::raster::Raster;
 use crate::{diagnostics::Diagnostic, source::Span};
 use serde::de::DeserializeOwned;
 use skiagraph_located_ron::{fields::from_some_fields, reader::Field};

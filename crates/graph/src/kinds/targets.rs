@@ -1,16 +1,12 @@
 //! Attachments as documents write them.
 
-use super::{
-    blend::Blend,
-    kind::Lowering,
-    step::{ColorTarget, DepthTarget, Names, StencilTarget},
-};
-use crate::{
-    errors::document::DocumentError,
-    fields::{Compare, Load, by_text, short_or_long},
-    language::{Expr, Reference},
-    source::Located,
-};
+use super::blend::Blend;
+use super::kind::Lowering;
+use super::step::{ColorTarget, DepthTarget, Names, StencilTarget};
+use crate::errors::document::DocumentError;
+use crate::fields::{Compare, Load, by_text, short_or_long};
+use crate::language::{Expr, Reference};
+use crate::source::Located;
 use serde::{Deserialize, Deserializer};
 use skiagraph_located_ron::reader::refuse;
 

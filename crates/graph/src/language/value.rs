@@ -84,6 +84,14 @@ impl Value {
         Self::Scalar(Scalar::Whole(number.into()))
     }
 
+    /// Creates a word that is written in an expression.
+    pub(crate) fn word(word: &Name) -> Self {
+        Self::Word(Word {
+            word: word.clone(),
+            of: None,
+        })
+    }
+
     /// Creates the word of a provided kind, with the words of all its kinds as its `Choice`.
     pub(crate) fn kind(kind: ProvidedKind) -> Self {
         // A provider's words are names: others cannot be written.

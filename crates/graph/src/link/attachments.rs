@@ -1,23 +1,18 @@
 //! Draws: colour, depth and stencil attachments, their formats and sizes, outputs of the fragment
 //! shader.
 
-use super::{
-    canvas, dispatch, limits,
-    pass::{Attachment, Ids, LinkedProgram, Usage},
-    programs,
-    scope::PassScope,
-    textures::scalar_of,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    kinds::{ColorTarget, DepthTarget, Draw, Names, StencilTarget},
-    language::Reference,
-    resource::{ResourceKind, Target, Texture},
-    scalar_class::ItemScalar,
-    shader::{Varying, Varyings},
-    source::{Located, Span},
-};
+use super::pass::{Attachment, Ids, LinkedProgram, Usage};
+use super::scope::PassScope;
+use super::textures::scalar_of;
+use super::{canvas, dispatch, limits, programs};
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::kinds::{ColorTarget, DepthTarget, Draw, Names, StencilTarget};
+use crate::language::Reference;
+use crate::resource::{ResourceKind, Target, Texture};
+use crate::scalar_class::ItemScalar;
+use crate::shader::{Varying, Varyings};
+use crate::source::{Located, Span};
 use wgt::{
     Features, TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages,
 };
@@ -74,17 +69,10 @@ pub(super) fn link(draw: &Draw<Names>, scope: &mut PassScope<'_>) -> Reported<Dr
 fn features(draw: &Draw<Names>, scope: &mut PassScope<'_>) -> Reported<()> {
     let features = scope.request().features;
     let primitive = &draw.primitive;
+    #[rustfmt::skip] // A line each.
     let asked = [
-        (
-            primitive.conservative,
-            "conservative: true",
-            Features::CONSERVATIVE_RASTERIZATION,
-        ),
-        (
-            primitive.unclipped_depth,
-            "unclipped: true",
-            Features::DEPTH_CLIP_CONTROL,
-        ),
+        (primitive.conservative, "conservative: true", Features::CONSERVATIVE_RASTERIZATION),
+        (primitive.unclipped_depth, "unclipped: true", Features::DEPTH_CLIP_CONTROL),
     ];
     for (is_asked, field, feature) in asked {
         if is_asked && !features.contains(feature) {
@@ -393,20 +381,18 @@ fn alike(draw: &Draw<Ids>, scope: &PassScope<'_>) -> Result<(), LinkError> {
     let whole = size(first);
     let differs = |other: &&Attachment| size(other) != whole;
     if let Some(other) = drawn.iter().copied().chain(resolved).find(differs) {
-        let error = LinkError::TargetSizes {
+        return Err(LinkError::TargetSizes {
             pass: scope.pass.clone(),
             names: [name(first), name(other)],
             sizes: [whole, size(other)],
-        };
-        return Err(error);
+        });
     }
     if let Some(other) = drawn.iter().find(|other| other.samples != first.samples) {
-        let error = LinkError::TargetSamples {
+        return Err(LinkError::TargetSamples {
             pass: scope.pass.clone(),
             names: [name(first), name(other)],
             samples: [first.samples, other.samples],
-        };
-        return Err(error);
+        });
     }
     let Some([x, y, width, height]) = draw.area else {
         return Ok(());

@@ -1,20 +1,16 @@
 //! Bindings: finds the resource for each global of a shader, and checks that it fits.
 
-use super::{
-    params,
-    pass::{BindTarget, LinkedBinding, LinkedProgram, Usage},
-    scope::PassScope,
-    textures,
-};
-use crate::{
-    diagnostics::Reported,
-    document::Filter,
-    errors::link::LinkError,
-    kinds::Program,
-    provider::ProvidedBinding,
-    resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target},
-    shader::{Class, Global, members::reads_below},
-};
+use super::pass::{BindTarget, LinkedBinding, LinkedProgram, Usage};
+use super::scope::PassScope;
+use super::{params, textures};
+use crate::diagnostics::Reported;
+use crate::document::Filter;
+use crate::errors::link::LinkError;
+use crate::kinds::Program;
+use crate::provider::ProvidedBinding;
+use crate::resource::{CLOCK_BYTES, FRAME_BYTES, ResourceKind, Sampler, SubresourceRange, Target};
+use crate::shader::members::reads_below;
+use crate::shader::{Class, Global};
 use std::num::NonZeroU64;
 use wgt::BufferBindingType::{Storage, Uniform};
 

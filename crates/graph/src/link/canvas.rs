@@ -2,14 +2,13 @@
 //! read.
 
 use super::{pass::LinkedProgram, scope::PassScope};
-use crate::{
-    diagnostics::Reported,
-    errors::{link::LinkError, resource::SizeError},
-    kinds::{Draw, Names},
-    resource::Texture,
-    shader::Shader,
-    source::Located,
-};
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::errors::resource::SizeError;
+use crate::kinds::{Draw, Names};
+use crate::resource::Texture;
+use crate::shader::Shader;
+use crate::source::Located;
 use naga::ShaderStage;
 use std::sync::Arc;
 use wgt::TextureFormat;

@@ -1,21 +1,17 @@
 //! Captures: copies of materials as they stand after a pass.
 
-use super::{
-    covered::{fully_overwrites, within},
-    pass::{CAPTURE, LinkedPass},
-    scope::PassScope,
-    steps,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::plan::OutputError,
-    instantiate::Run,
-    kinds::{Operand, Scratch, Step},
-    provider::Provided,
-    request::Capture,
-    resource::{Buffer, Origin, Resource, ResourceKind, SubresourceRange, Target},
-    source::Located,
-};
+use super::covered::{fully_overwrites, within};
+use super::pass::{CAPTURE, LinkedPass};
+use super::scope::PassScope;
+use super::steps;
+use crate::diagnostics::Reported;
+use crate::errors::plan::OutputError;
+use crate::instantiate::Run;
+use crate::kinds::{Operand, Scratch, Step};
+use crate::provider::Provided;
+use crate::request::Capture;
+use crate::resource::{Buffer, Origin, Resource, ResourceKind, SubresourceRange, Target};
+use crate::source::Located;
 use std::ops::Range;
 
 /// Creates the pass that copies a material as it stands after the last of `passes`: the part of it

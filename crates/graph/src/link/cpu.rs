@@ -1,16 +1,12 @@
 //! Work of the CPU on the items of buffers.
 
-use super::{
-    pass::{Ids, Usage},
-    scope::PassScope,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    kinds::{CpuCall, CpuItems, Names, Operand},
-    resource::{ResourceId, ResourceKind, Target},
-    source::{Located, Span},
-};
+use super::pass::{Ids, Usage};
+use super::scope::PassScope;
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::kinds::{CpuCall, CpuItems, Names, Operand};
+use crate::resource::{ResourceId, ResourceKind, Target};
+use crate::source::{Located, Span};
 
 pub(super) fn link(call: &CpuCall<Names>, scope: &mut PassScope<'_>) -> Reported<CpuCall<Ids>> {
     let source = Usage::Buffer(wgt::BufferUsages::COPY_SRC);

@@ -1,16 +1,12 @@
 //! Sizes of dispatches, and arguments that stand in buffers.
 
-use super::{
-    pass::{Ids, LinkedProgram, Usage},
-    programs,
-    scope::PassScope,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    kinds::{Dispatch, Groups, Names, Operand, Threads},
-    resource::{ResourceKind, Target},
-};
+use super::pass::{Ids, LinkedProgram, Usage};
+use super::programs;
+use super::scope::PassScope;
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::kinds::{Dispatch, Groups, Names, Operand, Threads};
+use crate::resource::{ResourceKind, Target};
 use naga::ShaderStage;
 
 /// Spreads a number of workgroups over two dimensions when one does not hold it:

@@ -2,15 +2,11 @@
 //! values between stages, numbers of locations and bindings.
 
 use super::{pass::LinkedProgram, scope::PassScope};
-use crate::{
-    diagnostics::Reported,
-    errors::{
-        limits::{Entry, Excess, LimitError},
-        link::LinkError,
-    },
-    kinds::{Draw, Names},
-    shader::{Footprint, Global, Memory, Shader, Varying, Varyings},
-};
+use crate::diagnostics::Reported;
+use crate::errors::limits::{Entry, Excess, LimitError};
+use crate::errors::link::LinkError;
+use crate::kinds::{Draw, Names};
+use crate::shader::{Footprint, Global, Memory, Shader, Varying, Varyings};
 use naga::ShaderStage;
 
 /// Greatest size in bytes of the private variables of an entry point, and of the variables of one

@@ -1,19 +1,15 @@
 //! Values of params for shaders: the `params` uniform and overridable constants.
 
-use super::{
-    pass::Block,
-    scope::{Asked, PassScope},
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    kinds::Program,
-    language::{Scalar, Value, Word},
-    param::{Param, ParamValue},
-    scalar_class::{ItemScalar, ShaderType},
-    shader::{Global, Member, Shader},
-    source::{Located, Span},
-};
+use super::pass::Block;
+use super::scope::{Asked, PassScope};
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::kinds::Program;
+use crate::language::{Scalar, Value, Word};
+use crate::param::{Param, ParamValue};
+use crate::scalar_class::{ItemScalar, ShaderType};
+use crate::shader::{Global, Member, Shader};
+use crate::source::{Located, Span};
 
 /// Returns the bits of a number in a shader's scalar type; `None` if the type cannot hold the
 /// number.

@@ -1,12 +1,10 @@
 //! Linked passes: their steps refer to resources by id, and list their reads and writes.
 
-use crate::{
-    instantiate::Run,
-    kinds::{Stage, Step},
-    resource::{ResourceId, SubresourceRange, Target},
-    shader::Shader,
-    source::{Located, Span},
-};
+use crate::instantiate::Run;
+use crate::kinds::{Stage, Step};
+use crate::resource::{ResourceId, SubresourceRange, Target};
+use crate::shader::Shader;
+use crate::source::{Located, Span};
 use naga::ShaderStage;
 use std::sync::Arc;
 

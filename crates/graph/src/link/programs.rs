@@ -1,16 +1,12 @@
 //! Programs: their entry points, and the bindings that they need.
 
-use super::{
-    bindings, limits as device, params,
-    pass::{LinkedBinding, LinkedProgram},
-    scope::PassScope,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    kinds::Program,
-    shader::{Global, Shader},
-};
+use super::pass::{LinkedBinding, LinkedProgram};
+use super::scope::PassScope;
+use super::{bindings, limits as device, params};
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::kinds::Program;
+use crate::shader::{Global, Shader};
 use naga::ShaderStage;
 use wgt::BindingType as Type;
 
@@ -130,25 +126,15 @@ fn describe(ty: &Type) -> &'static str {
 fn counts(bindings: &[LinkedBinding], scope: &mut PassScope<'_>) -> Reported<()> {
     const BOTH: &str = "buffers and acceleration structures";
     let limits = &scope.request().limits;
-    let both = limits.max_buffers_and_acceleration_structures_per_shader_stage;
-    let structures = limits.max_acceleration_structures_per_shader_stage;
+    #[rustfmt::skip] // A line each.
     let most = [
-        (
-            "storage buffers",
-            limits.max_storage_buffers_per_shader_stage,
-        ),
-        (
-            "uniform buffers",
-            limits.max_uniform_buffers_per_shader_stage,
-        ),
+        ("storage buffers", limits.max_storage_buffers_per_shader_stage),
+        ("uniform buffers", limits.max_uniform_buffers_per_shader_stage),
         ("textures", limits.max_sampled_textures_per_shader_stage),
-        (
-            "storage textures",
-            limits.max_storage_textures_per_shader_stage,
-        ),
+        ("storage textures", limits.max_storage_textures_per_shader_stage),
         ("samplers", limits.max_samplers_per_shader_stage),
-        ("acceleration structures", structures),
-        (BOTH, both),
+        ("acceleration structures", limits.max_acceleration_structures_per_shader_stage),
+        (BOTH, limits.max_buffers_and_acceleration_structures_per_shader_stage),
     ];
     for (what, most) in most {
         let is_counted = |ty: &Type| match ty {

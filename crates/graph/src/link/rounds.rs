@@ -1,20 +1,16 @@
 //! Rounds of a group that ends early: their dispatches and draws take their arguments from buffers,
 //! which hold 0 in the rounds that do not run.
 
-use super::{
-    bindings::buffer,
-    pass::{BindTarget, Ids, LinkedBinding, LinkedProgram, Usage},
-    scope::PassScope,
-};
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reported},
-    errors::link::LinkError,
-    instantiate::Round,
-    kinds::{Dispatch, DrawCall, Groups, Step},
-    resource::{ResourceKind, SubresourceRange, Target},
-    shader::{Expanded, Shader},
-    source::SourceFile,
-};
+use super::bindings::buffer;
+use super::pass::{BindTarget, Ids, LinkedBinding, LinkedProgram, Usage};
+use super::scope::PassScope;
+use crate::diagnostics::{ErrorGuaranteed, Reported};
+use crate::errors::link::LinkError;
+use crate::instantiate::Round;
+use crate::kinds::{Dispatch, DrawCall, Groups, Step};
+use crate::resource::{ResourceKind, SubresourceRange, Target};
+use crate::shader::{Expanded, Shader};
+use crate::source::SourceFile;
 use std::sync::{Arc, LazyLock};
 
 /// The shader of all rounds; `None` if it is not valid, which a test excludes.

@@ -1,22 +1,19 @@
 //! Names that the pass being linked can use.
 
-use super::{
-    layouts::Layouts,
-    pass::{Access, Usage},
-};
-use crate::{
-    diagnostics::{Diagnostic, ErrorGuaranteed, Reported},
-    errors::{instantiate::InterfaceError, link::LinkError},
-    expressions::eval,
-    instantiate::{BoundParam, LoweredPass, Position, Round, Settings, SymbolTable},
-    kinds::{Operand, Program},
-    language::{Expr, Name, Reference, Value, wgsl_identifier},
-    param::{Param, ParamType, ParamValue},
-    request::PlanRequest,
-    resource::{Origin, Resource, ResourceId, ResourceKind, Sampler, Target},
-    shader::{Global, Shader},
-    source::{Located, Span},
-};
+use super::layouts::Layouts;
+use super::pass::{Access, Usage};
+use crate::diagnostics::{Diagnostic, ErrorGuaranteed, Reported};
+use crate::errors::instantiate::InterfaceError;
+use crate::errors::link::LinkError;
+use crate::expressions::eval;
+use crate::instantiate::{BoundParam, LoweredPass, Position, Round, Settings, SymbolTable};
+use crate::kinds::{Operand, Program};
+use crate::language::{Expr, Name, Reference, Value, wgsl_identifier};
+use crate::param::{Param, ParamType, ParamValue};
+use crate::request::PlanRequest;
+use crate::resource::{Origin, Resource, ResourceId, ResourceKind, Sampler, Target};
+use crate::shader::{Global, Shader};
+use crate::source::{Located, Span};
 use std::{collections::BTreeSet, sync::Arc};
 
 /// Names and resources of a graph as the pass that is being linked sees them, with the reads,

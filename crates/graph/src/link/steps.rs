@@ -1,20 +1,14 @@
 //! Linking of the steps of a pass, one after the other.
 
-use super::{
-    attachments, cpu, dispatch,
-    pass::{Access, Ids, LinkedPass, Usage},
-    rounds,
-    scope::PassScope,
-    transfers,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    instantiate::Run,
-    kinds::{Names, Step},
-    resource::{Origin, name_within},
-    source::Located,
-};
+use super::pass::{Access, Ids, LinkedPass, Usage};
+use super::scope::PassScope;
+use super::{attachments, cpu, dispatch, rounds, transfers};
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::instantiate::Run;
+use crate::kinds::{Names, Step};
+use crate::resource::{Origin, name_within};
+use crate::source::Located;
 
 /// Links the steps of a pass.
 pub(super) fn link(

@@ -1,15 +1,13 @@
 //! Checks that a texture fits a shader's declaration: format, dimension, filtering, storage access.
 
 use super::{pass::LinkedProgram, scope::PassScope};
-use crate::{
-    diagnostics::Reported,
-    document::Filter,
-    errors::link::{LinkError, TextureMisfit},
-    kinds::Program,
-    resource::{Target, Texture},
-    scalar_class::ItemScalar,
-    shader::{Global, SampledClass, TextureClass},
-};
+use crate::diagnostics::Reported;
+use crate::document::Filter;
+use crate::errors::link::{LinkError, TextureMisfit};
+use crate::kinds::Program;
+use crate::resource::{Target, Texture};
+use crate::scalar_class::ItemScalar;
+use crate::shader::{Global, SampledClass, TextureClass};
 use wgt::{TextureAspect, TextureFormat, TextureFormatFeatureFlags as Flags, TextureUsages};
 
 /// Returns the scalar type that a shader reads from a format, or from one aspect of a format with

@@ -1,16 +1,12 @@
 //! Copies and clears of textures and buffers.
 
-use super::{
-    attachments::clear_value,
-    pass::{Ids, Usage},
-    scope::PassScope,
-};
-use crate::{
-    diagnostics::Reported,
-    errors::link::LinkError,
-    kinds::{Operand, Step},
-    resource::{ResourceKind, Target, Texture},
-};
+use super::attachments::clear_value;
+use super::pass::{Ids, Usage};
+use super::scope::PassScope;
+use crate::diagnostics::Reported;
+use crate::errors::link::LinkError;
+use crate::kinds::{Operand, Step};
+use crate::resource::{ResourceKind, Target, Texture};
 
 /// Returns the width, height, number of layers and number of mips of a part of a texture.
 fn extent(texture: &Texture, target: &Target) -> [usize; 4] {

@@ -1,24 +1,19 @@
 //! Finds all mistakes of a graph, for all values that decide which entries exist.
 
-use super::{
-    make::{Outcome, Planned, plan_all},
-    plan::Plan,
-};
-use crate::{
-    compose::{Loaded, Used},
-    diagnostics::{Code, Diagnostic, Diagnostics, Reports, Severity},
-    document::{Document, Entry, InputKind, Invalid, What},
-    errors::flow::OrderError,
-    instantiate::{PlanInputs, params::claims},
-    param::{Param, ParamType, ParamValue},
-    provider::Import,
-    request::PlanRequest,
-    source::{Located, Span},
-};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
+use super::make::{Outcome, Planned, plan_all};
+use super::plan::Plan;
+use crate::compose::{Loaded, Used};
+use crate::diagnostics::{Code, Diagnostic, Diagnostics, Reports, Severity};
+use crate::document::{Document, Entry, InputKind, Invalid, What};
+use crate::errors::flow::OrderError;
+use crate::instantiate::PlanInputs;
+use crate::instantiate::params::claims;
+use crate::param::{Param, ParamType, ParamValue};
+use crate::provider::Import;
+use crate::request::PlanRequest;
+use crate::source::{Located, Span};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Formats that are tried for an input that takes any format; the shader's declaration decides
 /// which fits.
@@ -154,11 +149,8 @@ fn sweep(
         for value in ends(param) {
             let mut changed = request.clone();
             changed.params.insert(name.clone(), value.clone());
-            diagnostics.extend(wrong_with(
-                graph,
-                &changed,
-                &format!("with `{name}` = {value}"),
-            ));
+            let condition = format!("with `{name}` = {value}");
+            diagnostics.extend(wrong_with(graph, &changed, &condition));
         }
     }
     for feature in plan_inputs.features.iter() {

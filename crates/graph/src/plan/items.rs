@@ -1,12 +1,11 @@
 //! Origin, layout and extent of the content of an output or capture, which a reader of the content
 //! needs.
 
-use crate::{
-    kinds::Step,
-    link::{Access, BindTarget, Ids, LinkedPass},
-    resource::{Resource, ResourceId, ResourceKind, Target},
-    shader::{Item, items::item},
-};
+use crate::kinds::Step;
+use crate::link::{Access, BindTarget, Ids, LinkedPass};
+use crate::resource::{Resource, ResourceId, ResourceKind, Target};
+use crate::shader::Item;
+use crate::shader::items::item;
 use std::{collections::BTreeSet, ops::Range};
 
 /// Mips, layers or [items](crate#terms) that an output or [capture](crate#terms) holds of a texture

@@ -1,12 +1,10 @@
 //! Planning: runs one phase after the other, each on the result of the phase before.
 
-use super::{
-    backend::not_proven,
-    memory::{Memory, growing},
-    readable::{check_captures, readable},
-    summary::refused_light,
-    usages,
-};
+use super::backend::not_proven;
+use super::memory::{Memory, growing};
+use super::readable::{check_captures, readable};
+use super::summary::refused_light;
+use super::usages;
 use crate::{
     compose::Loaded,
     diagnostics::{Diagnostic, Reports},
@@ -25,10 +23,8 @@ use crate::{
     resource::{Buffer, Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     source::Located,
 };
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Content of a [`Plan`](super::plan::Plan).
 #[derive(Clone, Debug)]

@@ -1,12 +1,10 @@
 //! Memory that a plan's own textures and buffers take, and the limit on it.
 
 use super::text;
-use crate::{
-    errors::plan::OutputError,
-    flow::{Allocation, Alone, Schedule},
-    resource::{Growth, Origin, Resource, ResourceId, ResourceKind},
-    source::Span,
-};
+use crate::errors::plan::OutputError;
+use crate::flow::{Allocation, Alone, Schedule};
+use crate::resource::{Growth, Origin, Resource, ResourceId, ResourceKind};
+use crate::source::Span;
 
 /// Greatest number of allocations that a memory table lists; small ones rarely matter.
 const ROWS: usize = 12;

@@ -1,14 +1,12 @@
 //! [`Plan`]: a graph for a viewport, with values for its params, checked against an adapter's
 //! limits. It holds no GPU objects.
 
-use super::{
-    backend::not_proven,
-    items::{self, PartSummary},
-    make::{CulledPass, Planned, plan_all},
-    memory::MemoryEntry,
-    summary::{OutputSummary, PassSummary},
-    uniforms,
-};
+use super::backend::not_proven;
+use super::items::{self, PartSummary};
+use super::make::{CulledPass, Planned, plan_all};
+use super::memory::MemoryEntry;
+use super::summary::{OutputSummary, PassSummary};
+use super::uniforms;
 use crate::{
     compose::Loaded,
     diagnostics::{Diagnostic, Diagnostics, Reports},
@@ -21,10 +19,8 @@ use crate::{
     resource::{Growth, Origin, Resource, ResourceId, ResourceKind, Target},
     shader::Item,
 };
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    sync::Arc,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// A graph that is planned for one viewport, one set of param values and one device: its
 /// [live](crate#terms) passes in the order in which they run, and every resource with its size and

@@ -1,14 +1,12 @@
 //! Finds the outputs and captures that can be read back, and reports the others with a reason.
 
-use crate::{
-    compose::Loaded,
-    diagnostics::Reports,
-    errors::plan::OutputError,
-    expressions::Environment,
-    instantiate::{At, LoweredPass, PlanInputs, SymbolTable},
-    request::{Capture, PlanRequest},
-    resource::{Origin, ResourceKind, Target},
-};
+use crate::compose::Loaded;
+use crate::diagnostics::Reports;
+use crate::errors::plan::OutputError;
+use crate::expressions::Environment;
+use crate::instantiate::{At, LoweredPass, PlanInputs, SymbolTable};
+use crate::request::{Capture, PlanRequest};
+use crate::resource::{Origin, ResourceKind, Target};
 
 /// Returns names and targets of all outputs and captures that the request wants. `written` tells if
 /// a pass writes a target. Notes in `plan_inputs` the params and features in conditions of outputs.

@@ -1,11 +1,9 @@
 //! Summaries of a plan's passes and outputs, for lists that people read.
 
-use crate::{
-    document::Document,
-    errors::plan::OutputError,
-    provided_kind::ProvidedKind,
-    resource::{ResourceKind, Target},
-};
+use crate::document::Document;
+use crate::errors::plan::OutputError;
+use crate::provided_kind::ProvidedKind;
+use crate::resource::{ResourceKind, Target};
 
 /// Name and kind of a pass that a plan runs.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,15 +1,13 @@
 //! Usages of the host's imports, compared with the needs of passes.
 
-use crate::{
-    diagnostics::Reports,
-    errors::plan::OutputError,
-    flow::GraphView,
-    link::{PassId, Usage},
-    provider::Import,
-    request::PlanRequest,
-    resource::Origin,
-    source::Located,
-};
+use crate::diagnostics::Reports;
+use crate::errors::plan::OutputError;
+use crate::flow::GraphView;
+use crate::link::{PassId, Usage};
+use crate::provider::Import;
+use crate::request::PlanRequest;
+use crate::resource::Origin;
+use crate::source::Located;
 
 /// Checks that the host's imports were created with the usages that passes need.
 pub(super) fn check(

@@ -3,10 +3,8 @@
 //! is parsed only a few dozen times.
 
 use super::text::{next, tokens};
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    ops::Range,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// A declaration of a module.
 struct Declaration<'t> {

@@ -2,22 +2,16 @@
 //! texts. A panic becomes an error that names the declaration and, in a function, the statement
 //! that brings it about.
 
-use super::{
-    binding_numbers::assign_bindings,
-    blame::blamed_range,
-    expand::Expanded,
-    wgsl_errors::{function_range, parse_error, specialisation_error, validation_error},
-};
+use super::binding_numbers::assign_bindings;
+use super::blame::blamed_range;
+use super::expand::Expanded;
+use super::wgsl_errors::{function_range, parse_error, specialisation_error, validation_error};
 use crate::errors::shader::ShaderError;
-use naga::{
-    Module, ShaderStage,
-    back::{
-        pipeline_constants::process_overrides,
-        spv::{self, PipelineOptions},
-    },
-    proc::{BoundsCheckPolicies, BoundsCheckPolicy, GlobalCtx, Layouter},
-    valid::{Capabilities, ModuleInfo, ValidationFlags, Validator},
-};
+use naga::back::pipeline_constants::process_overrides;
+use naga::back::spv::{self, PipelineOptions};
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy, GlobalCtx, Layouter};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::{Module, ShaderStage};
 use skiagraph_located_ron::panics::{Panicked, caught};
 use std::borrow::Cow;
 

@@ -2,11 +2,9 @@
 //! with the word `none` gives `const CULL_NONE: u32 = 0u;`.
 
 use super::{expand::Expanded, reflect::Shader, text::identifiers};
-use crate::{
-    errors::shader::ShaderError,
-    param::{Param, ParamType},
-    source::Located,
-};
+use crate::errors::shader::ShaderError;
+use crate::param::{Param, ParamType};
+use crate::source::Located;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Constants for the words of a document's `Choice` params, by name.

@@ -5,20 +5,16 @@
 //! Names stay as written, so that errors, captures and bindings use the author's names.
 
 use super::text::{BREAKS, Comments, declares};
-use crate::{
-    diagnostics::{Diagnostic, suggest::likeness},
-    errors::shader::ImportError,
-    source::{
-        Located, SourceFile, Sources, Span,
-        paths::{escapes, folder_of, import_candidates, module_candidates, shader_candidates},
-        sources,
-    },
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::suggest::likeness;
+use crate::errors::shader::ImportError;
+use crate::source::paths::{
+    escapes, folder_of, import_candidates, module_candidates, shader_candidates,
 };
-use std::{
-    collections::{BTreeMap, HashMap},
-    ops::Range,
-    sync::Arc,
-};
+use crate::source::{Located, SourceFile, Sources, Span, sources};
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+use std::sync::Arc;
 
 /// WGSL modules that replace others in imports: path of the replaced module, to path of the module
 /// that is imported instead.
@@ -28,7 +24,7 @@ pub(crate) type Replaced = BTreeMap<String, String>;
 const DEEPEST_IMPORT: usize = 64;
 
 /// Text of a shader with its imports in place.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Expanded {
     /// WGSL of the shader, with the modules that it imports in the place of the import lines.
     pub text: String,
@@ -59,11 +55,8 @@ impl Expanded {
     /// Begins the expansion of a file, without text.
     pub fn new(file: SourceFile) -> Self {
         Self {
-            text: String::new(),
             file,
-            pieces: Vec::new(),
-            imports: Vec::new(),
-            constants: Vec::new(),
+            ..Self::default()
         }
     }
 

@@ -3,10 +3,8 @@
 
 use super::{compiled::Specialised, expand::Expanded};
 use crate::source::{Located, Span};
-use naga::{
-    AddressSpace, Block, Function, Handle, Module, ShaderStage, Statement, TypeInner,
-    valid::FunctionInfo,
-};
+use naga::valid::FunctionInfo;
+use naga::{AddressSpace, Block, Function, Handle, Module, ShaderStage, Statement, TypeInner};
 use std::collections::BTreeSet;
 
 /// Size in bytes of several variables of a shader, and the largest of them.

@@ -2,10 +2,8 @@
 //! expression, per `else if` of a chain and per declaration that names a later one, with no limit
 //! of its own. A text that is refused here would overflow the stack.
 
-use super::{
-    expand::Expanded,
-    text::{next, tokens},
-};
+use super::expand::Expanded;
+use super::text::{next, tokens};
 use crate::errors::shader::ShaderError;
 
 /// Longest text, imports in place, in bytes: ten times the longest shader one would write.

@@ -1,33 +1,25 @@
 //! Reflection of a WGSL module: every resource global with its type, place, binding number and use
 //! per entry point.
 
-use super::{
-    class::{Class, TextureClass, class_of},
-    compiled::{compiled, specialised},
-    expand::Expanded,
-    footprint::Footprint,
-    guard,
-    items::{Item, item},
-    text::words,
-    varyings::Varyings,
-    wgsl_errors::function_span,
-};
-use crate::{
-    errors::shader::ShaderError,
-    language::Scalar,
-    scalar_class::ItemScalar,
-    source::{Located, Span},
-};
-use naga::{
-    Handle, ShaderStage, TypeInner,
-    proc::Layouter,
-    valid::{GlobalUse, ModuleInfo},
-};
-use std::{
-    collections::{BTreeMap, BTreeSet, HashMap},
-    hash::{DefaultHasher, Hash, Hasher},
-    sync::{Arc, Mutex, PoisonError},
-};
+use super::class::{Class, TextureClass, class_of};
+use super::compiled::{compiled, specialised};
+use super::expand::Expanded;
+use super::footprint::Footprint;
+use super::guard;
+use super::items::{Item, item};
+use super::text::words;
+use super::varyings::Varyings;
+use super::wgsl_errors::function_span;
+use crate::errors::shader::ShaderError;
+use crate::language::Scalar;
+use crate::scalar_class::ItemScalar;
+use crate::source::{Located, Span};
+use naga::proc::Layouter;
+use naga::valid::{GlobalUse, ModuleInfo};
+use naga::{Handle, ShaderStage, TypeInner};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A parsed and validated WGSL shader with its imports in place. Each of its resource globals
 /// (buffers, textures, samplers) has a binding number. Two shaders are equal if their texts with

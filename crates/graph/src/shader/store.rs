@@ -1,23 +1,18 @@
 //! The shaders of all documents, each compiled with the modules that its document has it import.
 
-use super::{
-    blame::without_functions,
-    constants::ChoiceConstants,
-    expand::{Expanded, Replaced, ShaderFiles},
-    reflect::Shader,
-    wgsl_errors::unknown_name,
-};
-use crate::{
-    diagnostics::{ErrorGuaranteed, Reports},
-    document::Document,
-    errors::shader::{ImportError, ShaderError},
-    kinds::ShaderUse,
-    source::{Located, Span, paths::folder_of},
-};
-use std::{
-    collections::{BTreeSet, HashMap, HashSet},
-    sync::Arc,
-};
+use super::blame::without_functions;
+use super::constants::ChoiceConstants;
+use super::expand::{Expanded, Replaced, ShaderFiles};
+use super::reflect::Shader;
+use super::wgsl_errors::unknown_name;
+use crate::diagnostics::{ErrorGuaranteed, Reported, Reports};
+use crate::document::Document;
+use crate::errors::shader::{ImportError, ShaderError};
+use crate::kinds::ShaderUse;
+use crate::source::paths::folder_of;
+use crate::source::{Located, Span};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::sync::Arc;
 
 /// Most conditions of `imports` around one document: a shader is compiled for all their values.
 const MOST_CONDITIONS: usize = 6;
@@ -60,7 +55,7 @@ impl Shaders {
         document: &Document,
         shader: &ShaderUse,
         around: &Replaced,
-    ) -> Option<Result<Arc<Shader>, ErrorGuaranteed>> {
+    ) -> Option<Reported<Arc<Shader>>> {
         let shader = self.variant(document, shader, around)?.clone();
         Some(shader.map_err(|invalid| invalid.reported))
     }

@@ -1,11 +1,9 @@
 //! Finds the imports, params and globals of a shader that it does not use.
 
-use super::{
-    expand::{Expanded, ImportLine},
-    reflect::Shader,
-    text::{DECLARES, identifiers},
-    wgsl_errors::functions,
-};
+use super::expand::{Expanded, ImportLine};
+use super::reflect::Shader;
+use super::text::{DECLARES, identifiers};
+use super::wgsl_errors::functions;
 use crate::source::{Located, SourceFile};
 use naga::Expression;
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,19 +1,15 @@
 //! Turns naga's errors into the crate's, at their places in the author's files.
 
-use super::{
-    expand::Expanded,
-    text::{Declared, words},
-};
-use crate::{
-    diagnostics::suggest::{likeness, suggestion},
-    errors::shader::ShaderError,
-    source::Span,
-};
-use naga::{
-    Handle,
-    back::pipeline_constants::PipelineConstantError,
-    common::wgsl::TypeContext,
-    valid::{EntryPointError, FunctionError, GlobalVariableError, TypeFlags, ValidationError},
+use super::expand::Expanded;
+use super::text::{Declared, words};
+use crate::diagnostics::suggest::{likeness, suggestion};
+use crate::errors::shader::ShaderError;
+use crate::source::Span;
+use naga::Handle;
+use naga::back::pipeline_constants::PipelineConstantError;
+use naga::common::wgsl::TypeContext;
+use naga::valid::{
+    EntryPointError, FunctionError, GlobalVariableError, TypeFlags, ValidationError,
 };
 use std::ops::Range;
 

@@ -1,12 +1,10 @@
 //! Stores that documents, shaders and pictures are read from.
 
 use crate::picture::Picture;
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    io::Read,
-    path::PathBuf,
-    sync::Arc,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A store of RON documents, WGSL files and pictures: a folder, embedded files, or a host's own.
 ///

@@ -13,14 +13,12 @@ use scene::Moment;
 use shadows::Shadows;
 use skiagraph_host::wgpu::{self, CurrentSurfaceTexture as Current};
 use std::{error::Error, process::ExitCode, sync::Arc, time::Instant};
-use winit::{
-    application::ApplicationHandler,
-    dpi::PhysicalSize,
-    event::WindowEvent,
-    event_loop::{ActiveEventLoop, EventLoop, OwnedDisplayHandle},
-    keyboard::{Key, NamedKey},
-    window::{Window, WindowId},
-};
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, EventLoop, OwnedDisplayHandle};
+use winit::keyboard::{Key, NamedKey};
+use winit::window::{Window, WindowId};
 
 type Failed = Box<dyn Error + Send + Sync>;
 

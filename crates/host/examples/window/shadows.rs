@@ -1,9 +1,7 @@
 //! All that is Skiagraph's: the visibility of the sun, from any preset.
 
-use crate::{
-    Failed,
-    scene::{Moment, PARTS, models},
-};
+use crate::Failed;
+use crate::scene::{Moment, PARTS, models};
 use skiagraph_host::scene::{DirectionalLight, Indexed, Mesh, Movable};
 use skiagraph_host::{
     EmbeddedSources, Executor, Eye, Frame, PlanRequest, SceneProvider, SceneView,

@@ -2,10 +2,8 @@
 //! `render`).
 
 use super::diagnostic::{Diagnostic, Label, Severity};
-use crate::{
-    panics::caught,
-    span::{SourceFile, Span},
-};
+use crate::panics::caught;
+use crate::span::{SourceFile, Span};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
 use std::{fmt, ops::Range};
 

@@ -90,22 +90,16 @@ fn scene(ui: &mut Ui, viewer: &mut Viewer) {
 
 /// Lets the user choose what a plain drag in a picture does.
 fn pointer(ui: &mut Ui, viewer: &mut Viewer) {
+    #[rustfmt::skip] // A line each.
+    let drags = [
+        (Drag::Look, "look", "look around"),
+        (Drag::Orbit, "orbit", "around the scene's middle; always with the right button"),
+        (Drag::Pan, "pan", "shift the eye; always with Shift, or the middle button"),
+        (Drag::Light, "light", "turn the light; always with Ctrl"),
+    ];
     ui.horizontal(|ui| {
         ui.label("pointer");
-        for (drag, text, hint) in [
-            (Drag::Look, "look", "look around"),
-            (
-                Drag::Orbit,
-                "orbit",
-                "around the scene's middle; always with the right button",
-            ),
-            (
-                Drag::Pan,
-                "pan",
-                "shift the eye; always with Shift, or the middle button",
-            ),
-            (Drag::Light, "light", "turn the light; always with Ctrl"),
-        ] {
+        for (drag, text, hint) in drags {
             ui.selectable_value(&mut viewer.drag, drag, text)
                 .on_hover_text(hint);
         }

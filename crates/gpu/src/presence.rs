@@ -1,13 +1,10 @@
 //! Checks before each frame that the device is not lost, without allocating anything; checks that
 //! things are of the device.
 
-use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
-    identity,
-    provider::Provider,
-    signal::{Progress, Signal},
-};
+use crate::error::{ExecuteError, scoped};
+use crate::provider::Provider;
+use crate::signal::{Progress, Signal};
+use crate::{buffer, identity};
 
 /// Tells whether a device is lost, and whether queues and providers are of it.
 ///

@@ -2,11 +2,9 @@
 
 use crate::identity::DeviceIdentity;
 use skiagraph_graph::{Describe, NoProvider};
-use std::{
-    error::Error,
-    fmt::{self, Debug},
-    sync::Arc,
-};
+use std::error::Error;
+use std::fmt::{self, Debug};
+use std::sync::Arc;
 
 /// Builds the resources that a graph expects from its host program: scene buffers, camera and light
 /// uniforms, acceleration structures. The supertrait [`Describe`] describes them without a device.

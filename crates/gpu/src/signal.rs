@@ -1,9 +1,7 @@
 //! Signals by which wgpu's callbacks tell that GPU work is done. They are polled without waiting.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicU32, Ordering},
-};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// State of a piece of work that a [`Signal`] follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

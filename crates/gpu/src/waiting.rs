@@ -2,16 +2,14 @@
 //! as well.
 
 use crate::error::poll;
+use std::cell::RefCell;
 #[cfg(not(target_arch = "wasm32"))]
 use std::future::poll_fn;
-use std::{
-    cell::RefCell,
-    pin::pin,
-    sync::Arc,
-    task::{Context, Poll, Wake, Waker},
-    thread::Thread,
-    time::Duration,
-};
+use std::pin::pin;
+use std::sync::Arc;
+use std::task::{Context, Poll, Wake, Waker};
+use std::thread::Thread;
+use std::time::Duration;
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen::prelude::*;
 #[cfg(target_arch = "wasm32")]

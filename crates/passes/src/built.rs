@@ -1,9 +1,7 @@
 //! Resources made for a graph, how, and in what time.
 
-use crate::{
-    lights,
-    names::{BVH_NODES, BVH_PRIMITIVES, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES},
-};
+use crate::lights;
+use crate::names::{BVH_NODES, BVH_PRIMITIVES, LIGHT_SPACE_NODES, LIGHT_SPACE_PRIMITIVES};
 use std::time::Duration;
 
 /// Record of how a [`SceneProvider`](crate::SceneProvider) has built one resource: the kind and

@@ -1,9 +1,7 @@
 //! The camera of a host, as the matrices that it draws with.
 
-use crate::{
-    error::Error,
-    uniforms::{CameraUniform, UnprojectionUniform},
-};
+use crate::error::Error;
+use crate::uniforms::{CameraUniform, UnprojectionUniform};
 use glam::{DMat4, DVec2, DVec3};
 use skiagraph_scene::{Camera, LEAST_DEPTH};
 

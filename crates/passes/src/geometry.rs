@@ -1,24 +1,22 @@
 //! The geometry of a mesh: the pieces that move by themselves, where they are, and the things kept
 //! over them, so that a frame pays for those that moved.
 
-use crate::{
-    adjacencies::Adjacencies,
-    buffers::binding_limit,
-    built::Work,
-    changes::{Change, Cleared},
-    error::Error,
-    hierarchies::all,
-    host_buffers::{HostMesh, HostWrite},
-    names::next_version,
-    outlines::Outlines,
-    part::{HostPart, Part, placed},
-    parts::{PartId, Room},
-    piece::{Content, Outside, Piece},
-    placed::Placed,
-    space::Space,
-    trees::{Over, Trees},
-    uniforms::LightUniform,
-};
+use crate::adjacencies::Adjacencies;
+use crate::buffers::binding_limit;
+use crate::built::Work;
+use crate::changes::{Change, Cleared};
+use crate::error::Error;
+use crate::hierarchies::all;
+use crate::host_buffers::{HostMesh, HostWrite};
+use crate::names::next_version;
+use crate::outlines::Outlines;
+use crate::part::{HostPart, Part, placed};
+use crate::parts::{PartId, Room};
+use crate::piece::{Content, Outside, Piece};
+use crate::placed::Placed;
+use crate::space::Space;
+use crate::trees::{Over, Trees};
+use crate::uniforms::LightUniform;
 use glam::{DAffine3, Vec3};
 use skiagraph_scene::{LightKind, Mesh, Movable, MoveError, PartPlace, Scene};
 use std::{collections::BTreeSet, ops::Range, sync::Arc};

@@ -1,9 +1,7 @@
 //! All lights of a scene, each with a name of its own: `lights[2]` in documents.
 
-use crate::{
-    error::Error,
-    uniforms::{LightAreaUniform, LightUniform},
-};
+use crate::error::Error;
+use crate::uniforms::{LightAreaUniform, LightUniform};
 use skiagraph_graph::{Provided, ProvidedBinding, ProvidedKind};
 use skiagraph_scene::{LightKind, Scene};
 

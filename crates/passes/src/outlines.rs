@@ -1,11 +1,9 @@
 //! Boxes and outlines of a mesh's pieces, around which lights are laid: of pieces that stand still
 //! they are those of the last time.
 
-use crate::{
-    names::remember,
-    part::{box_corners, joined},
-    uniforms::LightUniform,
-};
+use crate::names::remember;
+use crate::part::{box_corners, joined};
+use crate::uniforms::LightUniform;
 use glam::{DVec3, Vec3};
 use skiagraph_scene::{DirectionalLight, LightKind, Outline, outline::Border};
 use std::collections::BTreeMap;

@@ -1,9 +1,7 @@
 //! A part of a mesh, and the place of its items in the lists of that.
 
-use crate::{
-    host_buffers::{HostMesh, HostWrite},
-    parts::PartId,
-};
+use crate::host_buffers::{HostMesh, HostWrite};
+use crate::parts::PartId;
 use glam::{DAffine3, Vec3};
 use skiagraph_scene::{Movable, MoveError, PartPlace};
 use std::{ops::Range, sync::Arc};

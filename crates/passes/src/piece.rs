@@ -1,9 +1,7 @@
 //! Pieces of a mesh that move by themselves, and the triangles that each has.
 
-use crate::{
-    names::next_version,
-    part::{HostPart, Part, box_corners, range_of},
-};
+use crate::names::next_version;
+use crate::part::{HostPart, Part, box_corners, range_of};
 use glam::{DAffine3, Vec3};
 use skiagraph_scene::{Mesh, Movable, Scene, TwoLevelBvh, outline::outer};
 use std::{ops::Range, sync::Arc};

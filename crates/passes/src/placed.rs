@@ -1,11 +1,9 @@
 //! Parts that maps have moved: by the GPU, and in the scene's mesh once something asks for their
 //! corners there.
 
-use crate::{
-    hierarchies::all,
-    names::NORMALS,
-    piece::{Content, Piece},
-};
+use crate::hierarchies::all;
+use crate::names::NORMALS;
+use crate::piece::{Content, Piece};
 use glam::DAffine3;
 use skiagraph_scene::Mesh;
 use std::{collections::BTreeSet, ops::Range};

@@ -1,9 +1,7 @@
 //! The presets and their shaders, embedded, and the registry of pass kinds that they need.
 
-use crate::{
-    names::{MASKS, SHADOWS},
-    trace::Trace,
-};
+use crate::names::{MASKS, SHADOWS};
+use crate::trace::Trace;
 use include_dir::{Dir, include_dir};
 use skiagraph_graph::{Diagnostics, Graph, Registry, Sources};
 use std::{collections::BTreeMap, sync::Arc};

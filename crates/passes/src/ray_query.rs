@@ -3,22 +3,16 @@
 //! everything where it is. Where a piece has moved, it gets another bottom level; the others keep
 //! theirs.
 
-use crate::{
-    buffers::{refused, upload},
-    error::Error,
-    geometry::Geometry,
-    names::next_version,
-    solids::{Solid, joined_corners, solids},
-};
+use crate::buffers::{refused, upload};
+use crate::error::Error;
+use crate::geometry::Geometry;
+use crate::names::next_version;
+use crate::solids::{Solid, joined_corners, solids};
 use skiagraph_scene::Mesh;
-use std::{
-    collections::BTreeMap,
-    ops::Range,
-    sync::{
-        Arc,
-        atomic::{AtomicUsize, Ordering},
-    },
-};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use wgpu::{
     AccelerationStructureFlags as Flags, BlasTriangleGeometrySizeDescriptor as Size, TlasInstance,
 };

@@ -1,11 +1,9 @@
 //! Room in the lists of a mesh for parts that are added.
 
-use crate::{
-    buffers::check_size,
-    error::Error,
-    names::{BVH_NODES, INDICES, NORMALS, POSITIONS},
-    parts::Room,
-};
+use crate::buffers::check_size;
+use crate::error::Error;
+use crate::names::{BVH_NODES, INDICES, NORMALS, POSITIONS};
+use crate::parts::Room;
 use glam::Vec3;
 use skiagraph_scene::{BvhNode, Mesh, PartPlace, free::Free};
 use std::ops::Range;

@@ -2,10 +2,8 @@
 
 use crate::names::{EMBREE, LIGHT};
 use serde::Deserialize;
-use skiagraph_graph::{
-    Chosen, Code, Diagnostic, Expr, Located, Lowering, PassKind, Reference,
-    step::{CpuCall, CpuItems, Dispatch, Groups, Operand, Program, Step, Threads},
-};
+use skiagraph_graph::step::{CpuCall, CpuItems, Dispatch, Groups, Operand, Program, Step, Threads};
+use skiagraph_graph::{Chosen, Code, Diagnostic, Expr, Located, Lowering, PassKind, Reference};
 use skiagraph_scene::LightKind;
 
 /// Choice of the hit that a [`Trace`] pass records for a ray.

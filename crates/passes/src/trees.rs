@@ -1,16 +1,12 @@
 //! The hierarchies over a mesh, of which those are kept that are fitted when its pieces move.
 
-use crate::{
-    built::{How, Work},
-    error::Error,
-    hierarchies::{FAR_AWAY, Fitted, Hierarchies, Parted, Tree, all},
-    parts::Room,
-    piece::{Content, Piece},
-};
-use skiagraph_scene::{
-    BvhNode, LightSpace, Mesh, Movable, TwoLevelBvh,
-    bvh::{self, Moved},
-};
+use crate::built::{How, Work};
+use crate::error::Error;
+use crate::hierarchies::{FAR_AWAY, Fitted, Hierarchies, Parted, Tree, all};
+use crate::parts::Room;
+use crate::piece::{Content, Piece};
+use skiagraph_scene::bvh::{self, Moved};
+use skiagraph_scene::{BvhNode, LightSpace, Mesh, Movable, TwoLevelBvh};
 use std::{borrow::Cow, collections::BTreeMap, sync::Arc};
 
 /// Hierarchies that are kept over a mesh.

@@ -1,13 +1,11 @@
 //! Puts together a mesh of the triangles of a file: welds, drops and repairs.
 
-use crate::{
-    error::{FaceRef, beginning, plural},
-    indexed::geometric_normal,
-    material::Material,
-    mesh::{Group, Mesh, names_one_twice},
-    report::ImportReport,
-    weld::{UvWelder, Welder},
-};
+use crate::error::{FaceRef, beginning, plural};
+use crate::indexed::geometric_normal;
+use crate::material::Material;
+use crate::mesh::{Group, Mesh, names_one_twice};
+use crate::report::ImportReport;
+use crate::weld::{UvWelder, Welder};
 use glam::{DVec3, Vec2};
 use std::collections::BTreeMap;
 

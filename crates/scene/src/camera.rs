@@ -1,10 +1,8 @@
 //! Views and the cameras they make on a given viewport.
 
-use crate::{
-    light::onto_axes,
-    light_kind::{Light, OwnLight},
-    vector::Vector,
-};
+use crate::light::onto_axes;
+use crate::light_kind::{Light, OwnLight};
+use crate::vector::Vector;
 use glam::{DMat4, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 

@@ -10,11 +10,9 @@
 //! # Ok::<(), skiagraph_scene::SceneError>(())
 //! ```
 
-use std::{
-    collections::BTreeMap,
-    path::{Component, Path, PathBuf},
-    sync::{Arc, PoisonError, RwLock},
-};
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, PoisonError, RwLock};
 
 static FILES: RwLock<BTreeMap<PathBuf, Arc<[u8]>>> = RwLock::new(BTreeMap::new());
 

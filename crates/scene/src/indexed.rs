@@ -1,10 +1,8 @@
 //! Triangle meshes in a program's memory, to be made into a [`Mesh`], in which equal positions are
 //! one (welded).
 
-use crate::{
-    mesh::{Group, Mesh, names_one_twice},
-    weld::Welder,
-};
+use crate::mesh::{Group, Mesh, names_one_twice};
+use crate::weld::Welder;
 use glam::{DVec3, Vec3};
 
 /// Triangle mesh as a program holds it in memory: not welded, with one normal for each position.

@@ -1,23 +1,20 @@
 //! Finds scenes by name or path, and the meshes that they name.
 
-use crate::{
-    error::SceneError,
-    gltf::load_gltf,
-    ground::add_ground,
-    limit::Limit,
-    mesh_file::{MeshFile, MeshFileOptions},
-    obj::{options::ObjOptions, read::load_obj},
-    path::CameraPath,
-    report::ImportReport,
-    scene::Scene,
-    scene_file::{MeshSource, SceneFile},
-    text::has_extension,
-};
+use crate::error::SceneError;
+use crate::gltf::load_gltf;
+use crate::ground::add_ground;
+use crate::limit::Limit;
+use crate::mesh_file::{MeshFile, MeshFileOptions};
+use crate::obj::options::ObjOptions;
+use crate::obj::read::load_obj;
+use crate::path::CameraPath;
+use crate::report::ImportReport;
+use crate::scene::Scene;
+use crate::scene_file::{MeshSource, SceneFile};
+use crate::text::has_extension;
 use skiagraph_located_ron::diagnostics::Diagnostic;
-use std::{
-    collections::BTreeSet,
-    path::{Path, PathBuf},
-};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 /// Name of the environment variable that lists folders of meshes, separated as in `PATH`.
 pub const ASSETS_VARIABLE: &str = "SKIAGRAPH_ASSETS";

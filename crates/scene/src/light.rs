@@ -1,9 +1,7 @@
 //! Directional lights and the orthographic light space of a shadow map.
 
-use crate::{
-    outline::{Outline, convex_hull},
-    vector::{Vector, is_default},
-};
+use crate::outline::{Outline, convex_hull};
+use crate::vector::{Vector, is_default};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 

@@ -1,11 +1,9 @@
 //! Reading a file whole, and never more of it than a file of its kind has.
 
 use crate::{handed::handed, text::without_mark};
-use std::{
-    fs::File,
-    io::{self, Read},
-    path::Path,
-};
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
 
 const MIB: u64 = 1 << 20;
 

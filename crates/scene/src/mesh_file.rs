@@ -1,20 +1,16 @@
 //! Mesh files that are loaded without a scene file.
 
-use crate::{
-    camera::View,
-    error::SceneError,
-    gltf::{Clip, GltfScene, load_gltf_scene},
-    light_kind::Light,
-    material_use::MaterialUse,
-    mesh::Mesh,
-    obj::{
-        options::{Concave, ObjOptions, QuadDiagonal},
-        read::load_obj,
-    },
-    report::{ImportReport, nothing_casts},
-    scene_file::MeshSource,
-    text::has_extension,
-};
+use crate::camera::View;
+use crate::error::SceneError;
+use crate::gltf::{Clip, GltfScene, load_gltf_scene};
+use crate::light_kind::Light;
+use crate::material_use::MaterialUse;
+use crate::mesh::Mesh;
+use crate::obj::options::{Concave, ObjOptions, QuadDiagonal};
+use crate::obj::read::load_obj;
+use crate::report::{ImportReport, nothing_casts};
+use crate::scene_file::MeshSource;
+use crate::text::has_extension;
 use std::path::Path;
 
 /// Content of a mesh file: mesh, cameras, lights and animations.

@@ -1,12 +1,10 @@
 //! Motions of parts of a mesh on a camera path: rigid, from pose to pose, or swaying.
 
-use crate::{
-    camera::y_axis,
-    keys::{not_later, spline},
-    mesh::Mesh,
-    movable::{Movable, MoveError},
-    vector::{Turn, Vector},
-};
+use crate::camera::y_axis;
+use crate::keys::{not_later, spline};
+use crate::mesh::Mesh;
+use crate::movable::{Movable, MoveError};
+use crate::vector::{Turn, Vector};
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;

@@ -1,15 +1,11 @@
 //! Meshes with parts that are moved independently of each other, by affine maps or by bends.
 
-use crate::{
-    mesh::{Group, Mesh, bounds},
-    outline::{Border, outer},
-};
+use crate::mesh::{Group, Mesh, bounds};
+use crate::outline::{Border, outer};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
-use std::{
-    collections::{BTreeMap, HashMap, HashSet},
-    ops::Range,
-    sync::OnceLock,
-};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Mesh with parts that are moved independently of each other. Each part is moved by a map from
 /// positions at rest to moved positions.

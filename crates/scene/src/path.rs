@@ -1,15 +1,13 @@
 //! Paths: a view whose eye, direction and light move from keyframe to keyframe, and parts of the
 //! mesh with them.
 
-use crate::{
-    camera::{View, is_y, y_axis},
-    keys::{not_later, spline},
-    light_kind::{Light, OwnLight},
-    mesh::Mesh,
-    motion::{Motion, moved},
-    movable::Movable,
-    vector::{SomeVector, Vector, is_default},
-};
+use crate::camera::{View, is_y, y_axis};
+use crate::keys::{not_later, spline};
+use crate::light_kind::{Light, OwnLight};
+use crate::mesh::Mesh;
+use crate::motion::{Motion, moved};
+use crate::movable::Movable;
+use crate::vector::{SomeVector, Vector, is_default};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

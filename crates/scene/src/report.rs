@@ -1,9 +1,7 @@
 //! Changes that an import made to a mesh, and content that it left out.
 
-use crate::{
-    error::{FACES_SHOWN, FaceRef, plural},
-    mesh::Mesh,
-};
+use crate::error::{FACES_SHOWN, FaceRef, plural};
+use crate::mesh::Mesh;
 use std::{fmt, path::PathBuf};
 
 /// Counts and warnings of the import of a mesh file. The report of a generated mesh is empty.

@@ -1,11 +1,9 @@
 //! Scenes to draw.
 
-use crate::{
-    camera::View,
-    light::DirectionalLight,
-    light_kind::{Light, LightKind},
-    mesh::Mesh,
-};
+use crate::camera::View;
+use crate::light::DirectionalLight;
+use crate::light_kind::{Light, LightKind};
+use crate::mesh::Mesh;
 use glam::DVec3;
 
 /// Scene to be drawn: a mesh with its views and lights.

@@ -19,31 +19,25 @@
 //! # Ok::<(), skiagraph_scene::SceneError>(())
 //! ```
 
-use crate::{
-    camera::View,
-    error::SceneError,
-    generate::Generator,
-    light::DirectionalLight,
-    light_kind::Light,
-    material_use::MaterialUse,
-    mesh::Mesh,
-    obj::options::{Concave, ObjMaterials, QuadDiagonal},
-    path::CameraPath,
-    report::{ImportReport, nothing_casts},
-    shadows::Shadows,
-    vector::{SomeVector, Vector, is_default},
-};
+use crate::camera::View;
+use crate::error::SceneError;
+use crate::generate::Generator;
+use crate::light::DirectionalLight;
+use crate::light_kind::Light;
+use crate::material_use::MaterialUse;
+use crate::mesh::Mesh;
+use crate::obj::options::{Concave, ObjMaterials, QuadDiagonal};
+use crate::path::CameraPath;
+use crate::report::{ImportReport, nothing_casts};
+use crate::shadows::Shadows;
+use crate::vector::{SomeVector, Vector, is_default};
 use glam::DVec3;
-use serde::{
-    Deserialize, Deserializer, Serialize, Serializer,
-    de::{DeserializeOwned, Error},
-};
-use skiagraph_located_ron::{
-    diagnostics::{Code, Diagnostic, Diagnostics},
-    fields::from_all_fields,
-    reader::Node,
-    span::{SourceFile, Span},
-};
+use serde::de::{DeserializeOwned, Error};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use skiagraph_located_ron::diagnostics::{Code, Diagnostic, Diagnostics};
+use skiagraph_located_ron::fields::from_all_fields;
+use skiagraph_located_ron::reader::Node;
+use skiagraph_located_ron::span::{SourceFile, Span};
 use std::collections::{BTreeMap, HashMap};
 
 /// Content of a scene file. `SceneFile::parse` checks everything in it, but loads no mesh. Serde

@@ -2,11 +2,9 @@
 
 use crate::handed::is_file;
 use memchr::{memchr, memchr2};
-use std::{
-    borrow::Cow,
-    ffi::OsString,
-    path::{Path, PathBuf},
-};
+use std::borrow::Cow;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
 /// The mark at the beginning of a file in UTF-8 that some editors write.
 const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";

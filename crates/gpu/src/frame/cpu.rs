@@ -1,12 +1,10 @@
 //! Work of the CPU in the middle of a frame: what is encoded so far is submitted, items are copied
 //! back, and what the work wrote is uploaded in front of the rest.
 
-use crate::{
-    buffer,
-    error::{ExecuteError, scoped, submit, wait},
-    pipelines::handles::{GpuOperand, Handles},
-    signal::{Progress, Signal},
-};
+use crate::buffer;
+use crate::error::{ExecuteError, scoped, submit, wait};
+use crate::pipelines::handles::{GpuOperand, Handles};
+use crate::signal::{Progress, Signal};
 use skiagraph_graph::step::CpuCall;
 use std::{ops::Range, time::Duration};
 use web_time::Instant;

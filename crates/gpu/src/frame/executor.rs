@@ -1,21 +1,17 @@
 //! Runs a plan on a device, frame by frame.
 
-use super::{
-    growth_readback::GrowthReadback,
-    in_flight::{list, names},
-    prepare::{Prepared, Preparer},
-    replan::ReplanReport,
-    report::{Frame, FrameFault, FrameReport},
-    runner::Runner,
-};
-use crate::{
-    device::Gpu,
-    error::{ExecuteError, poll, submit, wait},
-    memory::physical::Physical,
-    pipelines::pipelines::Pipelines,
-    provider::Provider,
-    waiting::submitted_work,
-};
+use super::growth_readback::GrowthReadback;
+use super::in_flight::{list, names};
+use super::prepare::{Prepared, Preparer};
+use super::replan::ReplanReport;
+use super::report::{Frame, FrameFault, FrameReport};
+use super::runner::Runner;
+use crate::device::Gpu;
+use crate::error::{ExecuteError, poll, submit, wait};
+use crate::memory::physical::Physical;
+use crate::pipelines::pipelines::Pipelines;
+use crate::provider::Provider;
+use crate::waiting::submitted_work;
 use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceKind};
 use std::time::Duration;
 use web_time::Instant;

@@ -2,12 +2,11 @@
 //! the host submits it.
 
 use super::{encode::layers_from, read_buffer::ReadBuffer};
-use crate::{
-    error::ExecuteError,
-    memory::{allocation::extent, memory::InFrame},
-    readback::{Content, Readback},
-    signal::Progress,
-};
+use crate::error::ExecuteError;
+use crate::memory::allocation::extent;
+use crate::memory::memory::InFrame;
+use crate::readback::{Content, Readback};
+use crate::signal::Progress;
 use skiagraph_graph::{Plan, ResourceKind, SubresourceRange, Target, Texture};
 use std::{ops::Range, sync::Arc};
 

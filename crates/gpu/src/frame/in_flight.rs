@@ -5,22 +5,18 @@
 //! done, which one ran before it. If that is another one than the frame was encoded to follow, or a
 //! frame never ran, then those that were encoded meanwhile may show something stale.
 
-use super::{
-    contents::Contents,
-    fetch::{Fetch, StagingPool},
-    host_changes::Changed,
-    report::{FaultKind, FrameFault, FrameReport},
-    stamp::{Fate, Numbers, Stamp},
-    statistics::Counters,
-    timer::{Timer, times},
-    times::FrameTiming,
-    uniform::FrameUniform,
-};
-use crate::{
-    error::{ExecuteError, poll},
-    memory::memory::Grown,
-    presence::Presence,
-};
+use super::contents::Contents;
+use super::fetch::{Fetch, StagingPool};
+use super::host_changes::Changed;
+use super::report::{FaultKind, FrameFault, FrameReport};
+use super::stamp::{Fate, Numbers, Stamp};
+use super::statistics::Counters;
+use super::timer::{Timer, times};
+use super::times::FrameTiming;
+use super::uniform::FrameUniform;
+use crate::error::{ExecuteError, poll};
+use crate::memory::memory::Grown;
+use crate::presence::Presence;
 use std::{collections::VecDeque, sync::Arc, time::Duration};
 
 /// Most faults that wait for the host; older ones are forgotten.

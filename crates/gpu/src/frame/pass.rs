@@ -1,19 +1,13 @@
 //! A pass on the device: its pipelines, params, and bindings for each state of the ping-pong.
 
 use super::encode::{Meters, encode_all};
-use crate::{
-    error::{ExecuteError, named, scoped},
-    memory::{
-        memory::InFrame,
-        physical::{PingPong, Versions},
-    },
-    pipelines::{
-        bind::{Binder, upload},
-        handles::Handles,
-        key::same_pipeline,
-        pipelines::{Pipeline, Pipelines},
-    },
-};
+use crate::error::{ExecuteError, named, scoped};
+use crate::memory::memory::InFrame;
+use crate::memory::physical::{PingPong, Versions};
+use crate::pipelines::bind::{Binder, upload};
+use crate::pipelines::handles::Handles;
+use crate::pipelines::key::same_pipeline;
+use crate::pipelines::pipelines::{Pipeline, Pipelines};
 use skiagraph_graph::{LinkedPass, Origin, Plan, ResourceId, step::Step};
 use std::sync::Arc;
 

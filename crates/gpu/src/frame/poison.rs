@@ -1,19 +1,14 @@
 //! Fills memory with a pattern before a resource is first used in a frame. A pass that reads
 //! something unwritten then reads the pattern, so its outputs differ between two patterns.
 
-use super::{
-    encode::clear_view,
-    fetch::{MipCopy, mips},
-};
-use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
-    memory::{
-        memory::{InFrame, Memory},
-        physical::{PingPong, Versions},
-    },
-    pipelines::{bind::Binder, handles::GpuAttachment},
-};
+use super::encode::clear_view;
+use super::fetch::{MipCopy, mips};
+use crate::buffer;
+use crate::error::{ExecuteError, scoped};
+use crate::memory::memory::{InFrame, Memory};
+use crate::memory::physical::{PingPong, Versions};
+use crate::pipelines::bind::Binder;
+use crate::pipelines::handles::GpuAttachment;
 use skiagraph_graph::{Origin, Plan, ResourceId, ResourceKind, SubresourceRange, Target, Texture};
 use std::ops::Range;
 

@@ -1,11 +1,9 @@
 //! Prepares the next plan on another thread: its shader modules and pipelines, which take most of
 //! the time. Bindings to existing memory are made later, when the plan is put in.
 
-use crate::{
-    error::{ExecuteError, with_table},
-    pipelines::pipelines::{Pipeline, Pipelines},
-    presence::Presence,
-};
+use crate::error::{ExecuteError, with_table};
+use crate::pipelines::pipelines::{Pipeline, Pipelines};
+use crate::presence::Presence;
 use skiagraph_graph::Plan;
 use std::sync::Arc;
 

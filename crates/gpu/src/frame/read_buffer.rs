@@ -1,10 +1,8 @@
 //! Buffers by which bytes of a frame come back to the CPU.
 
-use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
-    signal::{Progress, Signal},
-};
+use crate::buffer;
+use crate::error::{ExecuteError, scoped};
+use crate::signal::{Progress, Signal};
 
 /// A buffer that a frame copies to and the host maps, for one frame after another.
 pub(super) struct ReadBuffer {

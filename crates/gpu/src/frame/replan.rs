@@ -8,11 +8,10 @@
 //! because indices differ between plans.
 
 use super::{contents::Contents, pass::GpuPass, state::State};
-use crate::{
-    error::ExecuteError,
-    memory::memory::Memory,
-    pipelines::{key::same_pipeline, pipelines::Pipelines},
-};
+use crate::error::ExecuteError;
+use crate::memory::memory::Memory;
+use crate::pipelines::key::same_pipeline;
+use crate::pipelines::pipelines::Pipelines;
 use skiagraph_graph::{Ids, LinkedPass, Plan, ResourceId, ResourceKind, step::Step};
 use std::collections::{BTreeMap, HashMap};
 

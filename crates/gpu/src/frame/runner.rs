@@ -1,34 +1,28 @@
 //! The frames of an executor: what it keeps of them, and how they are encoded and settled, how
 //! resources are refreshed, and how another plan takes the place of one.
 
-use super::{
-    contents::Contents,
-    cpu::{CpuTurn, Staging},
-    fetch::Fetch,
-    growth::Unchanged,
-    growth_readback::GrowthReadback,
-    host_changes::HostChanges,
-    in_flight::{FrameInFlight, FramesInFlight, list},
-    pass::GpuPass,
-    replan::{ReplanReport, Reused, has_same_params},
-    report::{Frame, FrameReport},
-    state::{FrameDecision, State},
-    statistics::Counters,
-    timer::Timer,
-    uniform::FrameUniform,
-};
-use crate::{
-    device::partial,
-    error::{ExecuteError, in_encoder, poll, with_table},
-    memory::{
-        import::{differs, is_on},
-        memory::{InFrame, Memory, ResourceFactory, check_bound, check_relied_on},
-        physical::{Physical, PingPong},
-    },
-    pipelines::pipelines::Pipelines,
-    presence::Presence,
-    provider::Provider,
-};
+use super::contents::Contents;
+use super::cpu::{CpuTurn, Staging};
+use super::fetch::Fetch;
+use super::growth::Unchanged;
+use super::growth_readback::GrowthReadback;
+use super::host_changes::HostChanges;
+use super::in_flight::{FrameInFlight, FramesInFlight, list};
+use super::pass::GpuPass;
+use super::replan::{ReplanReport, Reused, has_same_params};
+use super::report::{Frame, FrameReport};
+use super::state::{FrameDecision, State};
+use super::statistics::Counters;
+use super::timer::Timer;
+use super::uniform::FrameUniform;
+use crate::device::partial;
+use crate::error::{ExecuteError, in_encoder, poll, with_table};
+use crate::memory::import::{differs, is_on};
+use crate::memory::memory::{InFrame, Memory, ResourceFactory, check_bound, check_relied_on};
+use crate::memory::physical::{Physical, PingPong};
+use crate::pipelines::pipelines::Pipelines;
+use crate::presence::Presence;
+use crate::provider::Provider;
 use skiagraph_graph::{ParamValue, Plan, ResourceId, caught};
 use std::sync::Arc;
 

@@ -2,10 +2,8 @@
 //! the callbacks of commands that it has refused, too.
 
 use super::read_buffer::ReadBuffer;
-use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
-};
+use crate::buffer;
+use crate::error::{ExecuteError, scoped};
 
 /// Bytes of a number.
 const BYTES: u64 = 8;

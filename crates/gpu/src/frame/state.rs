@@ -1,26 +1,20 @@
 //! A plan with its memory, passes and contents on a device.
 
-use super::{
-    clears,
-    contents::{Contents, HostCopy},
-    cpu::CpuTurn,
-    encode::{Meters, SharedPass, clear_buffers, encode_all, layers_from},
-    fetch::Readable,
-    growth_readback::GrowthReadback,
-    idle::Idle,
-    in_flight::FrameInFlight,
-    pass::GpuPass,
-    poison::Poison,
-    statistics::Counters,
-};
-use crate::{
-    error::{ExecuteError, with_table},
-    memory::{
-        memory::{Grown, InFrame, Memory, ResourceFactory},
-        physical::{Physical, PingPong},
-    },
-    pipelines::pipelines::Pipelines,
-};
+use super::clears;
+use super::contents::{Contents, HostCopy};
+use super::cpu::CpuTurn;
+use super::encode::{Meters, SharedPass, clear_buffers, encode_all, layers_from};
+use super::fetch::Readable;
+use super::growth_readback::GrowthReadback;
+use super::idle::Idle;
+use super::in_flight::FrameInFlight;
+use super::pass::GpuPass;
+use super::poison::Poison;
+use super::statistics::Counters;
+use crate::error::{ExecuteError, with_table};
+use crate::memory::memory::{Grown, InFrame, Memory, ResourceFactory};
+use crate::memory::physical::{Physical, PingPong};
+use crate::pipelines::pipelines::Pipelines;
 use skiagraph_graph::{Ids, LinkedPass, Origin, Plan, ResourceId, ResourceKind, step::Step};
 use std::sync::Arc;
 use web_time::Instant;

@@ -1,10 +1,8 @@
 //! Pipeline statistics of frames: how often the shaders of each pass ran.
 
 use super::read_buffer::ReadBuffer;
-use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
-};
+use crate::buffer;
+use crate::error::{ExecuteError, scoped};
 use skiagraph_graph::{Plan, step::Step};
 use std::{cell::Cell, mem::size_of, ops::Range, sync::Arc};
 

@@ -3,11 +3,9 @@
 //! copy to the uniform.
 
 use super::host_changes::Changed;
-use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
-    signal::{Progress, Signal},
-};
+use crate::buffer;
+use crate::error::{ExecuteError, scoped};
+use crate::signal::{Progress, Signal};
 use skiagraph_graph::FRAME_BYTES;
 
 /// Source buffer of the uniform `frame`.

@@ -1,10 +1,8 @@
 //! Textures and buffers that the resources of a plan share, one after another.
 
 use super::physical::Physical;
-use crate::{
-    buffer,
-    error::{ExecuteError, scoped},
-};
+use crate::buffer;
+use crate::error::{ExecuteError, scoped};
 use skiagraph_graph::{Allocation, Origin, Plan, Resource, ResourceKind, Texture};
 use std::collections::HashMap;
 

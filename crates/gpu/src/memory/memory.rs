@@ -1,19 +1,13 @@
 //! Memory of a plan: created here, built by the provider, or imported by the host.
 
-use super::{
-    allocation::{GpuAllocation, Known},
-    import::is_on,
-    physical::{Physical, PingPong, Work},
-};
-use crate::{
-    buffer,
-    error::{
-        ExecuteError::{self, Internal},
-        scoped,
-    },
-    presence::Presence,
-    provider::{Provider, ProviderError},
-};
+use super::allocation::{GpuAllocation, Known};
+use super::import::is_on;
+use super::physical::{Physical, PingPong, Work};
+use crate::buffer;
+use crate::error::ExecuteError::{self, Internal};
+use crate::error::scoped;
+use crate::presence::Presence;
+use crate::provider::{Provider, ProviderError};
 use skiagraph_graph::{
     Address, Aliases, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId,
     ResourceKind, Sampler, Target,

@@ -1,14 +1,11 @@
 //! Binds pipelines to memory: bind groups, attachments, and operands of copies.
 
-use super::{
-    handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, NamedWork},
-    pipelines::Pipeline,
-};
-use crate::{
-    buffer,
-    error::{ExecuteError, named, scoped},
-    memory::{allocation::extent, memory::InFrame},
-};
+use super::handles::{GpuAttachment, GpuOperand, GpuProgram, Handles, NamedWork};
+use super::pipelines::Pipeline;
+use crate::buffer;
+use crate::error::{ExecuteError, named, scoped};
+use crate::memory::allocation::extent;
+use crate::memory::memory::InFrame;
 use skiagraph_graph::{
     Attachment, BindTarget, Ids, LinkedPass, LinkedProgram, ResourceKind, SubresourceRange, Target,
     step::{

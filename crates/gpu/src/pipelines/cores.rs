@@ -1,12 +1,8 @@
 //! Work on all cores.
 
-use std::{
-    sync::{
-        OnceLock,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
-};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 /// Stack of a thread, as large as that of most main threads: compilers of shaders recurse.
 const STACK: usize = 8 << 20;

@@ -1,9 +1,7 @@
 //! Keys of pipelines: all that a pipeline is made from.
 
-use skiagraph_graph::{
-    Ids, Shader,
-    step::{Draw, Step},
-};
+use skiagraph_graph::step::{Draw, Step};
+use skiagraph_graph::{Ids, Shader};
 use std::sync::Arc;
 
 /// All that a pipeline is made from. Steps of equal keys can use the same pipeline.

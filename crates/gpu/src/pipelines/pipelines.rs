@@ -1,19 +1,15 @@
 //! Shader modules and pipelines of a device: each is made once, for all executors that share it.
 
-use super::{
-    cores::on_all_cores,
-    handles::PipelineKind,
-    kept::{self, Keeper},
-    key::PipelineKey,
-};
+use super::cores::on_all_cores;
+use super::handles::PipelineKind;
+use super::kept::{self, Keeper};
+use super::key::PipelineKey;
 use crate::error::{ExecuteError, named, scoped};
 use naga::ShaderStage;
 use skiagraph_graph::{Ids, LinkedPass, Shader, step::Step};
-use std::{
-    borrow::Cow,
-    collections::{HashMap, HashSet},
-    sync::{Arc, Mutex, MutexGuard, PoisonError},
-};
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The pipeline of a draw or dispatch, with the layouts of its bind groups.
 #[derive(Debug)]

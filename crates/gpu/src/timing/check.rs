@@ -1,10 +1,8 @@
 //! Checks that the timestamps of an adapter agree with wall time.
 
-use crate::{
-    device::partial,
-    error::ExecuteError,
-    frame::{Executor, Frame},
-};
+use crate::device::partial;
+use crate::error::ExecuteError;
+use crate::frame::{Executor, Frame};
 use skiagraph_graph::{Graph, MemorySources, NoProvider, ParamValue, PlanRequest, Registry};
 use std::{collections::BTreeMap, time::Duration};
 use web_time::Instant;

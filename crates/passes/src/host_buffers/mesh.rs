@@ -1,18 +1,14 @@
 //! A mesh whose vertices stay in a host's buffer.
 
 use super::{error::HostMeshError, layout::HostVertices, rest::decoded};
-use crate::{
-    buffers::{On, binding_limit, upload},
-    parts::Room,
-};
+use crate::buffers::{On, binding_limit, upload};
+use crate::parts::Room;
 use glam::Vec3;
 use skiagraph_gpu::DeviceIdentity;
 use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, Shadows, TwoLevelBvh};
-use std::{
-    borrow::Cow,
-    collections::HashMap,
-    sync::{Arc, OnceLock},
-};
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
 
 /// Marks a position that no triangle uses, and a normal that no vertex has.
 const NONE: u32 = u32::MAX;

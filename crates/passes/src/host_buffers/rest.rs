@@ -1,15 +1,11 @@
 //! Vertices at rest, decoded by a module of the host: once, while a mesh is loaded.
 
-use super::{
-    decoder::HostDecoder,
-    error::HostMeshError,
-    layout::HostVertices,
-    mesh_record::{MeshRecord, across_items},
-};
-use crate::{
-    buffers::{On, refused, upload},
-    host,
-};
+use super::decoder::HostDecoder;
+use super::error::HostMeshError;
+use super::layout::HostVertices;
+use super::mesh_record::{MeshRecord, across_items};
+use crate::buffers::{On, refused, upload};
+use crate::host;
 
 /// Decodes positions and normals of all vertices at rest, whose bytes these are, and waits for
 /// them; no normals if the module has none.

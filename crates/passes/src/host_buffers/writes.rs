@@ -1,16 +1,12 @@
 //! Kernels that write the parts of hosts' buffers into those of the scene.
 
-use super::{
-    kernel_module::{ENTRIES, KernelModule},
-    mesh::HostMesh,
-    mesh_record::{MOST_GROUPS, MeshRecord, across_items},
-};
-use crate::{
-    buffers::{On, check_binding, refused, upload},
-    error::Error,
-    host,
-    parts::PartId,
-};
+use super::kernel_module::{ENTRIES, KernelModule};
+use super::mesh::HostMesh;
+use super::mesh_record::{MOST_GROUPS, MeshRecord, across_items};
+use crate::buffers::{On, check_binding, refused, upload};
+use crate::error::Error;
+use crate::host;
+use crate::parts::PartId;
 use glam::{DAffine3, DVec3, Vec3};
 use std::sync::Arc;
 

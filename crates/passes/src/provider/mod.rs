@@ -4,19 +4,17 @@ mod build;
 mod resources;
 mod uploads;
 
-use crate::{
-    buffers::{On, binding_limit},
-    built::{Built, Work},
-    changes::Change,
-    error::Error,
-    eye::Eye,
-    geometry::Geometry,
-    host_buffers::{HostMesh, HostWrite},
-    lights,
-    names::*,
-    parts::{PartId, Room},
-    ray_query::Structures,
-};
+use crate::buffers::{On, binding_limit};
+use crate::built::{Built, Work};
+use crate::changes::Change;
+use crate::error::Error;
+use crate::eye::Eye;
+use crate::geometry::Geometry;
+use crate::host_buffers::{HostMesh, HostWrite};
+use crate::lights;
+use crate::names::*;
+use crate::parts::{PartId, Room};
+use crate::ray_query::Structures;
 use glam::{DAffine3, Vec3};
 use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
 use skiagraph_graph::Plan;

@@ -2,12 +2,10 @@
 //! that makes its content, if that is new: tests write the list of docs/authoring.md.
 
 use super::uploads::{Resource, Uploads};
-use crate::{
-    buffers::Held,
-    lights,
-    names::MadeFrom,
-    uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform},
-};
+use crate::buffers::Held;
+use crate::lights;
+use crate::names::MadeFrom;
+use crate::uniforms::{CameraUniform, LightAreaUniform, LightUniform, UnprojectionUniform};
 use skiagraph_graph::{Provided, ProvidedBinding};
 
 /// Makes the table, and the macro `table` that writes it in Markdown. An entry is the name; the

@@ -1,29 +1,23 @@
 //! The scene, and the buffers that it is uploaded to.
 
-use crate::{
-    atlas::Atlas,
-    buffers::{Buffers, Held, On, Patched, binding_limit},
-    built::{Built, How},
-    changes::Change,
-    error::Error,
-    eye::Eye,
-    geometry::Geometry,
-    hierarchies::all,
-    host_buffers::{Bound, HostWrite, Kernel, Kernels},
-    lights,
-    names::*,
-    trees::nodes_to_walk,
-};
+use crate::atlas::Atlas;
+use crate::buffers::{Buffers, Held, On, Patched, binding_limit};
+use crate::built::{Built, How};
+use crate::changes::Change;
+use crate::error::Error;
+use crate::eye::Eye;
+use crate::geometry::Geometry;
+use crate::hierarchies::all;
+use crate::host_buffers::{Bound, HostWrite, Kernel, Kernels};
+use crate::lights;
+use crate::names::*;
+use crate::trees::nodes_to_walk;
 use glam::{Vec3, Vec4};
 use skiagraph_graph::Provided;
-use skiagraph_scene::{
-    BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets,
-    packed_masks::{mask_words, shadow_words},
-};
-use std::{
-    ops::Range,
-    sync::{Arc, OnceLock},
-};
+use skiagraph_scene::packed_masks::{mask_words, shadow_words};
+use skiagraph_scene::{BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets};
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
 use web_time::Instant;
 
 /// A resource of scenes.

@@ -1,10 +1,8 @@
 //! Building: clusters of boxes, then parallel reinsertion by obvhs (Meister and Bittner 2018).
 
-use super::{
-    node::{BvhNode, MAX_DEPTH, MAX_LEAF, depth},
-    ploc::cluster,
-    top::{Split, over_boxes},
-};
+use super::node::{BvhNode, MAX_DEPTH, MAX_LEAF, depth};
+use super::ploc::cluster;
+use super::top::{Split, over_boxes};
 use glam::Vec3A;
 use obvhs::{
     aabb::Aabb,
@@ -86,12 +84,12 @@ fn in_pieces(count: u32, around: impl Fn(u32) -> Aabb, effort: Effort) -> Option
         let piece = whole(&boxes, effort)?;
         let nodes = tree.nodes.len() as u32 - 1;
         let slots = tree.primitive_indices.len() as u32;
-        let moved = |node: &Bvh2Node| {
+        let mut moved = piece.nodes.iter().map(|node| {
             let by = if node.is_leaf() { slots } else { nodes };
             Bvh2Node::new(node.aabb, node.prim_count, node.first_index + by)
-        };
-        tree.nodes[slot] = moved(&piece.nodes[0]);
-        tree.nodes.extend(piece.nodes[1..].iter().map(moved));
+        });
+        tree.nodes[slot] = moved.next()?;
+        tree.nodes.extend(moved);
         let primitives = piece.primitive_indices.iter();
         tree.primitive_indices
             .extend(primitives.map(|&place| ids[place as usize]));

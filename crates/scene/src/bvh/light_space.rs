@@ -3,12 +3,10 @@
 //! watertight triangle test (Woop, Benthin and Wald 2013): axes permuted so that the direction's
 //! longest component is the last, then sheared so that the direction is the z axis.
 
-use super::{
-    build::Effort,
-    node::{BvhNode, MAX_DEPTH},
-    tree::{Bvh, around},
-    two_level::TwoLevelBvh,
-};
+use super::build::Effort;
+use super::node::{BvhNode, MAX_DEPTH};
+use super::tree::{Bvh, around};
+use super::two_level::TwoLevelBvh;
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 

@@ -6,11 +6,10 @@
 //! other, about half of all.
 
 use glam::DVec3;
-use obvhs::{
-    aabb::Aabb,
-    bvh2::{Bvh2, node::Bvh2Node},
-    ploc::morton::morton_encode_u128_unorm,
-};
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use obvhs::ploc::morton::morton_encode_u128_unorm;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 

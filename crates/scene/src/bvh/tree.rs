@@ -1,9 +1,7 @@
 //! The hierarchy as shaders and tracers walk it.
 
-use super::{
-    build::{Effort, in_halves, measurable, ploc},
-    node::{BvhNode, MAX_DEPTH, MAX_LEAF, area, depth},
-};
+use super::build::{Effort, in_halves, measurable, ploc};
+use super::node::{BvhNode, MAX_DEPTH, MAX_LEAF, area, depth};
 use crate::mesh::{Mesh, bounds};
 use glam::{Vec3, Vec3A};
 use obvhs::{aabb::Aabb, bvh2::Bvh2};

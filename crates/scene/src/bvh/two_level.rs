@@ -1,13 +1,11 @@
 //! A hierarchy over a mesh in pieces that move by themselves: a tree for each piece, and a top
 //! level over the pieces, in one list of nodes. It is walked like any other.
 
-use super::{
-    build::Effort,
-    levels::levels,
-    node::{BvhNode, MAX_DEPTH, area},
-    top::{Split, deepest, over_boxes},
-    tree::{Bvh, cost_of, fitted_box},
-};
+use super::build::Effort;
+use super::levels::levels;
+use super::node::{BvhNode, MAX_DEPTH, area};
+use super::top::{Split, deepest, over_boxes};
+use super::tree::{Bvh, cost_of, fitted_box};
 use crate::{free::Free, mesh::Mesh};
 use glam::Vec3;
 use std::{collections::BTreeMap, ops::Range, sync::Arc};

@@ -3,10 +3,8 @@
 //!
 //! Every part is a closed surface and touches no other.
 
-use super::{
-    numbers::Random,
-    solid::{Builder, Frame, GAP},
-};
+use super::numbers::Random;
+use super::solid::{Builder, Frame, GAP};
 use crate::mesh::Mesh;
 use glam::DVec3;
 

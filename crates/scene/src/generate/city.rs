@@ -5,11 +5,9 @@
 //!
 //! Every part is a closed surface and touches no other.
 
-use super::{
-    numbers::Random,
-    solid::{Builder, Frame, GAP},
-    stamp::{Stamp, turned},
-};
+use super::numbers::Random;
+use super::solid::{Builder, Frame, GAP};
+use super::stamp::{Stamp, turned};
 use crate::mesh::Mesh;
 use glam::DVec3;
 

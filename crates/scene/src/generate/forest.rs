@@ -3,12 +3,10 @@
 //!
 //! Every part is a closed surface and touches no other.
 
-use super::{
-    numbers::Random,
-    solid::{Builder, GAP},
-    stamp::Stamp,
-    tree::Tree,
-};
+use super::numbers::Random;
+use super::solid::{Builder, GAP};
+use super::stamp::Stamp;
+use super::tree::Tree;
 use crate::mesh::Mesh;
 use glam::DVec3;
 

@@ -1,10 +1,8 @@
 //! Closed solids: everything generated is a loft, a stack of rings closed by a point at either end.
 
 use super::numbers::turn;
-use crate::{
-    mesh::{Group, Mesh},
-    weld::Welder,
-};
+use crate::mesh::{Group, Mesh};
+use crate::weld::Welder;
 use glam::{DVec3, Vec3};
 
 /// Faces around a vertex share a smooth normal where they meet at less than 50° (this is the

@@ -1,9 +1,7 @@
 //! A tree: a trunk, branches, and leaves that touch nothing.
 
-use super::{
-    numbers::{Random, turn},
-    solid::{Builder, Frame, GAP},
-};
+use super::numbers::{Random, turn};
+use super::solid::{Builder, Frame, GAP};
 use glam::DVec3;
 
 /// Radius of a trunk at the ground.

@@ -1,22 +1,17 @@
 //! Animations of a document and their keys, read from the JSON by themselves: no mistake in them
 //! keeps a mesh from being read.
 
-use super::{
-    accessor,
-    beside::{index, items},
-    buffers::{Buffers, load},
-    extensions,
-    nodes::unit,
-};
+use super::beside::{index, items};
+use super::buffers::{Buffers, load};
+use super::nodes::unit;
+use super::{accessor, extensions};
 use crate::error::{beginning, plural};
 use glam::{DQuat, DVec3};
 use gltf::accessor::DataType;
 use serde_json::Value;
-use std::{
-    collections::{BTreeMap, HashSet},
-    path::Path,
-    sync::Arc,
-};
+use std::collections::{BTreeMap, HashSet};
+use std::path::Path;
+use std::sync::Arc;
 
 /// Animations as a document says them, with the accessors, views and buffers of their keys.
 #[derive(Clone, Debug, Default, PartialEq)]

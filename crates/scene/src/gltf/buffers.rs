@@ -1,18 +1,14 @@
 //! The bytes of buffers and images: in the file itself, in data URIs, or in files beside it.
 
 use super::beside::Beside;
-use crate::{
-    error::beginning,
-    limit::Limit,
-    text::{file_in, line_text},
-};
+use crate::error::beginning;
+use crate::limit::Limit;
+use crate::text::{file_in, line_text};
 use base64::{Engine, engine::general_purpose::STANDARD};
 use percent_encoding::percent_decode_str;
-use std::{
-    collections::HashMap,
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Some hundred million triangles.
 pub(super) const GLTF_FILE: Limit = Limit {

@@ -1,18 +1,14 @@
 //! Animations as camera paths: where cameras, lights and meshes are in each frame.
 
-use super::{
-    animations::{Bytes, Track, Values},
-    names::{Names, titled},
-    nodes::{Nodes, local, part, parts},
-    placements::Placements,
-};
-use crate::{
-    camera::View,
-    light_kind::{Light, LightKind},
-    mesh::Mesh,
-    motion::{Motion, PoseKey},
-    path::{CameraKey, CameraPath, LightKey},
-};
+use super::animations::{Bytes, Track, Values};
+use super::names::{Names, titled};
+use super::nodes::{Nodes, local, part, parts};
+use super::placements::Placements;
+use crate::camera::View;
+use crate::light_kind::{Light, LightKind};
+use crate::mesh::Mesh;
+use crate::motion::{Motion, PoseKey};
+use crate::path::{CameraKey, CameraPath, LightKey};
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use gltf::{Document, Node};
 use serde_json::Value;

@@ -1,13 +1,11 @@
 //! Parses and validates a document. Mistakes on which the `gltf` crate panics, and what it has no
 //! need to refuse, are seen to before it looks.
 
-use super::{
-    beside::Beside,
-    container,
-    fault::{Fault, of_another_version},
-    placements::Placements,
-    prepare::prepare,
-};
+use super::beside::Beside;
+use super::container;
+use super::fault::{Fault, of_another_version};
+use super::placements::Placements;
+use super::prepare::prepare;
 use crate::{border::caught, material_use::MaterialUse, text::line_text};
 use gltf::{
     Document, Error,

@@ -1,29 +1,24 @@
 //! Welds the triangles of a document's nodes.
 
-use super::{
-    accessor,
-    animations::Bytes,
-    beside::Beside,
-    buffers::{self, Buffers, GLTF_FILE},
-    clips,
-    document::{self, Parsed},
-    fault::Fault,
-    materials::Reader,
-    nodes::{NO_TURN, Nodes, group},
-    pose::{self, Vertices, of_normals, vectors},
-    scene::GltfScene,
-    vertex_alpha::Materials,
-};
-use crate::{
-    builder::{Corner, MeshBuilder},
-    error::{FaceRef, SceneError, plural},
-    material_use::MaterialUse,
-    mesh::Mesh,
-    obj::read::check_read,
-    report::ImportReport,
-    shadows::Shadows,
-    weld::Known,
-};
+use super::animations::Bytes;
+use super::beside::Beside;
+use super::buffers::{self, Buffers, GLTF_FILE};
+use super::document::{self, Parsed};
+use super::fault::Fault;
+use super::materials::Reader;
+use super::nodes::{NO_TURN, Nodes, group};
+use super::pose::{self, Vertices, of_normals, vectors};
+use super::scene::GltfScene;
+use super::vertex_alpha::Materials;
+use super::{accessor, clips};
+use crate::builder::{Corner, MeshBuilder};
+use crate::error::{FaceRef, SceneError, plural};
+use crate::material_use::MaterialUse;
+use crate::mesh::Mesh;
+use crate::obj::read::check_read;
+use crate::report::ImportReport;
+use crate::shadows::Shadows;
+use crate::weld::Known;
 use glam::{DMat3, DMat4, Vec2};
 use gltf::{Document, Semantic, accessor::DataType, mesh::Mode};
 use std::{ops::Range, path::Path};

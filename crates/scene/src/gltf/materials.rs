@@ -1,17 +1,13 @@
 //! Materials of a glTF file: base colour, mask, double-sidedness.
 
-use super::{
-    beside::Beside,
-    buffers::{Buffers, data_uri, path_of},
-};
-use crate::{
-    handed::is_file,
-    mask::Mask,
-    material::Material,
-    material_use::MaterialUse,
-    texture::{Source, Texture, Wrap},
-    texture_file::check_format,
-};
+use super::beside::Beside;
+use super::buffers::{Buffers, data_uri, path_of};
+use crate::handed::is_file;
+use crate::mask::Mask;
+use crate::material::Material;
+use crate::material_use::MaterialUse;
+use crate::texture::{Source, Texture, Wrap};
+use crate::texture_file::check_format;
 use glam::{Mat2, Vec2};
 use gltf::{material::AlphaMode, texture::WrappingMode};
 use std::{path::Path, sync::Arc};

@@ -1,10 +1,8 @@
 //! Cameras, lights and animations of a document, and the nodes that place them, read before
 //! `prepare` takes them out.
 
-use super::{
-    animations::Animations,
-    beside::{index, items},
-};
+use super::animations::Animations;
+use super::beside::{index, items};
 use serde_json::Value;
 use std::collections::BTreeMap;
 

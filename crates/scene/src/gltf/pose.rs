@@ -1,12 +1,10 @@
 //! Poses, which move the vertices of a mesh before it is drawn: weights of morph targets, the
 //! joints of a skin in the pose of their nodes, and the transforms of instances.
 
-use super::{
-    accessor,
-    beside::Instances,
-    buffers::Buffers,
-    nodes::{Nodes, unit},
-};
+use super::accessor;
+use super::beside::Instances;
+use super::buffers::Buffers;
+use super::nodes::{Nodes, unit};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
 use gltf::{Accessor, Document, Primitive, Semantic, Skin};
 

@@ -2,14 +2,12 @@
 //! what cannot move or cut a triangle cannot refuse a file then. Extensions that are followed but
 //! unknown to the crate are read here.
 
-use super::{
-    beside::{Beside, Instances, each, index, items, role, taken},
-    extensions::{self, Kind},
-    fault::Fault,
-    names::titled,
-    nodes::NO_TURN,
-    prepare_looks, prepare_storage,
-};
+use super::beside::{Beside, Instances, each, index, items, role, taken};
+use super::extensions::{self, Kind};
+use super::fault::Fault;
+use super::names::titled;
+use super::nodes::NO_TURN;
+use super::{prepare_looks, prepare_storage};
 use crate::{error::beginning, material_use::MaterialUse};
 use serde_json::Value;
 

@@ -1,10 +1,8 @@
 //! Reduces accessors, buffer views and buffers to those in use.
 
-use super::{
-    beside::{Beside, each, index, items, taken},
-    extensions,
-    fault::Fault,
-};
+use super::beside::{Beside, each, index, items, taken};
+use super::extensions;
+use super::fault::Fault;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashSet};
 

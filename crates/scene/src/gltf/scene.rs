@@ -1,18 +1,14 @@
 //! Views and lights of a document: its cameras and those of KHR_lights_punctual, where nodes place
 //! them.
 
-use super::{
-    clips::{self, Clip},
-    names::{Names, titled},
-    nodes::Nodes,
-    placements::Placements,
-};
-use crate::{
-    camera::View,
-    error::plural,
-    light::DirectionalLight,
-    light_kind::{Light, LightKind, PointLight, SpotLight},
-};
+use super::clips::{self, Clip};
+use super::names::{Names, titled};
+use super::nodes::Nodes;
+use super::placements::Placements;
+use crate::camera::View;
+use crate::error::plural;
+use crate::light::DirectionalLight;
+use crate::light_kind::{Light, LightKind, PointLight, SpotLight};
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use serde_json::Value;
 

@@ -8,17 +8,13 @@
 //! is read twice, first all of its vertices, then its faces.
 
 use super::options::ObjMaterials;
-use crate::{
-    error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, SceneError, beginning},
-    text::{next_line, without_comment},
-};
+use crate::error::{FACES_SHOWN, FaceFault, FaceProblem, FaceRef, SceneError, beginning};
+use crate::text::{next_line, without_comment};
 use glam::Vec2;
-use std::{
-    borrow::Cow,
-    collections::HashSet,
-    io::{self, BufRead, Read},
-    path::Path,
-};
+use std::borrow::Cow;
+use std::collections::HashSet;
+use std::io::{self, BufRead, Read};
+use std::path::Path;
 
 /// Where a face that was handed on stood, and whether the file gives it normals.
 pub(super) struct FaceRecord {

@@ -1,17 +1,13 @@
 //! Welds what `tobj` read into a [`Mesh`].
 
-use super::{
-    guard::{FaceRecord, Faults, Guard},
-    mtl::{self, Found},
-    options::ObjOptions,
-    polygon,
-};
-use crate::{
-    builder::{Corner, MeshBuilder},
-    error::{FaceProblem, SceneError, plural},
-    mesh::Mesh,
-    report::ImportReport,
-};
+use super::guard::{FaceRecord, Faults, Guard};
+use super::mtl::{self, Found};
+use super::options::ObjOptions;
+use super::polygon;
+use crate::builder::{Corner, MeshBuilder};
+use crate::error::{FaceProblem, SceneError, plural};
+use crate::mesh::Mesh;
+use crate::report::ImportReport;
 use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
 use std::path::Path;

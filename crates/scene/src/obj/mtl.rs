@@ -1,27 +1,21 @@
 //! The materials that the faces of an OBJ file use: colours, masks and their textures.
 
-use super::{
-    guard::Guard,
-    mtl_file::{self, MtlMaterial},
-    options::{ObjMaterials, ObjOptions},
-    texture_statement::{Channel, TextureStatement, UvTransform},
-};
-use crate::{
-    error::SceneError,
-    handed::is_file,
-    limit::Limit,
-    mask::Mask,
-    material::Material,
-    pattern::Pattern,
-    texels::Texels,
-    text::file_in,
-    texture::{Source, Texture, Wrap},
-};
-use std::{
-    collections::{BTreeMap, HashMap},
-    path::{Path, PathBuf},
-    sync::Arc,
-};
+use super::guard::Guard;
+use super::mtl_file::{self, MtlMaterial};
+use super::options::{ObjMaterials, ObjOptions};
+use super::texture_statement::{Channel, TextureStatement, UvTransform};
+use crate::error::SceneError;
+use crate::handed::is_file;
+use crate::limit::Limit;
+use crate::mask::Mask;
+use crate::material::Material;
+use crate::pattern::Pattern;
+use crate::texels::Texels;
+use crate::text::file_in;
+use crate::texture::{Source, Texture, Wrap};
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Room for hundreds of thousands of materials.
 const MTL_FILE: Limit = Limit {

@@ -5,10 +5,8 @@
 //! number that is missing from a highlight, and dies where `Kd` has one number instead of three.
 
 use super::guard::split;
-use crate::{
-    error::beginning,
-    text::{lines_text, next_line, without_comment, without_mark},
-};
+use crate::error::beginning;
+use crate::text::{lines_text, next_line, without_comment, without_mark};
 
 /// A material, as far as it matters here.
 #[derive(Clone, Debug, Default)]

@@ -1,14 +1,12 @@
 //! Reading the file, and what is refused of it.
 
 use super::{guard::Guard, import::import, options::ObjOptions};
-use crate::{
-    border::caught,
-    error::{EXTENTS, SceneError},
-    limit::Limit,
-    mesh::Mesh,
-    report::ImportReport,
-    text::{lines_text, without_mark},
-};
+use crate::border::caught;
+use crate::error::{EXTENTS, SceneError};
+use crate::limit::Limit;
+use crate::mesh::Mesh;
+use crate::report::ImportReport;
+use crate::text::{lines_text, without_mark};
 use std::{collections::HashSet, path::Path};
 
 /// Some twenty million faces. The mesh takes several times as much.

@@ -1,10 +1,8 @@
 //! The flower box: a planter and some fifty flowers of very small triangles.
 
 use super::furniture::ACROSS_THE_LIGHT;
-use crate::generate::{
-    numbers::{Random, turn},
-    solid::{Builder, Frame, GAP},
-};
+use crate::generate::numbers::{Random, turn};
+use crate::generate::solid::{Builder, Frame, GAP};
 use glam::DVec3;
 
 /// Half length and half width of the planter's inside.

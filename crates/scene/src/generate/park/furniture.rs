@@ -1,9 +1,7 @@
 //! The bench and the lamp.
 
-use crate::generate::{
-    numbers::turn,
-    solid::{Builder, Frame, GAP},
-};
+use crate::generate::numbers::turn;
+use crate::generate::solid::{Builder, Frame, GAP};
 use glam::DVec3;
 
 /// How bench and planter are turned, as a fraction of a full turn: their long sides lie across the

@@ -70,6 +70,21 @@ fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
     for (name, value) in plan.named_values() {
         text += &format!("// {name} = {value}\n");
     }
+    // Of the facts about an adapter those that the document, or one that it extends, asks for.
+    let written = Graph::flat(path, &registry(), sources).ok()?;
+    let facts = [
+        ("software", request.adapter.is_software.to_string()),
+        ("subgroup_size", request.adapter.subgroup_size.to_string()),
+        (
+            "storage_binding",
+            request.limits.max_storage_buffer_binding_size.to_string(),
+        ),
+    ];
+    for (name, value) in facts {
+        if written.contains(&format!("adapter.{name}")) {
+            text += &format!("// adapter.{name} = {value}\n");
+        }
+    }
     Some(text)
 }
 

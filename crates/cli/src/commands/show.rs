@@ -70,7 +70,7 @@ fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
     for (name, value) in plan.named_values() {
         text += &format!("// {name} = {value}\n");
     }
-    // Of the facts about an adapter those that the document, or one that it extends, asks for.
+    // Facts about an adapter that the document, or one that it extends, asks for.
     let written = Graph::flat(path, &registry(), sources).ok()?;
     let facts = [
         ("software", request.adapter.is_software.to_string()),

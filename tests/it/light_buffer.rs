@@ -481,8 +481,8 @@ fn edges_of_a_picture_may_be_no_multiple_of_a_workgroups() {
     let rays = bench.by_rays();
     for longest in [4, 2048] {
         let lists = bench.by_lists("receivers", &[("map_size", 16), ("longest_list", longest)]);
-        let asked = lists.lit + lists.shadow;
-        assert!(asked > 500, "{asked}");
+        let answered = lists.lit + lists.shadow;
+        assert!(answered > 500, "{answered}");
         assert!(lists.visibility == rays, "{longest}");
     }
 }

@@ -49,7 +49,13 @@ fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
     let provider = placeholder(viewport, &graph);
     let request = Capabilities::greatest().request(viewport, &provider);
     let plan = graph.plan(&request).ok()?;
-    let mut text = "// What runs at 1024x1024, with the params as they are:\n".to_owned();
+    let mut text = format!(
+        "// What runs at 1024x1024, with the params as they are, where adapter.software = {}, \
+         adapter.subgroup_size = {}, adapter.storage_binding = {}:\n",
+        request.adapter.is_software,
+        request.adapter.subgroup_size,
+        request.limits.max_storage_buffer_binding_size,
+    );
     for pass in plan.live() {
         let names = |is_meant: fn(&Access) -> bool| {
             let used = pass.accesses.iter().filter(|access| is_meant(access));
@@ -69,21 +75,6 @@ fn passes(path: &str, sources: &dyn Sources) -> Option<String> {
     }
     for (name, value) in plan.named_values() {
         text += &format!("// {name} = {value}\n");
-    }
-    // Facts about an adapter that the document, or one that it extends, asks for.
-    let written = Graph::flat(path, &registry(), sources).ok()?;
-    let facts = [
-        ("software", request.adapter.is_software.to_string()),
-        ("subgroup_size", request.adapter.subgroup_size.to_string()),
-        (
-            "storage_binding",
-            request.limits.max_storage_buffer_binding_size.to_string(),
-        ),
-    ];
-    for (name, value) in facts {
-        if written.contains(&format!("adapter.{name}")) {
-            text += &format!("// adapter.{name} = {value}\n");
-        }
     }
     Some(text)
 }

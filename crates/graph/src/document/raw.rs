@@ -120,28 +120,51 @@ pub(crate) fn stem(path: &str) -> &str {
 }
 
 /// All sections of a document: each name, with a sentence about its content.
-#[rustfmt::skip] // A section each.
 pub(crate) const SECTIONS: [(&str, &str); 17] = [
     ("format", "The version of the language, 3."),
     ("extends", "Another document, of which this one is an edit."),
     ("description", "A sentence, shown by `skiagraph presets`."),
-    ("requires", "Features of the device, by wgpu's names, without which the graph does not run."),
-    ("needs", "Conditions on the viewport, the scene and its lights that must hold for a plan."),
+    (
+        "requires",
+        "Features of the device, by wgpu's names, without which the graph does not run.",
+    ),
+    (
+        "needs",
+        "Conditions on the viewport, the scene and its lights that must hold for a plan.",
+    ),
     ("params", "Values from outside."),
-    ("set",
-     "Other defaults for params of the extended document, or of included ones that are exposed."),
-    ("values", "Expressions with a name, for every expression and shader of the document."),
-    ("narrow",
-     "Fewer words for a `Choice`, of this document's own or of an exposed one, with the reason."),
-    ("imports", "Modules that shaders import in the place of others."),
+    (
+        "set",
+        "Other defaults for params of the extended document, or of included ones that are exposed.",
+    ),
+    (
+        "values",
+        "Expressions with a name, for every expression and shader of the document.",
+    ),
+    (
+        "narrow",
+        "Fewer words for a `Choice`, of this document's own or of an exposed one, with the reason.",
+    ),
+    (
+        "imports",
+        "Modules that shaders import in the place of others.",
+    ),
     ("inputs", "Materials that the includer gives, or the host."),
-    ("materials", "Textures, buffers and samplers that passes share."),
+    (
+        "materials",
+        "Textures, buffers and samplers that passes share.",
+    ),
     ("passes", "Steps of the method, in this order."),
     ("outputs", "Materials that the graph gives."),
     ("lights", "The kinds of light that the method takes."),
-    ("proven_on",
-     "Backends short of WebGPU, such as `gl`, on which the graph is known to be right."),
-    ("claims", "Promises of the method, by `exact` and `certain`."),
+    (
+        "proven_on",
+        "Backends short of WebGPU, such as `gl`, on which the graph is known to be right.",
+    ),
+    (
+        "claims",
+        "Promises of the method, by `exact` and `certain`.",
+    ),
 ];
 
 /// Splits a document into its sections. Mistakes in a section are reported.

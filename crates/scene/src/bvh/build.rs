@@ -13,9 +13,9 @@ use std::sync::LazyLock;
 
 /// Where half the surface of the scene's box overflows, the surface area heuristic has nothing to
 /// compare; nor has it of no box.
-pub(super) fn measurable(count: u32, around: impl Fn(u32) -> Aabb) -> bool {
+pub(super) fn measurable(count: u32, box_of: impl Fn(u32) -> Aabb) -> bool {
     let empty = Aabb::empty();
-    let bounds = (0..count).fold(empty, |sum, id| sum.union(&around(id)));
+    let bounds = (0..count).fold(empty, |sum, id| sum.union(&box_of(id)));
     count > 0 && bounds.half_area().is_finite()
 }
 
@@ -45,22 +45,22 @@ const JOINED: f32 = 0.02;
 /// step of the reinsertion is left out: two thirds of the time for 0.1 to 1 % of the cost. And it
 /// gives up, `None`, where the tree becomes deeper than [`MAX_DEPTH`].
 ///
-/// `around` returns the box of each triangle below `count`.
-pub(super) fn ploc(count: u32, around: impl Fn(u32) -> Aabb, effort: Effort) -> Option<Bvh2> {
+/// `box_of` returns the box of each triangle below `count`.
+pub(super) fn ploc(count: u32, box_of: impl Fn(u32) -> Aabb, effort: Effort) -> Option<Bvh2> {
     if count as usize > MOST_WHOLE {
-        return in_pieces(count, around, effort);
+        return in_pieces(count, box_of, effort);
     }
-    whole(&(0..count).map(around).collect::<Vec<_>>(), effort)
+    whole(&(0..count).map(box_of).collect::<Vec<_>>(), effort)
 }
 
 /// Builds a tree whose depth is the logarithm of the number of boxes. Returns its nodes, and the
 /// boxes' numbers in the order of the leaves, each of which has at most `most`.
 pub(super) fn in_halves(
     count: u32,
-    around: impl Fn(u32) -> Aabb,
+    box_of: impl Fn(u32) -> Aabb,
     most: u32,
 ) -> (Vec<BvhNode>, Vec<u32>) {
-    let boxes = (0..count).map(around).map(|aabb| BvhNode {
+    let boxes = (0..count).map(box_of).map(|aabb| BvhNode {
         min: aabb.min.into(),
         max: aabb.max.into(),
         ..BvhNode::default()
@@ -70,8 +70,8 @@ pub(super) fn in_halves(
 
 /// Halves the triangles until they are few enough for a tree each, whose largest nodes then find
 /// better places in the tree of all.
-fn in_pieces(count: u32, around: impl Fn(u32) -> Aabb, effort: Effort) -> Option<Bvh2> {
-    let (top, ids) = in_halves(count, &around, PIECE);
+fn in_pieces(count: u32, box_of: impl Fn(u32) -> Aabb, effort: Effort) -> Option<Bvh2> {
+    let (top, ids) = in_halves(count, &box_of, PIECE);
     let mut tree = Bvh2::default();
     let inner = |node: &BvhNode| {
         let aabb = Aabb::new(Vec3A::from(node.min), Vec3A::from(node.max));
@@ -80,7 +80,7 @@ fn in_pieces(count: u32, around: impl Fn(u32) -> Aabb, effort: Effort) -> Option
     tree.nodes = top.iter().map(inner).collect();
     for (slot, leaf) in top.iter().enumerate().filter(|(_, node)| node.count > 0) {
         let ids = &ids[leaf.first as usize..][..leaf.count as usize];
-        let boxes: Vec<Aabb> = ids.iter().map(|&id| around(id)).collect();
+        let boxes: Vec<Aabb> = ids.iter().map(|&id| box_of(id)).collect();
         let piece = whole(&boxes, effort)?;
         let nodes = tree.nodes.len() as u32 - 1;
         let slots = tree.primitive_indices.len() as u32;
@@ -156,7 +156,7 @@ fn on_these_threads(boxes: &[Aabb], effort: Effort) -> Option<Bvh2> {
 mod tests {
     use super::*;
     use crate::{
-        bvh::tree::{Bvh, around},
+        bvh::tree::{Bvh, triangle_box},
         generate::Generator,
     };
 
@@ -170,13 +170,13 @@ mod tests {
             let mesh = scene.parse::<Generator>().unwrap().build();
             let count = mesh.triangles.len() as u32;
             assert!(count as usize > MOST_WHOLE);
-            let around = |id: u32| {
+            let box_of = |id: u32| {
                 let corners = mesh.triangles[id as usize];
-                around(corners.map(|index| mesh.positions[index as usize]))
+                triangle_box(corners.map(|index| mesh.positions[index as usize]))
             };
-            let boxes: Vec<Aabb> = (0..count).map(around).collect();
+            let boxes: Vec<Aabb> = (0..count).map(box_of).collect();
             let costs = [Effort::Thorough, Effort::Quick].map(|effort| {
-                let pieces = cost(ploc(count, around, effort));
+                let pieces = cost(ploc(count, box_of, effort));
                 (cost(whole(&boxes, effort)), pieces)
             });
             let [(thorough, pieces), (quick, quick_pieces)] = costs;

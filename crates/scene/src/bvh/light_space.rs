@@ -5,7 +5,7 @@
 
 use super::build::Effort;
 use super::node::{BvhNode, MAX_DEPTH};
-use super::tree::{Bvh, around};
+use super::tree::{Bvh, triangle_box};
 use super::two_level::TwoLevelBvh;
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3, Vec2, Vec3};
@@ -120,11 +120,11 @@ impl LightSpace {
             seen.extend(DEPTH * steepness * up.z).as_vec3()
         };
         let casters = mesh.casters();
-        let boxed = |place: u32| {
+        let box_of = |place: u32| {
             let primitive = casters[place as usize];
-            around(mesh.triangles[primitive as usize].map(corner))
+            triangle_box(mesh.triangles[primitive as usize].map(corner))
         };
-        let tree = Bvh::by_ploc(casters.len() as u32, boxed, Effort::Thorough);
+        let tree = Bvh::by_ploc(casters.len() as u32, box_of, Effort::Thorough);
         let own = || Bvh::over(mesh, &casters, MAX_DEPTH, Effort::Thorough);
         let mut tree = tree.unwrap_or_else(own);
         for primitive in &mut tree.primitives {

@@ -56,27 +56,27 @@ impl Bvh {
     /// Builds the hierarchy of some triangles of a mesh, whose places in the list are the primitive
     /// ids. It is no deeper than `depth` unless the logarithm of their number is.
     pub(super) fn over(mesh: &Mesh, ids: &[u32], depth: u32, effort: Effort) -> Self {
-        let around = |place: u32| {
+        let box_of = |place: u32| {
             let corners = mesh.triangles[ids[place as usize] as usize];
-            around(corners.map(|index| mesh.positions[index as usize]))
+            triangle_box(corners.map(|index| mesh.positions[index as usize]))
         };
         let count = ids.len() as u32;
         if count == 0 {
             return Self::default();
         }
-        let tree = Self::by_ploc(count, around, effort).filter(|tree| tree.depth <= depth);
-        tree.unwrap_or_else(|| Self::in_halves(count, around))
+        let tree = Self::by_ploc(count, box_of, effort).filter(|tree| tree.depth <= depth);
+        tree.unwrap_or_else(|| Self::in_halves(count, box_of))
     }
 
     /// Builds it by PLOC; `None` where that has nothing to compare, or chains its triangles.
     pub(super) fn by_ploc(
         count: u32,
-        around: impl Fn(u32) -> Aabb,
+        box_of: impl Fn(u32) -> Aabb,
         effort: Effort,
     ) -> Option<Self> {
-        let is_measurable = measurable(count, &around);
+        let is_measurable = measurable(count, &box_of);
         let tree = is_measurable
-            .then(|| ploc(count, around, effort))
+            .then(|| ploc(count, box_of, effort))
             .flatten()?;
         let bvh = Self::of(tree);
         (bvh.depth <= MAX_DEPTH).then_some(bvh)
@@ -96,8 +96,8 @@ impl Bvh {
     /// The tree of last resort, whose depth is the logarithm of the number of triangles. Meshes
     /// need it that span the range of f32, or whose best tree is a chain: triangles that grow
     /// geometrically, or that share a corner.
-    fn in_halves(count: u32, around: impl Fn(u32) -> Aabb) -> Self {
-        let (nodes, primitives) = in_halves(count, around, MAX_LEAF);
+    fn in_halves(count: u32, box_of: impl Fn(u32) -> Aabb) -> Self {
+        let (nodes, primitives) = in_halves(count, box_of, MAX_LEAF);
         Self::new(nodes, primitives)
     }
 
@@ -216,7 +216,7 @@ fn largest_leaf(nodes: &[BvhNode], counts: &[u32], most: usize) -> u32 {
 }
 
 /// The box of a triangle by its corners.
-pub(super) fn around(corners: [Vec3; 3]) -> Aabb {
+pub(super) fn triangle_box(corners: [Vec3; 3]) -> Aabb {
     let [a, b, c] = corners.map(Vec3A::from);
     Aabb::new(a.min(b).min(c), a.max(b).max(c))
 }
@@ -255,12 +255,12 @@ mod tests {
     fn some_meshes_do_need_the_tree_of_last_resort() {
         // Each triangle 1.5 times as large as the one before, from one corner: PLOC joins the two
         // smallest, then the next …
-        let around = |place: u32| {
+        let box_of = |place: u32| {
             let size = 1.5f32.powi(place as i32 - 120);
             let corners = [Vec3::new(size, size, 0.0), Vec3::new(0.0, size, size)];
-            around([Vec3::ZERO, corners[0], corners[1]])
+            triangle_box([Vec3::ZERO, corners[0], corners[1]])
         };
-        assert!(Bvh::by_ploc(200, around, Effort::Thorough).is_none());
-        assert!(Bvh::in_halves(200, around).depth < 8);
+        assert!(Bvh::by_ploc(200, box_of, Effort::Thorough).is_none());
+        assert!(Bvh::in_halves(200, box_of).depth < 8);
     }
 }

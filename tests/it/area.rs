@@ -1,8 +1,9 @@
 //! Lights that have an extent: the presets that sample them against the oracle.
 
 use crate::support;
-use crate::support::graphs::{layered, plan_files, plan_with, provider, run, values};
+use crate::support::graphs::{layered, open, plan_files, plan_with, provider, run, values};
 use glam::{DVec3, Vec3};
+use skiagraph_gpu::{ExecuteError, Executor};
 use skiagraph_graph::{Capture, PassSummary};
 use skiagraph_reference::{Class, Graded, GroundTruth, Oracle, OracleMode, Progress, area};
 use skiagraph_scene::{DirectionalLight, LightKind, Mesh, PointLight, Scene, SpotLight, View};
@@ -292,6 +293,30 @@ fn only_wide_suns_ask_for_a_hierarchy() {
         let plan = plan_files(&[("test.ron", &document)], &provider, VIEWPORT);
         let reads = plan.provided().contains(&"scene.bvh_nodes");
         assert_eq!(reads, is_wide, "{light:?}");
+    }
+}
+
+#[test]
+fn a_sun_that_becomes_wide_is_told_where_its_width_counts() {
+    let (gpu, scene) = (open(), scene(sun(0.5)));
+    for (method, counts) in [
+        ("rt_area", false),
+        ("pcss", false),
+        ("light_buffer_area", true),
+    ] {
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let plan = plan_files(&[("test.ron", &preset(method, ""))], &provider, VIEWPORT);
+        let mut executor = Executor::on(&gpu, plan, &mut provider).unwrap();
+        for (angle, is_wide) in [(2.0, false), (5.0, true)] {
+            provider.set_light(sun(angle).into());
+            let error = executor.refresh(&mut provider).err();
+            let is_told = matches!(
+                &error,
+                Some(ExecuteError::OtherThanPlanned { name, .. }) if name == "light_area"
+            );
+            assert_eq!(is_told, counts && is_wide, "{method}, {angle}: {error:?}");
+            assert_eq!(error.is_some(), is_told, "{method}, {angle}: {error:?}");
+        }
     }
 }
 

@@ -466,13 +466,18 @@ pub(crate) fn check_bound(
     }
 }
 
-/// A plan has counted items and sized buffers by the descriptions that it was made for.
+/// A plan has counted items and sized buffers by the descriptions that it was made for; one without
+/// a kind has asked for none.
 fn as_planned(
     name: &str,
     planned: Option<Provided>,
     given: Option<Provided>,
 ) -> Result<(), ExecuteError> {
-    if given == planned {
+    let mut compared = given;
+    if let (Some(given), Some(planned)) = (&mut compared, planned) {
+        given.kind = given.kind.filter(|_| planned.kind.is_some());
+    }
+    if compared == planned {
         return Ok(());
     }
     Err(ExecuteError::OtherThanPlanned {

@@ -3,7 +3,7 @@
 use super::backend::not_proven;
 use super::memory::{Memory, growing};
 use super::readable::{check_captures, readable};
-use super::summary::refused_light;
+use super::summary::{is_light, refused_light};
 use super::usages;
 use crate::{
     compose::Loaded,
@@ -159,7 +159,16 @@ fn schedule(
     }
     let named_values = linked.flat.symbols.found_values();
     let mut asked = linked.flat.symbols.take_asked();
-    let (passes, resources) = (linked.passes, linked.flat.symbols.resources);
+    let (passes, mut resources) = (linked.passes, linked.flat.symbols.resources);
+    // The kind of anything but a light counts where an expression or a shader asks for it.
+    for resource in &mut resources {
+        if let ResourceKind::Provided(provided) = &mut resource.kind
+            && !is_light(&resource.name)
+            && !asked.contains_key(&resource.name)
+        {
+            provided.kind = None;
+        }
+    }
     let view = GraphView {
         passes: &passes,
         resources: &resources,

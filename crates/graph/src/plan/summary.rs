@@ -98,6 +98,6 @@ pub(super) fn refused_light<N: AsRef<str>>(
 }
 
 /// True for the name `light`, and for names of items of `lights`.
-fn is_light(name: &str) -> bool {
+pub(super) fn is_light(name: &str) -> bool {
     name == "light" || name.starts_with("lights.")
 }

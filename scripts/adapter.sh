@@ -25,36 +25,36 @@ set -eu
 # and those of the small row, which may be missing.
 rows() {
     row hard 150 - - 'is every method right on the hard cases, as guaranteed?' \
-        'stress rt light_buffer light_buffer@stage=fragment crsm crsma_full nsm --size 128x128 --map-size 128' \
-        'stress rt light_buffer light_buffer@stage=fragment --size 32x32 --map-size 32 --case grid_of_holes --case torus'
+        'stress rt light_buffer crsm crsma_full nsm --size 128x128 --map-size 128' \
+        'stress rt light_buffer --size 32x32 --map-size 32 --case grid_of_holes --case torus'
     row hard_area 60 - gl 'the same under lights with an extent' \
         'stress rt_area light_buffer_area --size 64x64 --map-size 64 --set samples=4' \
         'stress rt_area light_buffer_area --size 24x24 --map-size 24 --set samples=4 --case torus'
     row hard_ray_query 90 ray_query - "the same by the driver's ray queries" \
         'stress rt rt_area --size 64x64 --map-size 64 --set engine=ray_query --set samples=4' \
         'stress rt --size 32x32 --map-size 32 --set engine=ray_query --case torus'
-    row park 90 - - 'are three ways to hard shadows the same bits, in nine views of closed meshes?' \
-        'compare rt light_buffer light_buffer@stage=fragment crsm crsma_full nsm --scene park --view all --size 256x256 --map-size 512 --data npy --frames 3' \
-        'compare rt light_buffer light_buffer@stage=fragment nsm --scene park --size 48x48 --map-size 64 --data npy --frames 1'
+    row park 90 - - 'are two ways to hard shadows the same bits, in nine views of closed meshes?' \
+        'compare rt light_buffer crsm crsma_full nsm --scene park --view all --size 256x256 --map-size 512 --data npy --frames 3' \
+        'compare rt light_buffer nsm --scene park --size 48x48 --map-size 64 --data npy --frames 1'
     row lamps 60 - - 'the same under a spot, a point and a directional light' \
-        'compare rt light_buffer light_buffer@stage=fragment nsm --scene lamps --view all --light all --size 256x256 --map-size 512 --data npy --frames 3' \
+        'compare rt light_buffer nsm --scene lamps --view all --light all --size 256x256 --map-size 512 --data npy --frames 3' \
         'compare rt light_buffer --scene lamps --light all --size 32x32 --data npy --frames 1'
     row area 150 - gl 'do lists and rays give the same shares of an extended light, to the bit?' \
         'compare rt_area light_buffer_area --scene park_soft --size 128x128,256x256 --reference-samples 64 --data npy --frames 3' \
         'compare rt_area light_buffer_area --scene park_soft --size 32x32 --reference-samples 16 --set samples=4 --data npy --frames 1'
-    row sizes 240 - - 'what does a frame cost by its size, and when are lists asked faster in fragments, when in compute?' \
-        'compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene sponza --size 256x256,512x512,1024x1024,1920x1080 --map-size 1024 --frames 5' \
-        'compare rt light_buffer light_buffer@stage=fragment nsm --scene park --size 40x40,64x64 --map-size 64 --frames 2'
+    row sizes 240 - - 'what does a frame cost by its size?' \
+        'compare rt light_buffer nsm crsm --scene sponza --size 256x256,512x512,1024x1024,1920x1080 --map-size 1024 --frames 5' \
+        'compare rt light_buffer nsm --scene park --size 40x40,64x64 --map-size 64 --frames 2'
     row sizes_ray_query 90 ray_query - 'the same by ray queries' \
         'compare rt rt@engine=ray_query --scene sponza --size 256x256,1024x1024 --frames 5' \
         'compare rt rt@engine=ray_query --scene park --size 40x40 --frames 1'
     row city_10000 60 - - 'what does a frame cost by the number of triangles?' \
-        'compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene city:10000 --view overview --size 1024x576 --map-size 1024 --frames 5' \
+        'compare rt light_buffer nsm crsm --scene city:10000 --view overview --size 1024x576 --map-size 1024 --frames 5' \
         'compare rt light_buffer nsm --scene city:10000 --view overview --size 48x27 --map-size 64 --frames 1'
     row city_100000 60 - - 'the same, ten times as many' \
-        'compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene city:100000 --view overview --size 1024x576 --map-size 1024 --frames 5'
+        'compare rt light_buffer nsm crsm --scene city:100000 --view overview --size 1024x576 --map-size 1024 --frames 5'
     row city_1000000 120 - - 'the same, a hundred times as many' \
-        'compare rt light_buffer light_buffer@stage=fragment nsm crsm --scene city:1000000 --view overview --size 1024x576 --map-size 1024 --frames 5'
+        'compare rt light_buffer nsm crsm --scene city:1000000 --view overview --size 1024x576 --map-size 1024 --frames 5'
 }
 
 # Words behind each comparison: no pictures, only the time of whole frames, and what a killed process

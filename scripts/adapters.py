@@ -23,7 +23,7 @@ POINTS = 0.05
 RMSE = 0.001
 LACKING = "not on this adapter"
 # Methods whose answers must be the same bits, by row: the first beside each of the others.
-HARD = ["rt", "light_buffer", "light_buffer@stage=fragment"]
+HARD = ["rt", "light_buffer"]
 ALIKE = {"park": HARD, "lamps": HARD, "area": ["rt_area", "light_buffer_area"]}
 
 
@@ -198,8 +198,6 @@ def markdown(adapters):
           "GPU's cannot be trusted.", ["method"], lambda adapter: times(asked(adapter, "sizes"), size))
     pivot("A frame by the number of triangles", "The same in a city, at one size.",
           ["method"], lambda adapter: times(asked(adapter, "city"), triangles))
-    pivot("Asking in fragments or in compute", "Milliseconds that `light_buffer@stage=fragment` takes over those of "
-          "`light_buffer`, which asks its lists in a compute stage: above 1 that is faster.", [], stages)
     add("Longest passes", "Pass with the greatest 95th percentile of its GPU time: what a driver's watchdog sees.",
         ["pass", "method", "scene", "viewport", "ms"], 6, longest)
     return "\n".join([*lines, ""])
@@ -275,16 +273,6 @@ def times(runs, key):
 
     for method in unique(run["preset"] for run in runs):
         yield [f"`{method}`"], {key(run): time(run) for run in runs if run["preset"] == method}
-
-
-def stages(adapter):
-    def frames(method):
-        runs = [run for rows in ("sizes", "city") for run in ran(adapter, rows) if run["preset"] == method]
-        return {f"{run['scene']['name']} of {triangles(run)}, {size(run)}": frame_ms(run) for run in runs}
-
-    fragment, compute = frames("light_buffer@stage=fragment"), frames("light_buffer")
-    if ratios := {where: f"{time / compute[where]:.2f}" for where, time in fragment.items() if where in compute}:
-        yield [], ratios
 
 
 def longest(adapter):

@@ -90,13 +90,13 @@ fn rows_are_kept_gone_on_with_and_joined() {
     let tables = script("adapters.py");
     let (code, output) = run(folder.path(), "python3", &tables, "one two --out all");
     assert!(
-        code == Some(0) && output.contains("4 cells, 0 faults"),
+        code == Some(0) && output.contains("3 cells, 0 faults"),
         "{output}"
     );
     let page = fs::read_to_string(place("all/adapters.md")).unwrap();
-    // A view's pixels beside each of two methods, and every cell as on the first.
-    assert!(page.contains("| 0 of 4,608 |"), "{page}");
-    assert!(page.contains("some driver 1.2 | 4 | 4 | 0.0000 | nsm on park"));
+    // The pixels of a view, and every cell as on the first.
+    assert!(page.contains("| 0 of 2,304 |"), "{page}");
+    assert!(page.contains("some driver 1.2 | 3 | 3 | 0.0000 | nsm on park"));
     replace(
         &place("two/park/results.json"),
         "\"in_band\": 0",

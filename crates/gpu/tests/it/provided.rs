@@ -87,9 +87,9 @@ fn one() -> Given {
     }
 }
 
-/// Takes the value of this frame, and that of the one before.
-fn takes() -> Files {
-    let take = compute("take", "", r#""input": "host.value", "out": "seen""#);
+/// Takes the value of this frame, and that of the one before; `more` are fields of the first pass.
+fn takes(more: &str) -> Files {
+    let take = compute("take", more, r#""input": "host.value", "out": "seen""#);
     let before = compute(
         "before",
         "",
@@ -113,7 +113,11 @@ const FACTOR: &str = "
     @compute @workgroup_size(1) fn main() { out[0] = input[0] * params.factor; }";
 
 fn start(provider: &mut Given) -> Executor {
-    let plan = planned(&takes(), &request(provider));
+    start_on(&takes(""), provider)
+}
+
+fn start_on(files: &Files, provider: &mut Given) -> Executor {
+    let plan = planned(files, &request(provider));
     Executor::new(&GPU.device, &GPU.queue, plan, provider).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -202,7 +206,19 @@ fn what_is_not_set_yet_is_asked_for_again() {
 #[test]
 fn what_is_no_longer_as_planned_is_an_error_of_its_own() {
     let mut provider = one();
+    // No pass asks for the kind.
     let mut executor = start(&mut provider);
+    let value = Some(7);
+    let mut square = Given {
+        kind: 1,
+        value,
+        ..one()
+    };
+    executor.refresh(&mut square).unwrap();
+    frame(&mut executor, &[]);
+    assert_eq!(numbers(&mut executor, "seen"), [7]);
+    let any_kind = r#"if: "host.value.kind == round || host.value.kind == square","#;
+    let mut executor = start_on(&takes(any_kind), &mut provider);
     let mut error = |provider: &mut Given| {
         provider.value = provider.value.map(|value| value + 1);
         let error = executor.refresh(provider).unwrap_err();

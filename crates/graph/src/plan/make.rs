@@ -160,15 +160,7 @@ fn schedule(
     let named_values = linked.flat.symbols.found_values();
     let mut asked = linked.flat.symbols.take_asked();
     let (passes, mut resources) = (linked.passes, linked.flat.symbols.resources);
-    // The kind of anything but a light counts where an expression or a shader asks for it.
-    for resource in &mut resources {
-        if let ResourceKind::Provided(provided) = &mut resource.kind
-            && !is_light(&resource.name)
-            && !asked.contains_key(&resource.name)
-        {
-            provided.kind = None;
-        }
-    }
+    drop_kinds(&mut resources, &asked);
     let view = GraphView {
         passes: &passes,
         resources: &resources,
@@ -231,6 +223,19 @@ fn schedule(
         depends_on: BTreeSet::new(),
         relies_on: asked,
     })
+}
+
+/// Drops the kinds that no expression and no shader has asked for; those of lights count always, as
+/// documents say which they take.
+fn drop_kinds(resources: &mut [Resource], asked: &BTreeMap<String, Option<Provided>>) {
+    for resource in resources {
+        if let ResourceKind::Provided(provided) = &mut resource.kind
+            && !is_light(&resource.name)
+            && !asked.contains_key(&resource.name)
+        {
+            provided.kind = None;
+        }
+    }
 }
 
 fn finish(

@@ -13,6 +13,8 @@ var<storage, read_write> pending_casters: PendingCasters;
 // The first item is 1 if a receiver is uncertain.
 var<storage, read> is_any_uncertain: array<u32>;
 var<storage, read_write> layer_calls: array<Call>;
+// The layer's.
+var<storage, read_write> pending_box: PendingBox;
 
 @compute @workgroup_size(1)
 fn main() {
@@ -23,11 +25,12 @@ fn main() {
         call(CALL_CROWDED, vec3(0u));
         return;
     }
-    pending_casters.layer_parts = atomicExchange(&pending_casters.parts, 0u);
-    pending_casters.layer_crowded = atomicExchange(&pending_casters.crowded, 0u);
-    let crowded = groups_for(pending_casters.layer_crowded);
-    let parts = pending_casters.layer_parts;
-    let words = params.casters + 2u * parts;
+    atomicStore(&pending_casters.clusters, 0u);
+    let parts = atomicExchange(&pending_casters.left[LEFT_PARTS], 0u);
+    pending_box.parts = parts;
+    pending_box.crowded = atomicExchange(&pending_casters.left[LEFT_CROWDED], 0u);
+    let crowded = groups_for(pending_box.crowded);
+    let words = clusters_of(params.casters) + params.casters + 2u * parts;
     pending_state.needed_words = max(pending_state.needed_words, words);
     if words > arrayLength(&pending_casters.words) {
         pending_state.parts_lack = 1u;

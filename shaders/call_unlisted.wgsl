@@ -22,7 +22,7 @@ fn main() {
     call(CALL_PIXELS, array((size.x + 7u) / 8u, (size.y + 7u) / 8u, 1u));
     call(CALL_TILES, groups_for(arrayLength(&tiles) + 1u));
     call(CALL_RECEIVERS, groups_for(size.x * size.y));
-    call(CALL_CASTERS, groups_for(params.casters));
+    call(CALL_CLUSTERS, groups_for(clusters_of(params.casters)));
     call(CALL_RAYS, array((size.x + 31u) / 32u, (size.y + 31u) / 32u, 1u));
 }
 

@@ -11,8 +11,9 @@ var<storage, read_write> pending_casters: PendingCasters;
 fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) lane: u32) {
     let number = thread_number(group, lane);
     if number == 0u {
-        atomicStore(&pending_casters.parts, 0u);
-        atomicStore(&pending_casters.crowded, 0u);
+        atomicStore(&pending_casters.left[LEFT_PARTS], 0u);
+        atomicStore(&pending_casters.left[LEFT_CROWDED], 0u);
+        atomicStore(&pending_casters.clusters, 0u);
     }
     if number < arrayLength(&texels) {
         texels[number] = Texel(0u, 0u, 0u, texels[number].length & ~LIST_LACKS);

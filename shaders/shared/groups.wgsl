@@ -24,10 +24,15 @@ fn thread_number(group: vec3<u32>, lane: u32) -> u32 {
     return group_number(group) * GROUP_SIZE + lane;
 }
 
+// Clusters of as many casters, workgroups for as many threads.
+fn clusters_of(count: u32) -> u32 {
+    // Not (count + 63) / 64: that overflows at the top of u32.
+    return count / GROUP_SIZE + select(0u, 1u, count % GROUP_SIZE != 0u);
+}
+
 // x, y, z of a dispatch with a thread for each item.
 fn groups_for(count: u32) -> array<u32, 3> {
-    // Not (count + 63) / 64: that overflows at the top of u32.
-    let needed = count / GROUP_SIZE + select(0u, 1u, count % GROUP_SIZE != 0u);
+    let needed = clusters_of(count);
     let rows = needed / GROUPS_PER_ROW + select(0u, 1u, needed % GROUPS_PER_ROW != 0u);
     return array(min(needed, GROUPS_PER_ROW), rows, 1u);
 }

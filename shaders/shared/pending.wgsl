@@ -20,18 +20,20 @@ struct PendingState {
     unanswered: atomic<u32>,
 }
 
-// Casters of the layer that is binned which one thread does not do alone.
+// Casters of the layer that is binned; cull_clusters.wgsl takes it for `LiveClusters`.
 struct PendingCasters {
-    // Parts of large ones, those included for which there is no room, and casters over texels with
-    // more than a block.
-    parts: atomic<u32>,
-    crowded: atomic<u32>,
-    // The same, once all are counted.
-    layer_parts: u32,
-    layer_crowded: u32,
-    // Parts from the front, two words each; from the back crowded casters, which always have room.
+    // LEFT_PARTS: parts of large ones, those included for which there is no room. LEFT_CROWDED:
+    // casters over texels with more than a block.
+    left: array<atomic<u32>, 3>,
+    // Clusters that are live.
+    clusters: atomic<u32>,
+    // Numbers of those clusters, with room for all; then parts, two words each; from the back
+    // crowded casters, which always have room.
     words: array<u32>,
 }
+
+const LEFT_PARTS: u32 = 0u;
+const LEFT_CROWDED: u32 = 1u;
 
 // Words of `pending` for each receiver: the number of its pixel, with IS_SHADED, and those that
 // shared/pending_answer.wgsl or its stand-in adds.
@@ -78,7 +80,18 @@ struct PendingBox {
     inverted_y: atomic<u32>,
     x: atomic<u32>,
     y: atomic<u32>,
-    padding: array<vec4<u32>, 15>,
+    // Counts of `PendingCasters`, once all are counted.
+    parts: u32,
+    crowded: u32,
+    padding: array<vec2<u32>, 29>,
+}
+
+// The same where nothing changes it.
+struct PendingLayer {
+    inverted_first: vec2<u32>,
+    last: vec2<u32>,
+    parts: u32,
+    crowded: u32,
 }
 
 const NO_PLACE: u32 = 0xffffffffu;
@@ -93,12 +106,12 @@ struct Call {
 }
 
 // Dispatches where receivers are uncertain: a thread for each texel, pixel, tile, receiver and
-// caster, or fill_rays.wgsl's.
+// cluster, or fill_rays.wgsl's.
 const CALL_TEXELS: u32 = 0u;
 const CALL_PIXELS: u32 = 1u;
 const CALL_TILES: u32 = 2u;
 const CALL_RECEIVERS: u32 = 3u;
-const CALL_CASTERS: u32 = 4u;
+const CALL_CLUSTERS: u32 = 4u;
 const CALL_RAYS: u32 = 5u;
 
 // Dispatches of a layer: bin_large, bin_crowded.

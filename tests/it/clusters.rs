@@ -140,6 +140,32 @@ fn clusters_that_are_left_out_are_in_no_list() {
     assert!(left_out.iter().all(|count| *count >= 30), "{left_out:?}");
 }
 
+/// Where all lists lack entries, receivers are pending in as many tiles as have any in lists, and
+/// their clusters are among those of the lists.
+#[test]
+fn pending_receivers_have_few_clusters() {
+    let mut random = Random(5);
+    let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).into();
+    let scene = scene(&mut random, Vec3::ZERO, light);
+    let mut clusters = |preset: &str, entries: u32, captured: &str| {
+        let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
+        let path = format!("pipelines/{preset}.ron");
+        let plan = plan(&path, &provider, VIEWPORT, |request| {
+            let entries = ParamValue::U32(entries);
+            request.params.insert("max_entries".to_owned(), entries);
+            request.captures.push(Capture::new(captured));
+        });
+        values(&run_on(&open(), plan, &mut provider, &[captured]), captured)
+    };
+    for preset in ["light_buffer", "light_buffer_area"] {
+        let boxes = clusters(preset, 1 << 20, "cluster_boxes").len() as u32 / 8;
+        let of_lists = clusters(preset, 1 << 20, "live_clusters")[3];
+        let of_pending = clusters(preset, 1, "live_groups")[0];
+        println!("{preset}: {of_pending}, {of_lists} of {boxes} clusters");
+        assert!(0 < of_pending && of_pending <= of_lists && of_lists < boxes);
+    }
+}
+
 /// Boxes hold all corners but those of a host's that are no places.
 #[test]
 fn boxes_of_clusters_are_around_all_corners_that_are_places() {

@@ -15,7 +15,7 @@ var<storage, read_write> live_clusters: LiveClusters;
 var<storage, read_write> live_groups: array<atomic<u32>, 3>;
 
 // True for receivers that no list answers. Of them `texels` counts last those without a texel, for
-// which all casters are tested.
+// which all casters are tested with the first layer.
 override for_pending: bool = false;
 // Over more tiles a cluster counts as live.
 const MOST_TILES: u32 = 64u;
@@ -40,7 +40,7 @@ fn main(thread: Thread) {
     let last = atomicLoad(&texels[arrayLength(&texels) - 1u].length);
     // Lists that all lack a caster are read by none.
     var is_one = cluster < arrayLength(&cluster_boxes) && (last & LIST_LACKS) == 0u;
-    if is_one && !(for_pending && last != 0u) {
+    if is_one && !(for_pending && binned_layer == 0u && last != 0u) {
         is_one = is_live(cluster_boxes[cluster]);
     }
     var slot = 0u;

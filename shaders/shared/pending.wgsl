@@ -1,5 +1,5 @@
-// Receivers that no list of casters answers, each in a list of its texel's, for which all casters
-// are binned once more and tested.
+// Receivers that no list of casters answers, each in a list of its texel's, for which the casters
+// of all clusters that may shade one are binned once more and tested.
 
 #import "shared/light_buffer.wgsl"
 
@@ -74,7 +74,7 @@ struct PendingReceiver {
 }
 
 // The tiles of a layer that hold receivers with a place, where a device can bind it alone: the
-// least, inverted, and the greatest. All zero where there is none.
+// least, inverted, and the greatest. These are zero where there is none.
 struct PendingBox {
     inverted_x: atomic<u32>,
     inverted_y: atomic<u32>,

@@ -140,8 +140,8 @@ fn clusters_that_are_left_out_are_in_no_list() {
     assert!(left_out.iter().all(|count| *count >= 30), "{left_out:?}");
 }
 
-/// Where all lists lack entries, receivers are pending in as many tiles as have any in lists, and
-/// their clusters are among those of the lists.
+/// Where all lists lack entries, receivers are pending in at most as many tiles as have any in
+/// lists, and their clusters are among those of the lists.
 #[test]
 fn pending_receivers_have_few_clusters() {
     let mut random = Random(5);

@@ -147,7 +147,7 @@ fn pending_receivers_have_few_clusters() {
     let mut random = Random(5);
     let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).into();
     let scene = scene(&mut random, Vec3::ZERO, light);
-    let mut clusters = |preset: &str, entries: u32, captured: &str| {
+    let clusters = |preset: &str, entries: u32, captured: &str| {
         let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
         let path = format!("pipelines/{preset}.ron");
         let plan = plan(&path, &provider, VIEWPORT, |request| {

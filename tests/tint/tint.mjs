@@ -8,7 +8,9 @@ import { create, globals } from 'webgpu';
 Object.assign(globalThis, globals);
 const lines = fs.readFileSync(process.argv[2], 'utf8').trim().split('\n');
 const programs = lines.map((line) => JSON.parse(line));
-const adapter = await create(['backend=null']).requestAdapter();
+// Dawn has gone with it when it is collected, device and all.
+globalThis.gpu = create(['backend=null']);
+const adapter = await globalThis.gpu.requestAdapter();
 const { limits } = adapter;
 const names = ['maxStorageBuffersPerShaderStage', 'maxStorageBufferBindingSize',
     'maxComputeWorkgroupStorageSize', 'maxComputeInvocationsPerWorkgroup', 'maxComputeWorkgroupSizeX'];

@@ -15,6 +15,8 @@ var<storage, read> is_any_uncertain: array<u32>;
 var<storage, read_write> layer_calls: array<Call>;
 // The layer's.
 var<storage, read_write> pending_box: PendingBox;
+// Workgroups of `bin_small`.
+var<storage, read_write> live_groups: array<u32, 3>;
 
 @compute @workgroup_size(1)
 fn main() {
@@ -25,7 +27,9 @@ fn main() {
         call(CALL_CROWDED, vec3(0u));
         return;
     }
+    // For the next layer.
     atomicStore(&pending_casters.clusters, 0u);
+    live_groups = array(0u, 0u, 0u);
     let parts = atomicExchange(&pending_casters.left[LEFT_PARTS], 0u);
     pending_box.parts = parts;
     pending_box.crowded = atomicExchange(&pending_casters.left[LEFT_CROWDED], 0u);

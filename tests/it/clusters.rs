@@ -147,20 +147,27 @@ fn pending_receivers_have_few_clusters() {
     let mut random = Random(5);
     let light = DirectionalLight::new(DVec3::new(0.3, -1.0, 0.2)).into();
     let scene = scene(&mut random, Vec3::ZERO, light);
-    let clusters = |preset: &str, entries: u32, captured: &str| {
+    let clusters = |preset: &str, entries: u32, captured: Capture| {
         let mut provider = provider(&scene, &scene.views[0], VIEWPORT);
         let path = format!("pipelines/{preset}.ron");
         let plan = plan(&path, &provider, VIEWPORT, |request| {
             let entries = ParamValue::U32(entries);
             request.params.insert("max_entries".to_owned(), entries);
-            request.captures.push(Capture::new(captured));
+            request.captures.push(captured.clone());
         });
-        values(&run_on(&open(), plan, &mut provider, &[captured]), captured)
+        let name = captured.name();
+        values(&run_on(&open(), plan, &mut provider, &[&name]), &name)
     };
-    for preset in ["light_buffer", "light_buffer_area"] {
-        let boxes = clusters(preset, 1 << 20, "cluster_boxes").len() as u32 / 8;
-        let of_lists = clusters(preset, 1 << 20, "live_clusters")[3];
-        let of_pending = clusters(preset, 1, "live_groups")[0];
+    for (preset, turn) in [
+        ("light_buffer", "pending_turn"),
+        ("light_buffer_area", "pending_turn[0]"),
+    ] {
+        // Read before they are emptied for the next layer.
+        let bin = format!("pending_receivers.{turn}.pending_layer[0].bin");
+        let boxes = clusters(preset, 1 << 20, Capture::new("cluster_boxes")).len() as u32 / 8;
+        let of_lists = clusters(preset, 1 << 20, Capture::new("live_clusters"))[3];
+        let of_pending = Capture::new("live_groups").with_after(bin);
+        let of_pending = clusters(preset, 1, of_pending)[0];
         println!("{preset}: {of_pending}, {of_lists} of {boxes} clusters");
         assert!(0 < of_pending && of_pending <= of_lists && of_lists < boxes);
     }

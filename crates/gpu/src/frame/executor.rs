@@ -8,11 +8,10 @@ use super::report::{Frame, FrameFault, FrameReport};
 use super::runner::Runner;
 use crate::device::Gpu;
 use crate::error::{ExecuteError, poll, submit, wait};
-use crate::memory::physical::Physical;
 use crate::pipelines::pipelines::Pipelines;
 use crate::provider::Provider;
 use crate::waiting::submitted_work;
-use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceKind};
+use skiagraph_graph::{ParamValue, Plan, ResourceKind};
 use std::time::Duration;
 use web_time::Instant;
 
@@ -32,7 +31,7 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// A frame is *lost* if its encoder is dropped instead, or wgpu refuses its commands, in `finish`
 /// or in `submit`. Each frame that is encoded after that is as if the lost one had never been
 /// encoded, but for its number; so are `.previous` contents and materials with
-/// [`keep`](Resource::keep). A frame that was encoded before, and runs without the lost one or in
+/// [`keep`](skiagraph_graph::Resource::keep). A frame that was encoded before, and runs without the lost one or in
 /// another order than that of encoding, may show something stale; `.previous` contents and
 /// materials with `keep` then go on from what the frames have left that ran.
 /// [`take_faults`](Self::take_faults) tells the numbers of all these frames.
@@ -44,7 +43,7 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// that a [`Provider`] builds. A material's `.previous` is its content at the end of the frame
 /// before.
 pub struct Executor {
-    runner: Runner,
+    pub(super) runner: Runner,
 }
 
 impl Executor {
@@ -127,7 +126,7 @@ impl Executor {
     /// outputs of that frame are still there. This needs a provider that
     /// [has versions](Provider::has_versions), or a plan without provided resources; and a plan
     /// without imports in which no pass uses `.previous` contents, a resource with
-    /// [`keep`](Resource::keep) or the uniform [`frame`](skiagraph_graph::FRAME_BYTES). Frames with
+    /// [`keep`](skiagraph_graph::Resource::keep) or the uniform [`frame`](skiagraph_graph::FRAME_BYTES). Frames with
     /// [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are never left out so.
     ///
     /// While a frame before is not known to be done, `encode` polls the device, without waiting.
@@ -331,79 +330,6 @@ impl Executor {
             after: began.elapsed(),
             passes: list(ran),
         }
-    }
-
-    /// Sets the texture of the import `name`, which
-    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
-    /// counts as changed, even if the texture is the one set before: passes that run only when an
-    /// input has changed (`run: OnChange` in the document) and read it run in the next frame. The
-    /// texture may have more usages than described.
-    ///
-    /// # Errors
-    /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,
-    /// [`ExecuteError::Import`] if the texture differs from its description,
-    /// [`ExecuteError::OtherDevice`] if it is of another device, [`ExecuteError::DeviceLost`] if
-    /// the device is lost.
-    pub fn import_texture(
-        &mut self,
-        name: &str,
-        texture: &wgpu::Texture,
-    ) -> Result<(), ExecuteError> {
-        self.runner.import(name, Physical::Texture(texture.clone()))
-    }
-
-    /// Sets the buffer of the import `name`, which
-    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
-    /// counts as changed, even if the buffer is the one set before: passes with `run: OnChange`
-    /// that read it run in the next frame. The buffer may have more usages than described.
-    ///
-    /// # Errors
-    /// Those of [`import_texture`](Self::import_texture).
-    pub fn import_buffer(&mut self, name: &str, buffer: &wgpu::Buffer) -> Result<(), ExecuteError> {
-        self.runner.import(name, Physical::Buffer(buffer.clone()))
-    }
-
-    /// Sets the sampler of the import `name`, which
-    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Passes with `run:
-    /// OnChange` that use it run in the next frame. wgpu tells neither how a sampler filters nor
-    /// which device it is of, so a wrong one is refused only when a pass binds it.
-    ///
-    /// # Errors
-    /// Those of [`import_texture`](Self::import_texture).
-    pub fn import_sampler(
-        &mut self,
-        name: &str,
-        sampler: &wgpu::Sampler,
-    ) -> Result<(), ExecuteError> {
-        self.runner.import(name, Physical::Sampler(sampler.clone()))
-    }
-
-    /// Marks the content of the import or provided resource `name` as changed, after the host has
-    /// written to it. In the next frame, passes with `run: OnChange` (which run only when an input
-    /// has changed) that read it run, and those with `run: Always` also where the frame would
-    /// otherwise compute nothing new (see [`encode`](Self::encode)); the frame after that finds
-    /// this content as `.previous` (content of the frame before). With a provider that counts
-    /// [`versions`](Provider::version), call [`refresh`](Self::refresh) instead.
-    ///
-    /// # Errors
-    /// [`ExecuteError::NotOfHost`] if the plan has neither an import nor a provided resource of
-    /// this name. A name that no pass uses is accepted.
-    pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
-        let of_host = |resource: &Resource| resource.origin == Origin::Host;
-        if !self.plan().imports().contains_key(name) {
-            self.runner.host_changes.changed.note(name);
-        }
-        let live = self.runner.state.live(name);
-        if let Some(id) = live.filter(|id| of_host(self.plan().resource(*id))) {
-            self.runner.state.touch(id);
-        } else if !self.plan().offers(name) {
-            let used = self.plan().used().filter(|used| of_host(used));
-            return Err(ExecuteError::NotOfHost {
-                name: name.to_owned(),
-                known: list(used.map(|resource| resource.name.as_str())),
-            });
-        }
-        Ok(())
     }
 
     /// Asks the provider again for each resource whose [version](Provider::version) has changed

@@ -10,6 +10,7 @@ mod growth;
 mod growth_readback;
 mod host_changes;
 mod idle;
+mod imports;
 mod in_flight;
 mod pass;
 mod poison;

@@ -7,7 +7,7 @@ use super::fetch::Fetch;
 use super::growth::Unchanged;
 use super::growth_readback::GrowthReadback;
 use super::host_changes::HostChanges;
-use super::in_flight::{FrameInFlight, FramesInFlight, list};
+use super::in_flight::{FrameInFlight, FramesInFlight};
 use super::pass::GpuPass;
 use super::replan::{ReplanReport, Reused, has_same_params};
 use super::report::{Frame, FrameReport};
@@ -17,9 +17,8 @@ use super::timer::Timer;
 use super::uniform::FrameUniform;
 use crate::device::partial;
 use crate::error::{ExecuteError, in_encoder, poll, with_table};
-use crate::memory::import::{differs, is_on};
 use crate::memory::memory::{InFrame, Memory, ResourceFactory, check_bound, check_relied_on};
-use crate::memory::physical::{Physical, PingPong};
+use crate::memory::physical::PingPong;
 use crate::pipelines::pipelines::Pipelines;
 use crate::presence::Presence;
 use crate::provider::Provider;
@@ -279,40 +278,6 @@ impl Runner {
             self.ping_pong = state.ping_pong(false);
         }
         self.frames_in_flight.sweep();
-        Ok(())
-    }
-
-    pub fn import(&mut self, name: &str, physical: Physical) -> Result<(), ExecuteError> {
-        let imports = self.plan().imports();
-        let Some(described) = imports.get(name) else {
-            return Err(ExecuteError::NoSuchImport {
-                name: name.to_owned(),
-                known: list(imports.keys().map(String::as_str)),
-            });
-        };
-        if let Some(why) = differs(&physical, described) {
-            return Err(ExecuteError::Import {
-                name: name.to_owned(),
-                why,
-            });
-        }
-        let is_own = is_on(&self.device, &physical);
-        let way_out = "hand over one that was made on the executor's device";
-        self.presence
-            .check_own(is_own, format!("the import `{name}`"), way_out)?;
-        // One that no live pass uses waits for a plan in which one does.
-        let Some(id) = self.state.live(name) else {
-            self.state.memory.spare(name, physical);
-            return Ok(());
-        };
-        // Most hosts hand over the same texture in every frame.
-        if self.state.memory.host(id) != Some(&physical) {
-            self.presence.check()?;
-        }
-        self.state.touch(id);
-        if self.state.memory.import(id, physical) {
-            self.state.unbind(id);
-        }
         Ok(())
     }
 

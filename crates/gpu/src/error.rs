@@ -117,6 +117,21 @@ pub enum ExecuteError {
         /// Names of the plan's imports, separated by commas; `none` if there are none.
         known: String,
     },
+    /// The version that the host gave to
+    /// [`Executor::set_import_version`](crate::Executor::set_import_version) is lower than the one
+    /// before.
+    #[error(
+        "the import `{name}` went back from version {before} to {version}: give a larger number \
+         for each change; its content counts as changed"
+    )]
+    ImportVersion {
+        /// Name of the import.
+        name: String,
+        /// Version before.
+        before: u64,
+        /// Version that was given.
+        version: u64,
+    },
     /// The name given to [`Executor::touch`](crate::Executor::touch) is neither an import (a
     /// texture, buffer or sampler that the host sets) nor a resource of the
     /// [`Provider`](crate::Provider).

@@ -31,9 +31,9 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// A frame is *lost* if its encoder is dropped instead, or wgpu refuses its commands, in `finish`
 /// or in `submit`. Each frame that is encoded after that is as if the lost one had never been
 /// encoded, but for its number; so are `.previous` contents and materials with
-/// [`keep`](skiagraph_graph::Resource::keep). A frame that was encoded before, and runs without the lost one or in
-/// another order than that of encoding, may show something stale; `.previous` contents and
-/// materials with `keep` then go on from what the frames have left that ran.
+/// [`keep`](skiagraph_graph::Resource::keep). A frame that was encoded before, and runs without the
+/// lost one or in another order than that of encoding, may show something stale; `.previous`
+/// contents and materials with `keep` then go on from what the frames have left that ran.
 /// [`take_faults`](Self::take_faults) tells the numbers of all these frames.
 ///
 /// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
@@ -124,10 +124,12 @@ impl Executor {
     ///
     /// If nothing has changed since a frame that the GPU is done with, no pass is encoded: the
     /// outputs of that frame are still there. This needs a provider that
-    /// [has versions](Provider::has_versions), or a plan without provided resources; and a plan
-    /// without imports in which no pass uses `.previous` contents, a resource with
-    /// [`keep`](skiagraph_graph::Resource::keep) or the uniform [`frame`](skiagraph_graph::FRAME_BYTES). Frames with
-    /// [`Frame::all`], [`Frame::timing`] or [`Frame::statistics`] are never left out so.
+    /// [has versions](Provider::has_versions), or a plan without provided resources; imports whose
+    /// [versions](Self::set_import_version) the host tells, or none; and a plan in which no pass
+    /// writes to an import, uses `.previous` contents, a resource with
+    /// [`keep`](skiagraph_graph::Resource::keep) or the uniform
+    /// [`frame`](skiagraph_graph::FRAME_BYTES). Frames with [`Frame::all`], [`Frame::timing`] or
+    /// [`Frame::statistics`] are never left out so.
     ///
     /// While a frame before is not known to be done, `encode` polls the device, without waiting.
     ///

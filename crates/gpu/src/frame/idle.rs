@@ -33,10 +33,13 @@ impl Idle {
     }
 }
 
-/// True if each frame of a plan computes the same until the host makes or reports a change. A host
-/// may write to its imports without a word.
+/// True if each frame of a plan computes the same until the host makes or reports a change. What a
+/// pass writes into an import of the host stays there, as in a material with `keep`.
 fn repeats(plan: &Plan) -> bool {
     let mut live = plan.schedule().lifetimes.keys();
     let is_previous = |id: &ResourceId| matches!(plan.resource(*id).origin, Origin::Previous(_));
-    !plan.remembers() && plan.imports().is_empty() && !live.any(is_previous)
+    let mut accesses = plan.live().flat_map(|pass| &pass.accesses);
+    let is_of_host = |id| plan.resource(id).origin == Origin::Host;
+    let writes_import = accesses.any(|access| access.writes && is_of_host(access.resource));
+    !plan.remembers() && !writes_import && !live.any(is_previous)
 }

@@ -6,14 +6,15 @@ use super::runner::Runner;
 use crate::error::ExecuteError;
 use crate::memory::import::{differs, is_on};
 use crate::memory::physical::Physical;
-use skiagraph_graph::{Origin, Resource};
+use skiagraph_graph::{Import, Origin, Resource};
 
 impl Executor {
     /// Sets the texture of the import `name`, which
     /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
-    /// counts as changed, even if the texture is the one set before: passes that run only when an
-    /// input has changed (`run: OnChange` in the document) and read it run in the next frame. The
-    /// texture may have more usages than described.
+    /// counts as changed, even if the texture is the one set before, unless the host tells its
+    /// [version](Self::set_import_version): passes that run only when an input has changed (`run:
+    /// OnChange` in the document) and read it run in the next frame. The texture may have more
+    /// usages than described.
     ///
     /// # Errors
     /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,
@@ -30,8 +31,9 @@ impl Executor {
 
     /// Sets the buffer of the import `name`, which
     /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
-    /// counts as changed, even if the buffer is the one set before: passes with `run: OnChange`
-    /// that read it run in the next frame. The buffer may have more usages than described.
+    /// counts as changed, even if the buffer is the one set before, unless the host tells its
+    /// [version](Self::set_import_version): passes with `run: OnChange` that read it run in the
+    /// next frame. The buffer may have more usages than described.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -41,8 +43,9 @@ impl Executor {
 
     /// Sets the sampler of the import `name`, which
     /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Passes with `run:
-    /// OnChange` that use it run in the next frame. wgpu tells neither how a sampler filters nor
-    /// which device it is of, so a wrong one is refused only when a pass binds it.
+    /// OnChange` that use it run in the next frame if it is not the one set before. wgpu tells
+    /// neither how a sampler filters nor which device it is of, so a wrong one is refused only when
+    /// a pass binds it.
     ///
     /// # Errors
     /// Those of [`import_texture`](Self::import_texture).
@@ -52,6 +55,36 @@ impl Executor {
         sampler: &wgpu::Sampler,
     ) -> Result<(), ExecuteError> {
         self.runner.import(name, Physical::Sampler(sampler.clone()))
+    }
+
+    /// Tells which version the content of the import `name` has: a number that is larger whenever
+    /// the host has written into the texture or buffer. From then on only another version, another
+    /// texture or buffer, and [`touch`](Self::touch) count as a change; so a host whose camera and
+    /// scene stand still may hand over its depth in every frame, and no pass runs (see
+    /// [`encode`](Self::encode)). What is written without a new version is not seen.
+    ///
+    /// # Errors
+    /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name.
+    /// [`ExecuteError::ImportVersion`] if the version is lower than the one before, as that of a
+    /// content that was seen already may be: it is taken over, and the content counts as changed.
+    pub fn set_import_version(&mut self, name: &str, version: u64) -> Result<(), ExecuteError> {
+        let runner = &mut self.runner;
+        runner.check_import(name)?;
+        let before = runner.import_versions.insert(name.to_owned(), version);
+        if before == Some(version) {
+            return Ok(());
+        }
+        if let Some(id) = runner.state.live(name) {
+            runner.state.touch(id);
+        }
+        match before {
+            Some(before) if version < before => Err(ExecuteError::ImportVersion {
+                name: name.to_owned(),
+                before,
+                version,
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Marks the content of the import or provided resource `name` as changed, after the host has
@@ -84,14 +117,26 @@ impl Executor {
 }
 
 impl Runner {
-    fn import(&mut self, name: &str, physical: Physical) -> Result<(), ExecuteError> {
+    /// Returns the description of the import of that name.
+    fn check_import(&self, name: &str) -> Result<&Import, ExecuteError> {
         let imports = self.plan().imports();
-        let Some(described) = imports.get(name) else {
-            return Err(ExecuteError::NoSuchImport {
-                name: name.to_owned(),
-                known: list(imports.keys().map(String::as_str)),
-            });
-        };
+        imports.get(name).ok_or_else(|| ExecuteError::NoSuchImport {
+            name: name.to_owned(),
+            known: list(imports.keys().map(String::as_str)),
+        })
+    }
+
+    /// True if the host tells each change of an import's content by a version, or there is none to
+    /// tell.
+    pub fn knows_imports(&self) -> bool {
+        let mut imports = self.plan().imports().iter();
+        imports.all(|(name, import)| {
+            matches!(import, Import::Sampler { .. }) || self.import_versions.contains_key(name)
+        })
+    }
+
+    fn import(&mut self, name: &str, physical: Physical) -> Result<(), ExecuteError> {
+        let described = self.check_import(name)?;
         if let Some(why) = differs(&physical, described) {
             return Err(ExecuteError::Import {
                 name: name.to_owned(),
@@ -108,10 +153,14 @@ impl Runner {
             return Ok(());
         };
         // Most hosts hand over the same texture in every frame.
-        if self.state.memory.host(id) != Some(&physical) {
+        let is_same = self.state.memory.host(id) == Some(&physical);
+        if !is_same {
             self.presence.check()?;
         }
-        self.state.touch(id);
+        let has_content = !matches!(physical, Physical::Sampler(_));
+        if !is_same || has_content && !self.import_versions.contains_key(name) {
+            self.state.touch(id);
+        }
         if self.state.memory.import(id, physical) {
             self.state.unbind(id);
         }

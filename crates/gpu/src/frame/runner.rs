@@ -23,6 +23,7 @@ use crate::pipelines::pipelines::Pipelines;
 use crate::presence::Presence;
 use crate::provider::Provider;
 use skiagraph_graph::{ParamValue, Plan, ResourceId, caught};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A plan on a device, and its frames.
@@ -38,6 +39,8 @@ pub(super) struct Runner {
     pub host_changes: HostChanges,
     /// True if the provider tells each change of a content by a version, or there is none to tell.
     pub knows_changes: bool,
+    /// Versions of the imports' contents, as far as the host has told them, by name.
+    pub import_versions: BTreeMap<String, u64>,
     /// Frames that were encoded.
     pub frames: u32,
     pub frames_in_flight: FramesInFlight,
@@ -74,6 +77,7 @@ impl Runner {
             decision: FrameDecision::default(),
             host_changes: HostChanges::default(),
             knows_changes: false,
+            import_versions: BTreeMap::new(),
             frames: 0,
             frames_in_flight,
             staging: Staging::default(),
@@ -105,7 +109,8 @@ impl Runner {
         }
         self.grow_by_itself()?;
         let is_measured = frame.timing || frame.statistics;
-        let may_rest = !frame.all && !is_measured && self.knows_changes;
+        let knows_all = self.knows_changes && self.knows_imports();
+        let may_rest = !frame.all && !is_measured && knows_all;
         let number = (self.frames, frame.all);
         self.state.decide(number, may_rest, &mut self.decision);
         let decision = &self.decision;

@@ -1,6 +1,6 @@
 //! Frames before which nothing has changed: no pass runs, and the outputs are those of before.
 
-use crate::given::{Number, with_more, write};
+use crate::given::{Number, buffer, with_more, write};
 use crate::host::{self, GPU, encoder, frame, planned, request, set, submit, words};
 use crate::support::Files;
 use skiagraph_gpu::{Executor, Frame};
@@ -134,14 +134,77 @@ fn what_a_host_changes_is_seen() {
     assert!(runs(&mut executor, 28));
 }
 
-/// A host may write to its own buffers without a word.
+/// A host may write to its own buffers without a word, unless it tells their versions.
 #[test]
-fn a_plan_with_imports_never_rests() {
+fn a_plan_with_imports_rests_by_their_versions() {
     let (mut executor, more) = with_more(files_of("more"), 1);
     for (number, out) in [(1, 22), (2, 24), (2, 24)] {
         write(&more, number);
         assert!(runs(&mut executor, out));
     }
+    let mut shown = |number: u32, version: u64, out: u32| {
+        write(&more, number);
+        executor.import_buffer("more", &more).unwrap();
+        executor.set_import_version("more", version).unwrap();
+        runs(&mut executor, out)
+    };
+    assert!(shown(3, 0, 26));
+    assert!(!shown(3, 0, 26));
+    // What is not told is not seen.
+    assert!(!shown(4, 0, 26));
+    assert!(shown(4, 1, 28));
+    assert!(!shown(4, 1, 28));
+    assert!(shown(4, 7, 28));
+    // Another buffer, a word of the host and another plan are changes, too.
+    let other = buffer(&[5], more.usage());
+    executor.import_buffer("more", &other).unwrap();
+    assert!(runs(&mut executor, 30));
+    executor.import_buffer("more", &other).unwrap();
+    assert!(!runs(&mut executor, 30));
+    executor.touch("more").unwrap();
+    assert!(runs(&mut executor, 30));
+    let plan = executor.plan().with(|request| request.viewport = [2, 2]);
+    executor
+        .replace_graph(plan.unwrap(), &mut NoProvider)
+        .unwrap();
+    assert!(runs(&mut executor, 30));
+    assert!(!runs(&mut executor, 30));
+}
+
+#[test]
+fn an_import_whose_version_goes_back_is_told_and_counts_as_changed() {
+    let (mut executor, more) = with_more(files_of("more"), 1);
+    executor.set_import_version("more", 8).unwrap();
+    assert!(runs(&mut executor, 22));
+    write(&more, 2);
+    let error = executor.set_import_version("more", 3).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the import `more` went back from version 8 to 3: give a larger number for each change; its \
+         content counts as changed"
+    );
+    assert!(runs(&mut executor, 24));
+    assert!(!runs(&mut executor, 24));
+    let error = executor.set_import_version("less", 1).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the plan has no import `less`; it has more"
+    );
+}
+
+/// A lost frame has not seen the version that it was encoded with.
+#[test]
+fn a_version_of_a_lost_frame_is_seen_by_the_next() {
+    let (mut executor, more) = with_more(files_of("more"), 1);
+    executor.set_import_version("more", 1).unwrap();
+    assert!(runs(&mut executor, 22));
+    write(&more, 2);
+    executor.set_import_version("more", 2).unwrap();
+    let mut dropped = encoder();
+    executor.encode(&mut dropped, &Frame::default()).unwrap();
+    drop(dropped);
+    assert!(runs(&mut executor, 24));
+    assert!(!runs(&mut executor, 24));
 }
 
 /// Frames that look back, or that tell their number, compute something new.

@@ -157,6 +157,11 @@ fn a_pass_that_writes_for_the_host_runs() {
     frame(&mut executor, &[]);
     frame(&mut executor, &[]);
     assert_eq!(content(&counter, encoder()), [25, 6]);
+    // It goes on from what is there, which no version of the host's tells.
+    executor.set_import_version("counter", 1).unwrap();
+    frame(&mut executor, &[]);
+    frame(&mut executor, &[]);
+    assert_eq!(content(&counter, encoder()), [45, 6]);
 }
 
 /// An output may be an import. The host decides if it can be read back, and an error comes before

@@ -150,7 +150,7 @@ fn a_plan_with_imports_rests_by_their_versions() {
     };
     assert!(shown(3, 0, 26));
     assert!(!shown(3, 0, 26));
-    // What is not told is not seen.
+    // A change without a new version is not seen.
     assert!(!shown(4, 0, 26));
     assert!(shown(4, 1, 28));
     assert!(!shown(4, 1, 28));
@@ -180,8 +180,8 @@ fn an_import_whose_version_goes_back_is_told_and_counts_as_changed() {
     let error = executor.set_import_version("more", 3).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "the import `more` went back from version 8 to 3: give a larger number for each change; its \
-         content counts as changed"
+        "the import `more` went back from version 8 to 3: give a larger number for each change; \
+         its content counts as changed"
     );
     assert!(runs(&mut executor, 24));
     assert!(!runs(&mut executor, 24));

@@ -1,22 +1,52 @@
-//! CPU time of an engine's frame: 300 meshes of 173,400 triangles, of which none, or five, move in
-//! each frame, or only the camera; and where nothing moves, but all passes are encoded. Setting the
-//! transforms, `refresh`, `encode` and finishing the encoder is measured; submission and the GPU's
-//! work are not: each frame is submitted and waited for outside the clock, so that the CPU is the
-//! frame's own. At the end the same of the fifty lines of docs/embedding.md, which know no more
-//! than where everything is.
+//! CPU time and allocations of an engine's frame: 300 meshes of 173,400 triangles, of which none, or
+//! five, move in each frame, or only the camera; and where nothing moves, but all passes are
+//! encoded. Setting the transforms, `refresh`, `encode` and finishing the encoder is measured;
+//! submission and the GPU's work are not: each frame is submitted and waited for outside the clock,
+//! so that the CPU is the frame's own. Beside it a frame by hand, in plain wgpu, of as many
+//! dispatches. At the end the same of the fifty lines of docs/embedding.md, which know no more than
+//! where everything is, and of four lights in two views. Words on the command line choose the lines
+//! to measure: `cargo bench --bench host_frame -- light_buffer camera`.
 
 use glam::{DAffine3, DVec3};
+use skiagraph_benches::chain::{self, ByHand};
 use skiagraph_benches::{open, planned};
 use skiagraph_gpu::device::{self, Gpu};
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::{ParamValue, PlanRequest};
-use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, Work, registry};
+use skiagraph_graph::step::Step;
+use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, SceneView, Work, registry};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 #[path = "../crates/passes/examples/preset/shadows.rs"]
 #[allow(missing_docs, reason = "a program's, not a library's")]
 mod shadows;
+
+/// Counts the allocations of each thread.
+struct Counting;
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+#[expect(unsafe_code, reason = "a global allocator is unsafe by its signature")]
+// SAFETY: everything is handed on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        // None is counted where the thread is at its end.
+        let _ = ALLOCATIONS.try_with(|count| count.set(count.get() + 1));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(place, layout) }
+    }
+}
 
 const MESHES: usize = 300;
 /// Meshes that there is room for besides.
@@ -78,8 +108,11 @@ const SIDES: u32 = 17;
 
 fn main() {
     // `cargo bench` says `--bench`; without it the frames are only tried.
-    let measured = std::env::args().any(|argument| argument == "--bench");
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let measured = arguments.iter().any(|argument| argument == "--bench");
     let (frames, added) = if measured { (1000, ROOM) } else { (3, 1) };
+    let words: Vec<&String> = arguments.iter().filter(|it| !it.starts_with('-')).collect();
+    let is_asked = |line: &str| words.iter().all(|word| line.contains(word.as_str()));
     let wanted = device::Wanted::default().with_features(RAY_QUERY);
     let unit = format!("; ms of CPU, median and 99th percentile of {frames} frames");
     let Some(gpu) = open(&wanted, &unit) else {
@@ -98,12 +131,17 @@ fn main() {
             println!("{preset} IS NOT MEASURED: this adapter has no EXPERIMENTAL_RAY_QUERY");
             continue;
         }
+        let of_method = |kind: &Kind| is_asked(&format!("{preset}, {}", kind.name));
+        let kinds: Vec<Kind> = KINDS.into_iter().filter(of_method).collect();
+        if kinds.is_empty() {
+            continue;
+        }
         let mut host = Host::new(&gpu, method, &stone);
         // The first frames make what later ones have.
         for turn in 0..3 {
             host.frame(turn, FIVE);
         }
-        for kind in KINDS {
+        for kind in kinds {
             let mut works = Vec::new();
             let frame = |turn| {
                 let before = host.provider.work();
@@ -116,12 +154,86 @@ fn main() {
             print_work(&works);
             host.print_built(kind);
         }
+        host.print_by_hand(frames);
         let mut times: Vec<f64> = (0..added).map(|_| host.add(&stone)).collect();
         times.sort_by(f64::total_cmp);
         let [median, most] = [times.len() / 2, times.len() - 1].map(|at| times[at]);
         println!("{preset}, one mesh more: {median:.2}, {most:.2} at most");
     }
-    fifty_lines(&gpu, &stone, frames);
+    if is_asked("the fifty lines") {
+        fifty_lines(&gpu, &stone, frames);
+    }
+    if is_asked("four lights in two views") {
+        views(&gpu, &stone, frames);
+    }
+}
+
+/// Prints the times of four suns in two views of one scene, whose cameras move: `light_buffer` for
+/// each of the eight, in one encoder.
+fn views(gpu: &Gpu, stone: &Mesh, frames: usize) {
+    let mut host = Host::new(gpu, ("light_buffer", None), stone);
+    let suns = [0.4, -0.2, 0.1, 0.7].map(|x| DirectionalLight::new(DVec3::new(x, -1.0, -0.3)));
+    let camera = |turn: usize, number: usize| view(turn + 7 * number).camera(VIEWPORT);
+    let numbers = (0..2).flat_map(|number| suns.map(|sun| (number, sun)));
+    let mut views: Vec<(usize, SceneView, Executor)> = Vec::new();
+    for (number, sun) in numbers {
+        let seen = SceneView::from_camera(&camera(0, number), sun);
+        let request = PlanRequest::new(seen.size(), seen.apply(&mut host.provider));
+        let request = request.with_device(gpu.device.limits(), gpu.device.features());
+        let on = (&registry(), &EmbeddedSources as _);
+        let plan = planned("pipelines/light_buffer.ron", on, &request);
+        let executor = Executor::on(gpu, plan, &mut host.provider);
+        views.push((number, seen, executor.expect("the preset suits every device")));
+    }
+    let mut frame = |turn: usize| {
+        let clock = Clock::start();
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for (number, seen, executor) in &mut views {
+            seen.set_camera(&camera(turn, *number));
+            let refreshed = seen.refresh(executor, &mut host.provider);
+            refreshed.expect("the same resources are built again");
+            let encoded = executor.encode(&mut encoder, &Frame::default());
+            encoded.expect("the frame was encoded before");
+        }
+        let commands = encoder.finish();
+        let spent = clock.spent();
+        host.submit(commands);
+        spent
+    };
+    (0..3).for_each(|turn| drop(frame(turn)));
+    let spent: Vec<Spent> = (3..frames + 3).map(frame).collect();
+    println!("four lights in two views, the cameras move: {}", of(&spent));
+}
+
+/// Time and allocations of a stretch of work on this thread.
+#[derive(Clone, Copy)]
+struct Spent {
+    ms: f64,
+    allocations: u64,
+}
+
+/// The begin of such a stretch.
+struct Clock(Instant, u64);
+
+impl Clock {
+    fn start() -> Self {
+        Self(Instant::now(), ALLOCATIONS.get())
+    }
+
+    fn spent(&self) -> Spent {
+        Spent {
+            ms: since(self.0),
+            allocations: ALLOCATIONS.get() - self.1,
+        }
+    }
+}
+
+/// Milliseconds, median and 99th percentile, and the median number of allocations.
+fn of(spent: &[Spent]) -> String {
+    let mut allocations: Vec<u64> = spent.iter().map(|spent| spent.allocations).collect();
+    allocations.sort_unstable();
+    let times = quantiles(spent.iter().map(|spent| spent.ms));
+    format!("{times}, {} allocations", allocations[allocations.len() / 2])
 }
 
 /// Prints the times of the program of docs/embedding.md.
@@ -134,26 +246,24 @@ fn fifty_lines(gpu: &Gpu, stone: &Mesh, frames: usize) {
         for (index, map) in places[..kind.moving].iter_mut().enumerate() {
             *map = place(index, turn + 1);
         }
+        let clock = Clock::start();
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let start = Instant::now();
         let light = DVec3::new(0.4, -1.0, -0.3);
         let turn = if kind.camera { turn } else { 0 };
         let seen = program.frame(&mut encoder, &view(turn).camera(VIEWPORT), light, &places);
         seen.expect("the frame was encoded before");
         let commands = encoder.finish();
-        let time = since(start);
+        let spent = clock.spent();
         gpu.queue.submit([commands]);
         let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
         waited.expect("the GPU is there");
-        time
+        spent
     };
-    (0..3).for_each(|turn| {
-        frame(turn, FIVE);
-    });
+    (0..3).for_each(|turn| drop(frame(turn, FIVE)));
     // Those lines have no say in which passes are encoded.
     for kind in KINDS.into_iter().filter(|kind| !kind.all) {
-        let times = (0..frames).map(|turn| frame(turn, kind));
-        println!("the fifty lines, {}: {}", kind.name, quantiles(times));
+        let spent: Vec<Spent> = (0..frames).map(|turn| frame(turn, kind)).collect();
+        println!("the fifty lines, {}: {}", kind.name, of(&spent));
     }
 }
 
@@ -173,9 +283,12 @@ fn view(turn: usize) -> View {
 /// Times of a frame's steps, in milliseconds.
 #[derive(Clone, Copy)]
 struct Times {
+    all: Spent,
     set: f64,
     refresh: f64,
     encode: f64,
+    /// The encoder's `finish`, which is wgpu's alone.
+    finish: f64,
     /// The GPU's work and the submission, for which the frame waits.
     rest: f64,
 }
@@ -191,13 +304,15 @@ fn quantiles(times: impl Iterator<Item = f64>) -> String {
 
 fn print(preset: &str, what: &str, times: &[Times]) {
     let both = |time: fn(&Times) -> f64| quantiles(times.iter().map(time));
+    let all: Vec<Spent> = times.iter().map(|times| times.all).collect();
     println!(
-        "{preset}, {what}: {}; set_transforms {}, refresh {}, encode {}; beside it submitted and \
-         waited {}",
-        both(|times| times.set + times.refresh + times.encode),
+        "{preset}, {what}: {}; set_transforms {}, refresh {}, encode {}, wgpu's finish {}; beside \
+         it submitted and waited {}",
+        of(&all),
         both(|times| times.set),
         both(|times| times.refresh),
         both(|times| times.encode),
+        both(|times| times.finish),
         both(|times| times.rest),
     );
 }
@@ -268,6 +383,7 @@ impl<'a> Host<'a> {
         for (index, map) in self.places[..kind.moving].iter_mut().enumerate() {
             *map = place(index, turn + 1);
         }
+        let clock = Clock::start();
         let descriptor = wgpu::CommandEncoderDescriptor::default();
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
         let start = Instant::now();
@@ -285,18 +401,47 @@ impl<'a> Host<'a> {
         let frame = Frame::new().with_all(kind.all);
         let encoded = self.executor.encode(&mut encoder, &frame);
         encoded.expect("the frame was encoded before");
-        let commands = encoder.finish();
         let encode = since(start);
+        let start = Instant::now();
+        let commands = encoder.finish();
+        let finish = since(start);
+        Times {
+            all: clock.spent(),
+            set,
+            refresh,
+            encode,
+            finish,
+            rest: self.submit(commands),
+        }
+    }
+
+    /// Submits commands and waits for them; how long that took, in milliseconds.
+    fn submit(&self, commands: wgpu::CommandBuffer) -> f64 {
         let start = Instant::now();
         self.gpu.queue.submit([commands]);
         let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
         waited.expect("the GPU is there");
-        Times {
-            set,
-            refresh,
-            encode,
-            rest: since(start),
+        since(start)
+    }
+
+    /// Prints the times of a frame by hand, of as many compute passes as the plan has dispatches,
+    /// between frames in which nothing moves and all is encoded.
+    fn print_by_hand(&mut self, frames: usize) {
+        let steps = self.executor.plan().live().flat_map(|pass| &pass.steps);
+        let dispatches = steps.filter(|step| matches!(step, Step::Dispatch(_))).count();
+        let by_hand = ByHand::new(self.gpu, chain::Kind::Dispatch, dispatches);
+        let kind = Kind { all: true, ..NOTHING };
+        let mut times = Vec::new();
+        for turn in 0..frames {
+            self.frame(turn, kind);
+            let clock = Clock::start();
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            by_hand.encode(&mut encoder, false);
+            let commands = encoder.finish();
+            times.push(clock.spent());
+            self.submit(commands);
         }
+        println!("{dispatches} dispatches by hand: {}", of(&times));
     }
 
     /// Prints what one more frame builds, and how long each takes.

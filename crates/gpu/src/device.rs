@@ -302,7 +302,7 @@ async fn device_of(
     Ok(Gpu {
         instance,
         adapter,
-        pipelines: Pipelines::new(&device),
+        pipelines: Pipelines::shared(&device),
         device,
         queue,
         memory: None,

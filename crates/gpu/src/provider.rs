@@ -72,6 +72,22 @@ pub trait Provider: Describe {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError>;
 
+    /// Writes the content of the uniform `name`, which is small, into `content`, which has as many
+    /// bytes as [`Describe::describe`] says, and returns true. The executor then does not call
+    /// [`build`](Self::build): it keeps the uniform in a buffer of its own, which the commands of
+    /// each frame fill with the content of the last [`refresh`](crate::Executor::refresh). So
+    /// another content needs no new buffer, and nothing is bound anew. It is called only for names
+    /// that a [live](skiagraph_graph#terms) pass binds, when their [version](Self::version) has
+    /// changed. The default implementation returns false: the resource is built.
+    ///
+    /// # Errors
+    /// If the content cannot be computed; the executor reports
+    /// [`ExecuteError::Provider`](crate::ExecuteError::Provider).
+    fn write_uniform(&mut self, name: &str, content: &mut [u8]) -> Result<bool, ProviderError> {
+        let _ = (name, content);
+        Ok(false)
+    }
+
     /// Builds the top-level acceleration structure of the resource `name`, which
     /// [`Describe::describe`] describes as
     /// [`ACCELERATION_STRUCTURE`](skiagraph_graph::Provided::ACCELERATION_STRUCTURE), or returns

@@ -12,7 +12,7 @@ pub(crate) enum Held {
     Traced,
     /// A hierarchy in light space: those of lights that take turns are kept.
     OfLight,
-    /// Those of views and lights that take turns are kept.
+    /// A uniform, for callers that want a buffer of it: executors keep their own.
     Uniform,
     /// A list of lights, or one of them.
     Lights,
@@ -30,8 +30,8 @@ pub(crate) struct On<'a> {
 /// None is written again once it was handed out: what the queue writes comes before all that is
 /// submitted later, so a frame that was encoded with the buffer and not submitted yet would show
 /// what was set for another one. Another content is another buffer. Where only some of it is other,
-/// the GPU copies the rest from the buffer before. Of cameras and lights, the last contents are
-/// kept: views and lights that take turns find their own.
+/// the GPU copies the rest from the buffer before. Of lists of lights, the last contents are kept:
+/// lights that take turns find their own.
 #[derive(Clone, Default)]
 pub(crate) struct Buffers {
     resources: BTreeMap<&'static str, Held>,
@@ -241,9 +241,9 @@ impl Buffers {
     /// Keeps a buffer as the last one of that name.
     fn hold(&mut self, name: &str, buffer: wgpu::Buffer, version: u64) {
         let most = match self.held_as(name) {
-            Held::Storage | Held::Traced => 1,
+            Held::Storage | Held::Traced | Held::Uniform => 1,
             Held::OfLight => 4,
-            Held::Uniform | Held::Lights => 16,
+            Held::Lights => 16,
         };
         let held = self.held.entry(name.to_owned()).or_default();
         remember(held, (buffer, version), most);

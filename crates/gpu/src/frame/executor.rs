@@ -55,6 +55,9 @@ impl Executor {
     /// a resource that the provider cannot build yet, is tried only in [`Executor::encode`], before
     /// the host's encoder is touched.
     ///
+    /// Executors on one device share their [pipelines](Pipelines::shared): beside another one of
+    /// the same graph, an executor makes none.
+    ///
     /// # Errors
     /// See [`ExecuteError`]; an error about a pass names the pass and its place in the graph
     /// document.
@@ -64,7 +67,7 @@ impl Executor {
         plan: Plan,
         provider: &mut dyn Provider,
     ) -> Result<Self, ExecuteError> {
-        Self::with_pipelines(&Pipelines::new(device), queue, plan, provider)
+        Self::with_pipelines(&Pipelines::shared(device), queue, plan, provider)
     }
 
     /// Creates an executor of a plan on an open device. Executors of one [`Gpu`] share its

@@ -1,5 +1,5 @@
 //! Frames between their encoding and their report. Any number may be in flight; each has its own
-//! readbacks, timer and copy of the uniform `frame`, and what is to be taken back if it never runs.
+//! readbacks, timer and copies of uniforms, and what is to be taken back if it never runs.
 //!
 //! A frame is encoded for the contents that the frames before it leave. So each tells, when it is
 //! done, which one ran before it. If that is another one than the frame was encoded to follow, or a
@@ -13,7 +13,7 @@ use super::stamp::{Fate, Numbers, Stamp};
 use super::statistics::Counters;
 use super::timer::{Timer, times};
 use super::times::FrameTiming;
-use super::uniform::FrameUniform;
+use super::uniform::FrameUniforms;
 use crate::error::{ExecuteError, poll};
 use crate::memory::memory::Grown;
 use crate::presence::Presence;
@@ -60,8 +60,8 @@ pub(super) struct FrameInFlight {
     pub fetches: Vec<Fetch>,
     /// True if no mapping is waited for any longer.
     is_given_up: bool,
-    /// Source of the uniform `frame`, kept for the next frame as the timer is.
-    pub uniform: Option<FrameUniform>,
+    /// Source of the uniforms, kept for the next frame as the timer is.
+    pub uniforms: Option<FrameUniforms>,
 }
 
 /// The frames in flight, and the parts of finished ones that later frames reuse.

@@ -14,7 +14,7 @@ use super::report::{Frame, FrameReport};
 use super::state::{FrameDecision, State};
 use super::statistics::Counters;
 use super::timer::Timer;
-use super::uniform::FrameUniform;
+use super::uniform::{FrameUniforms, frame_bytes};
 use crate::device::partial;
 use crate::error::{ExecuteError, in_encoder, poll, with_table};
 use crate::memory::memory::{InFrame, Memory, ResourceFactory, check_bound, check_relied_on};
@@ -148,11 +148,14 @@ impl Runner {
         frame_in_flight: &mut FrameInFlight,
         frame: &Frame<'_>,
     ) -> Result<(), ExecuteError> {
-        let (state, device) = (&self.state, &self.device);
         frame_in_flight.index = self.frames;
-        if state.uniform.is_some() {
-            let values = (self.frames, frame.seconds, self.host_changes.changed);
-            FrameUniform::write(&mut frame_in_flight.uniform, values, device)?;
+        if let Some(id) = self.state.uniform {
+            let content = frame_bytes((self.frames, frame.seconds, self.host_changes.changed));
+            self.state.memory.set_uniform(id, &content);
+        }
+        let (state, device) = (&self.state, &self.device);
+        if !self.decision.rests {
+            FrameUniforms::write(&mut frame_in_flight.uniforms, &state.memory, device)?;
         }
         for name in frame.read {
             let ping_pong = &self.decision.ping_pong;
@@ -184,10 +187,8 @@ impl Runner {
         let ping_pong = &decision.ping_pong;
         let number = frame_in_flight.number;
         frame_in_flight.before.clone_from(&state.contents);
-        if let (Some(id), Some(copy)) = (state.uniform, &mut frame_in_flight.uniform)
-            && let Ok(uniform) = state.memory.buffer(id, ping_pong)
-        {
-            copy.copy(uniform, encoder);
+        if let Some(uniforms) = frame_in_flight.uniforms.as_mut().filter(|_| !decision.rests) {
+            uniforms.copy(&state.memory, encoder);
         }
         state.copy_grown(encoder);
         let memory = &state.memory;
@@ -329,7 +330,7 @@ impl Runner {
         let submitted = factory.submit_built();
         if let Err(why) = &submitted {
             for &id in built {
-                self.state.memory.forget(id, why);
+                self.state.memory.forget(id, why.to_string());
                 self.state.unbind(id);
             }
         }
@@ -354,8 +355,12 @@ impl Runner {
             }
             let before = state.memory.host(id).cloned();
             let mut factory = ResourceFactory::new((&self.device, &self.queue), provider);
-            built.push(id);
-            state.memory.refresh(id, &state.plan, None, &mut factory)?;
+            let refreshed = state.memory.refresh(id, &state.plan, None, &mut factory);
+            // The provider has recorded nothing for a uniform that it has told.
+            if !state.memory.uniforms().contains_key(&id) {
+                built.push(id);
+            }
+            refreshed?;
             state.touch(id);
             let now = state.memory.host(id);
             if now.is_some() {

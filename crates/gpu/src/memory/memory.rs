@@ -9,8 +9,8 @@ use crate::error::scoped;
 use crate::presence::Presence;
 use crate::provider::{Provider, ProviderError};
 use skiagraph_graph::{
-    Address, Aliases, FRAME_BYTES, Filter, Origin, Plan, Provided, Resource, ResourceId,
-    ResourceKind, Sampler, Target,
+    Address, Aliases, FRAME_BYTES, Filter, Origin, Plan, Provided, ProvidedBinding, Resource,
+    ResourceId, ResourceKind, Sampler, Target,
 };
 use std::{collections::BTreeMap, ops::Range};
 
@@ -28,6 +28,9 @@ pub(crate) struct Memory {
     spare: BTreeMap<String, Physical>,
     /// Version of each provided resource, or the part that is missing to build it.
     provided: BTreeMap<ResourceId, Result<u64, String>>,
+    /// Content of each uniform that the commands of every frame write: `frame`, and those whose
+    /// bytes the provider tells.
+    uniforms: BTreeMap<ResourceId, Vec<u8>>,
 }
 
 /// A buffer or texture, and the larger one that takes over its content.
@@ -140,6 +143,7 @@ impl Memory {
                     old,
                     factory.device,
                 )?;
+                self.uniforms.insert(id, vec![0; FRAME_BYTES as usize]);
             }
             (_, Origin::Host) => {
                 if let Some(import) = old.and_then(|old| kept_import(plan, &resource.name, old)) {
@@ -242,9 +246,64 @@ impl Memory {
 
     /// Gives up a provided resource whose content is not there, so that the provider is asked for
     /// it again.
-    pub fn forget(&mut self, id: ResourceId, why: &ExecuteError) {
+    pub fn forget(&mut self, id: ResourceId, why: String) {
         self.host.remove(&id);
-        self.provided.insert(id, Err(why.to_string()));
+        self.uniforms.remove(&id);
+        self.provided.insert(id, Err(why));
+    }
+
+    /// Returns the contents of the uniforms that the commands of every frame write.
+    pub fn uniforms(&self) -> &BTreeMap<ResourceId, Vec<u8>> {
+        &self.uniforms
+    }
+
+    /// Sets the content of such a uniform.
+    pub fn set_uniform(&mut self, id: ResourceId, content: &[u8]) {
+        if let Some(before) = self.uniforms.get_mut(&id) {
+            before.copy_from_slice(content);
+        }
+    }
+
+    /// Asks the provider for the bytes of a uniform. Returns false if it has none to tell.
+    fn refresh_uniform(
+        &mut self,
+        id: ResourceId,
+        resource: &Resource,
+        old: Option<(&Plan, &Memory)>,
+        factory: &mut ResourceFactory<'_>,
+    ) -> Result<bool, ExecuteError> {
+        let ResourceKind::Provided(provided) = &resource.kind else {
+            return Ok(false);
+        };
+        let size = provided.items.unwrap_or(1).saturating_mul(provided.stride);
+        let most = factory.device.limits().max_uniform_buffer_binding_size;
+        let is_copied = size <= most && size.is_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
+        if provided.binding != ProvidedBinding::Uniform || !is_copied {
+            return Ok(false);
+        }
+        let name = &resource.name;
+        let mut content = vec![0; size as usize];
+        let written = factory.provider.write_uniform(name, &mut content);
+        let is_written = written.map_err(|why| ExecuteError::Provider {
+            name: name.clone(),
+            why,
+        })?;
+        if !is_written {
+            self.uniforms.remove(&id);
+            return Ok(false);
+        }
+        if !self.uniforms.contains_key(&id) {
+            // A buffer of the provider is not to be written.
+            let is_own = |(plan, memory): &(&Plan, &Memory)| {
+                let former = memory.host_by_name(plan, name);
+                former.is_some_and(|(id, _)| memory.uniforms.contains_key(&id))
+            };
+            let usage = provided.binding.usages() | wgpu::BufferUsages::COPY_SRC;
+            let old = old.filter(is_own);
+            self.own_buffer(id, name, (size, usage), old, factory.device)?;
+        }
+        self.uniforms.insert(id, content);
+        Ok(true)
     }
 
     /// Asks the provider for a resource, unless `old` has it in the same version.
@@ -256,8 +315,8 @@ impl Memory {
         factory: &mut ResourceFactory<'_>,
     ) -> Result<(), ExecuteError> {
         let resource = plan.resource(id);
-        let (provider, device) = (&mut *factory.provider, factory.device);
-        let is_described = check_bound(resource, provider)?;
+        let is_described = check_bound(resource, factory.provider)?;
+        let provider = &mut *factory.provider;
         let version = provider.version(&resource.name);
         if let Some((plan, memory)) = old
             && let Some((old_id, physical)) = memory.host_by_name(plan, &resource.name)
@@ -265,14 +324,20 @@ impl Memory {
             && is_described
         {
             self.host.insert(id, physical.clone());
+            let content = memory.uniforms.get(&old_id).cloned();
+            self.uniforms.extend(content.map(|content| (id, content)));
             self.provided.insert(id, Ok(version));
             return Ok(());
         }
         if let Some(why) = provider.missing(&resource.name) {
-            self.host.remove(&id);
-            self.provided.insert(id, Err(why));
+            self.forget(id, why);
             return Ok(());
         }
+        if self.refresh_uniform(id, resource, old, factory)? {
+            self.provided.insert(id, Ok(version));
+            return Ok(());
+        }
+        let (provider, device) = (&mut *factory.provider, factory.device);
         let (name, queue) = (&resource.name, factory.queue);
         let built = scoped(device, name, || match resource.kind {
             ResourceKind::AccelerationStructure => {

@@ -5,11 +5,12 @@ use super::handles::PipelineKind;
 use super::kept::{self, Keeper};
 use super::key::PipelineKey;
 use crate::error::{ExecuteError, named, scoped};
+use crate::identity::DeviceIdentity;
 use naga::ShaderStage;
 use skiagraph_graph::{Ids, LinkedPass, Shader, step::Step};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
 /// The pipeline of a draw or dispatch, with the layouts of its bind groups.
 #[derive(Debug)]
@@ -21,35 +22,38 @@ pub(crate) struct Pipeline {
 /// Number of pipelines without a user that are kept, for a plan that comes back to them.
 const UNUSED: usize = 64;
 
-/// Shader modules and pipelines on one device. Executors that are
-/// [created with](crate::Executor::with_pipelines) the same object share them: a pipeline that one
-/// of them has made costs the others nothing, also after a change of a plan. Clones are handles of
-/// the same object; threads may share it.
+/// Shader modules and pipelines on one device. Executors share them: a pipeline that one of them
+/// has made costs the others nothing, also after a change of a plan. [`Executor::new`] takes the
+/// [shared](Self::shared) object of its device, [`Executor::with_pipelines`] any other.
+/// Clones are handles of the same object; threads may share it.
+///
+/// [`Executor::new`]: crate::Executor::new
+/// [`Executor::with_pipelines`]: crate::Executor::with_pipelines
 ///
 /// Pipelines are equal if shader text (with the modules that it `#import`s), entry points,
 /// `override` constants, bind group layouts, target formats and fixed-function state are. The last
 /// 64 pipelines that no executor uses any more are kept, others are dropped.
 ///
 /// ```no_run
-/// use skiagraph_gpu::{Executor, Pipelines, device};
+/// use skiagraph_gpu::{Executor, device};
 /// use skiagraph_graph::{FolderSources, Graph, NoProvider, PlanRequest, Registry};
 ///
 /// let sources = FolderSources { root: "graphs".into() };
 /// let graph = Graph::load("ramp.ron", &Registry::standard(), &sources)?;
 /// let gpu = device::open(None)?;
-/// let pipelines = Pipelines::new(&gpu.device);
-/// for viewport in [[64, 32], [128, 64]] {
-///     let plan = graph.plan(&PlanRequest::new(viewport, &NoProvider))?;
-///     // The second executor makes no pipelines.
-///     Executor::with_pipelines(&pipelines, &gpu.queue, plan, &mut NoProvider)?;
-/// }
+/// let plan = |viewport| graph.plan(&PlanRequest::new(viewport, &NoProvider));
+/// let first = Executor::new(&gpu.device, &gpu.queue, plan([64, 32])?, &mut NoProvider)?;
+/// let made = first.pipelines().made();
+/// // The second executor makes no pipelines.
+/// Executor::new(&gpu.device, &gpu.queue, plan([128, 64])?, &mut NoProvider)?;
+/// assert_eq!(first.pipelines().made(), made);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]
 pub struct Pipelines(Arc<Shared>);
 
 struct Shared {
-    device: wgpu::Device,
+    device: DeviceIdentity,
     cache: Option<wgpu::PipelineCache>,
     keeper: Option<Keeper>,
     store: Mutex<Store>,
@@ -84,7 +88,24 @@ const FULLSCREEN: &str =
     return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }";
 
+/// The objects that executors share by default.
+static SHARED: Mutex<Vec<Weak<Shared>>> = Mutex::new(Vec::new());
+
 impl Pipelines {
+    /// Returns the object that executors on a device share by default: the one that was returned
+    /// before, as long as a handle of it is left, or else a new one.
+    pub fn shared(device: &wgpu::Device) -> Self {
+        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+        shared.retain(|made| made.strong_count() > 0);
+        let mut used = shared.iter().filter_map(Weak::upgrade);
+        if let Some(made) = used.find(|made| made.device.is(device)) {
+            return Self(made);
+        }
+        let made = Self::new(device);
+        shared.push(Arc::downgrade(&made.0));
+        made
+    }
+
     /// Creates an object without pipelines for a device.
     pub fn new(device: &wgpu::Device) -> Self {
         Self::of(device, None, None)
@@ -130,7 +151,7 @@ impl Pipelines {
         keeper: Option<Keeper>,
     ) -> Self {
         Self(Arc::new(Shared {
-            device: device.clone(),
+            device: DeviceIdentity::new(device),
             cache,
             keeper,
             store: Mutex::default(),
@@ -139,7 +160,7 @@ impl Pipelines {
 
     /// Returns the device that the pipelines are made on.
     pub fn device(&self) -> &wgpu::Device {
-        &self.0.device
+        self.0.device.device()
     }
 
     /// Returns the cache that pipelines are made with; `None` if there is none, as in an object

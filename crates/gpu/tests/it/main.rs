@@ -45,3 +45,4 @@ mod refusals;
 mod robustness;
 mod stale;
 mod timing;
+mod uniforms;

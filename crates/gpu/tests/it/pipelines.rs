@@ -96,10 +96,29 @@ fn a_second_executor_makes_no_pipelines() -> Result<(), ExecuteError> {
     add(&mut second, 5);
     assert_eq!(pipelines.made(), 6);
     assert_eq!(firsts(&mut second, &GPU), [15, 25, 5]);
-    // Executors that share nothing make their own.
-    let own = Executor::new(&GPU.device, &GPU.queue, plan(), &mut NoProvider).unwrap();
+    // Another object has its own.
+    let own = sharing(&Pipelines::new(&GPU.device), plan());
     assert_eq!((own.pipelines().made(), pipelines.made()), (3, 6));
     Ok(())
+}
+
+/// Two devices that wgpu takes for one another: the first ones of two instances.
+#[test]
+fn executors_share_the_pipelines_of_their_device_by_default() {
+    let gpus = [(); 2].map(|()| device::open(None).unwrap());
+    let new = |gpu: &Gpu| {
+        Executor::new(&gpu.device, &gpu.queue, plan(), &mut NoProvider)
+            .unwrap_or_else(|error| panic!("{error}"))
+    };
+    let mut executors = Vec::new();
+    for gpu in &gpus {
+        executors.extend([new(gpu), new(gpu)]);
+        assert_eq!(gpu.pipelines.made(), 3);
+    }
+    for (executor, gpu) in executors.iter_mut().zip([&gpus[0], &gpus[0], &gpus[1], &gpus[1]]) {
+        assert_eq!(executor.pipelines().made(), 3);
+        assert_eq!(firsts(executor, gpu), [11, 21, 1]);
+    }
 }
 
 /// A clone is the same plan, whatever becomes of the other.

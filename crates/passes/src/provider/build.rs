@@ -63,6 +63,14 @@ impl Provider for SceneProvider {
         Ok(self.uploads.buffer(name, On { device, queue })?)
     }
 
+    fn write_uniform(&mut self, name: &str, content: &mut [u8]) -> Result<bool, ProviderError> {
+        let Some(bytes) = self.uploads.uniform(name)? else {
+            return Ok(false);
+        };
+        content.copy_from_slice(&bytes);
+        Ok(true)
+    }
+
     fn submit_built(
         &mut self,
         device: &wgpu::Device,

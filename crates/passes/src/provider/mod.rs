@@ -103,6 +103,8 @@ impl SceneProvider {
                 _ if self.missing(name).is_some() => {}
                 TLAS => drop(self.build_acceleration_structure(name, device, queue)?),
                 EMBREE => drop(self.build_cpu_work(name)?),
+                // Laid around the shape here; the executor brings it to the device.
+                _ if self.uploads.is_uniform(name) => drop(self.uploads.uniform(name)?),
                 _ => drop(self.build(name, device, queue)?),
             }
         }

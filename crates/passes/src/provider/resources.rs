@@ -99,34 +99,28 @@ resources! {
         |it, _, name, on| it.atlas().and_then(|at| it.upload_appended(name, &at.texels, on));
     "camera", "[`CameraUniform`](crate::uniforms::CameraUniform)", Eye, Uniform,
         |_, _| uniform::<CameraUniform>(),
-        |it, _, name, on| it.upload_items(name, &[it.versions.eye.now.finite()?.camera], on);
+        Uploads::upload_content;
     "unprojection", "[`UnprojectionUniform`](crate::uniforms::UnprojectionUniform)", Eye, Uniform,
         |_, _| uniform::<UnprojectionUniform>(),
-        |it, _, name, on| it.upload_items(name, &[it.versions.eye.now.finite()?.unprojection], on);
+        Uploads::upload_content;
     "light", "[`LightUniform`](crate::uniforms::LightUniform)", LightOverShape, Uniform,
         |it, _| Some(uniform::<LightUniform>()?.with_kind(lights::provided_kind(&it.light()))),
-        |it, mesh, name, on| {
-            let light = it.geometry.lay(it.checked(it.light())?, mesh);
-            it.upload_items(name, &[light], on)
-        };
+        Uploads::upload_content;
     "light_area", "[`LightAreaUniform`](crate::uniforms::LightAreaUniform)", Light, Uniform,
         |it, _| {
             let extent = lights::provided_extent(&it.light());
             Some(uniform::<LightAreaUniform>()?.with_kind(extent))
         },
-        |it, _, name, on| {
-            let light = LightAreaUniform::from(&it.checked(it.light())?);
-            it.upload_items(name, &[light], on)
-        };
+        Uploads::upload_content;
     "lights",
         "array of [`LightUniform`](crate::uniforms::LightUniform), one per light; `lights[2]` \
          alone is a uniform",
         LightsOverShape, Lights, |it, name| lights::describe(name, it.lights()),
-        Uploads::upload_lights;
+        Uploads::upload_content;
     "light_areas",
         "array of [`LightAreaUniform`](crate::uniforms::LightAreaUniform); `light_areas[2]` alone \
          is a uniform",
-        Lights, Lights, |it, name| lights::describe(name, it.lights()), Uploads::upload_lights;
+        Lights, Lights, |it, name| lights::describe(name, it.lights()), Uploads::upload_content;
 }
 
 /// Describes an array; one whose length depends on how it is built has no number of items.

@@ -12,8 +12,10 @@ use crate::host_buffers::{Bound, HostWrite, Kernel, Kernels};
 use crate::lights;
 use crate::names::*;
 use crate::trees::nodes_to_walk;
+use crate::uniforms::LightAreaUniform;
+use bytemuck::bytes_of;
 use glam::{Vec3, Vec4};
-use skiagraph_graph::Provided;
+use skiagraph_graph::{Provided, ProvidedBinding};
 use skiagraph_scene::packed_masks::{mask_words, shadow_words};
 use skiagraph_scene::{BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets};
 use std::ops::Range;
@@ -492,15 +494,57 @@ impl Uploads {
         Ok(if is_new { How::Made } else { How::Refitted })
     }
 
-    /// Uploads `lights` or `light_areas`, or one of them.
-    pub fn upload_lights(&mut self, mesh: &Mesh, name: &str, on: On) -> Result<How, Error> {
-        for &light in self.lights() {
-            self.checked(light)?;
+    /// Returns the bytes of a resource that describes the camera or lights; `None` for others.
+    fn content(&mut self, name: &str) -> Result<Option<Vec<u8>>, Error> {
+        let mesh = &self.scene.mesh;
+        let bytes = match name {
+            CAMERA => bytes_of(&self.versions.eye.now.finite()?.camera).to_vec(),
+            UNPROJECTION => bytes_of(&self.versions.eye.now.finite()?.unprojection).to_vec(),
+            LIGHT => {
+                let light = self.checked(self.light())?;
+                bytes_of(&self.geometry.lay(light, mesh)).to_vec()
+            }
+            LIGHT_AREA => {
+                let light = self.checked(self.light())?;
+                bytes_of(&LightAreaUniform::from(&light)).to_vec()
+            }
+            _ if lights::list_of(name).is_some() => {
+                for &light in self.lights() {
+                    self.checked(light)?;
+                }
+                let lights = &self.versions.lights.now;
+                let lay = |light| self.geometry.lay(light, mesh);
+                let content = lights::content(name, lights, lay);
+                let gone = || lights::gone(name, self.lights());
+                content.ok_or_else(|| gone().unwrap_or_else(|| self.unknown(name)))?
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(bytes))
+    }
+
+    pub fn is_uniform(&self, name: &str) -> bool {
+        let described = self.find(name).map(|resource| (resource.describe)(self, name));
+        let binding = described.flatten().map(|provided| provided.binding);
+        binding == Some(ProvidedBinding::Uniform)
+    }
+
+    /// Returns the bytes of a uniform, for the executor to bring to the device; `None` for other
+    /// resources.
+    pub fn uniform(&mut self, name: &str) -> Result<Option<Vec<u8>>, Error> {
+        let began = self.begin();
+        let content = self.content(name)?;
+        if let Some(bytes) = &content {
+            self.buffers.work.uploaded += bytes.len() as u64;
+            self.note(name, How::Made, began);
         }
-        let lights = &self.versions.lights.now;
-        let content = lights::content(name, lights, |light| self.geometry.lay(light, mesh));
-        let missing = || lights::gone(name, self.lights()).unwrap_or_else(|| self.unknown(name));
-        self.upload_items(name, &content.ok_or_else(missing)?, on)
+        Ok(content)
+    }
+
+    /// Uploads a resource that describes the camera or lights.
+    pub fn upload_content(&mut self, _: &Mesh, name: &str, on: On) -> Result<How, Error> {
+        let content = self.content(name)?.ok_or_else(|| self.unknown(name))?;
+        self.upload_items(name, &content, on)
     }
 
     /// Returns the mesh's materials.

@@ -1,5 +1,5 @@
-//! CPU time and allocations of an engine's frame: 300 meshes of 173,400 triangles, of which none, or
-//! five, move in each frame, or only the camera; and where nothing moves, but all passes are
+//! CPU time and allocations of an engine's frame: 300 meshes of 173,400 triangles, of which none,
+//! or five, move in each frame, or only the camera; and where nothing moves, but all passes are
 //! encoded. Setting the transforms, `refresh`, `encode` and finishing the encoder is measured;
 //! submission and the GPU's work are not: each frame is submitted and waited for outside the clock,
 //! so that the CPU is the frame's own. Beside it a frame by hand, in plain wgpu, of as many
@@ -12,8 +12,8 @@ use skiagraph_benches::chain::{self, ByHand};
 use skiagraph_benches::{open, planned};
 use skiagraph_gpu::device::{self, Gpu};
 use skiagraph_gpu::{Executor, Frame};
-use skiagraph_graph::{ParamValue, PlanRequest};
 use skiagraph_graph::step::Step;
+use skiagraph_graph::{ParamValue, PlanRequest};
 use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, SceneView, Work, registry};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -183,7 +183,11 @@ fn views(gpu: &Gpu, stone: &Mesh, frames: usize) {
         let on = (&registry(), &EmbeddedSources as _);
         let plan = planned("pipelines/light_buffer.ron", on, &request);
         let executor = Executor::on(gpu, plan, &mut host.provider);
-        views.push((number, seen, executor.expect("the preset suits every device")));
+        views.push((
+            number,
+            seen,
+            executor.expect("the preset suits every device"),
+        ));
     }
     let mut frame = |turn: usize| {
         let clock = Clock::start();
@@ -233,7 +237,10 @@ fn of(spent: &[Spent]) -> String {
     let mut allocations: Vec<u64> = spent.iter().map(|spent| spent.allocations).collect();
     allocations.sort_unstable();
     let times = quantiles(spent.iter().map(|spent| spent.ms));
-    format!("{times}, {} allocations", allocations[allocations.len() / 2])
+    format!(
+        "{times}, {} allocations",
+        allocations[allocations.len() / 2]
+    )
 }
 
 /// Prints the times of the program of docs/embedding.md.
@@ -428,9 +435,14 @@ impl<'a> Host<'a> {
     /// between frames in which nothing moves and all is encoded.
     fn print_by_hand(&mut self, frames: usize) {
         let steps = self.executor.plan().live().flat_map(|pass| &pass.steps);
-        let dispatches = steps.filter(|step| matches!(step, Step::Dispatch(_))).count();
+        let dispatches = steps
+            .filter(|step| matches!(step, Step::Dispatch(_)))
+            .count();
         let by_hand = ByHand::new(self.gpu, chain::Kind::Dispatch, dispatches);
-        let kind = Kind { all: true, ..NOTHING };
+        let kind = Kind {
+            all: true,
+            ..NOTHING
+        };
         let mut times = Vec::new();
         for turn in 0..frames {
             self.frame(turn, kind);

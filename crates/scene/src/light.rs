@@ -97,11 +97,7 @@ impl DirectionalLight {
             (nearest, farthest) = (nearest.min(depth), farthest.max(depth));
             places.push(DVec2::new(right.dot(point), up.dot(point)));
         }
-        Outline {
-            hull: convex_hull(places),
-            nearest,
-            farthest,
-        }
+        Outline::new(places, [nearest, farthest])
     }
 
     /// Returns the box that [`fit`](Self::fit) would return for the points of `outline`, which must

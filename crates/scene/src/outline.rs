@@ -14,16 +14,28 @@ pub struct Outline {
     pub(crate) hull: Vec<DVec2>,
     pub(crate) nearest: f64,
     pub(crate) farthest: f64,
+    /// The points of the hull that lie farthest in each of [`DIRECTIONS`]; `None` for no points.
+    ends: Option<Ends>,
 }
 
+/// A point for each of [`DIRECTIONS`].
+type Ends = [DVec2; 8];
+
 impl Outline {
+    /// The outline of points across the light, and of their least and greatest depth.
+    pub(crate) fn new(places: Vec<DVec2>, [nearest, farthest]: [f64; 2]) -> Self {
+        let hull = convex_hull(places);
+        Self {
+            ends: ends(hull.iter().map(|place| [*place; 8])),
+            hull,
+            nearest,
+            farthest,
+        }
+    }
+
     /// The outline of one point at the origin.
     pub(crate) fn of_the_origin() -> Self {
-        Self {
-            hull: vec![DVec2::ZERO],
-            nearest: 0.0,
-            farthest: 0.0,
-        }
+        Self::new(vec![DVec2::ZERO], [0.0; 2])
     }
 
     /// Returns the outline of the points of all parts together; all outlines are of the same light.
@@ -49,20 +61,16 @@ impl Outline {
                 outlines[part] = Some(exact(part));
             }
         }
-        let mut joined = Self {
-            hull: Vec::new(),
-            nearest: f64::INFINITY,
-            farthest: f64::NEG_INFINITY,
-        };
+        let mut places = Vec::new();
+        let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
         for outline in outlines.iter().flatten() {
-            joined.nearest = joined.nearest.min(outline.nearest);
-            joined.farthest = joined.farthest.max(outline.farthest);
+            nearest = nearest.min(outline.nearest);
+            farthest = farthest.max(outline.farthest);
             if !within.contains(outline) {
-                joined.hull.extend(&outline.hull);
+                places.extend(&outline.hull);
             }
         }
-        joined.hull = convex_hull(joined.hull);
-        joined
+        Self::new(places, [nearest, farthest])
     }
 }
 
@@ -254,6 +262,18 @@ const DIRECTIONS: [DVec2; 8] = [
     DVec2::new(1.0, -1.0),
 ];
 
+/// Returns for each direction the one of some points that lies farthest in it.
+fn ends(points: impl Iterator<Item = Ends>) -> Option<Ends> {
+    points.reduce(|mut farthest, other| {
+        for ((end, other), along) in farthest.iter_mut().zip(other).zip(DIRECTIONS) {
+            if along.dot(other) > along.dot(*end) {
+                *end = other;
+            }
+        }
+        farthest
+    })
+}
+
 /// The unknown parts that may reach farthest in a direction, or along the light.
 fn farthest_of(outlines: &[Option<Outline>], open: &[(usize, Outline)]) -> Vec<usize> {
     let settled = outlines.iter().flatten().map(|outline| (None, outline));
@@ -263,10 +283,9 @@ fn farthest_of(outlines: &[Option<Outline>], open: &[(usize, Outline)]) -> Vec<u
     for (part, outline) in settled.chain(open) {
         for (direction, (farthest, reach)) in most.iter_mut().enumerate() {
             let own = match DIRECTIONS.get(direction) {
-                Some(along) => {
-                    let along = outline.hull.iter().map(|place| along.dot(*place));
-                    along.fold(f64::NEG_INFINITY, f64::max)
-                }
+                Some(along) => outline
+                    .ends
+                    .map_or(f64::NEG_INFINITY, |ends| along.dot(ends[direction])),
                 None if direction == DIRECTIONS.len() => outline.farthest,
                 None => -outline.nearest,
             };
@@ -291,17 +310,8 @@ struct Octagon {
 }
 
 impl Octagon {
-    fn new<'a>(places: impl Iterator<Item = &'a DVec2>) -> Self {
-        let mut corners = [(DVec2::ZERO, f64::NEG_INFINITY); 8];
-        for place in places {
-            for ((corner, reach), along) in corners.iter_mut().zip(DIRECTIONS) {
-                let own = along.dot(*place);
-                if own > *reach {
-                    (*corner, *reach) = (*place, own);
-                }
-            }
-        }
-        let mut corners = corners.map(|(corner, _)| corner).to_vec();
+    fn new(ends: Option<Ends>) -> Self {
+        let mut corners = ends.unwrap_or_default().to_vec();
         corners.dedup();
         let size = corners.iter().map(|corner| corner.abs().max_element());
         let size = size.fold(0.0, f64::max);
@@ -330,25 +340,21 @@ impl Within {
     fn new(outlines: &[Option<Outline>]) -> Self {
         let there = || outlines.iter().flatten();
         Self {
-            octagon: Octagon::new(there().flat_map(|outline| &outline.hull)),
+            octagon: Octagon::new(ends(there().filter_map(|outline| outline.ends))),
             nearest: there().fold(f64::INFINITY, |at, outline| at.min(outline.nearest)),
             farthest: there().fold(f64::NEG_INFINITY, |at, outline| at.max(outline.farthest)),
         }
     }
 
     fn contains(&self, outline: &Outline) -> bool {
-        let far = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let hull = outline.hull.iter();
-        let (low, high) = hull.fold(far, |(low, high), p| (low.min(*p), high.max(*p)));
-        let corners = [
-            low,
-            DVec2::new(high.x, low.y),
-            high,
-            DVec2::new(low.x, high.y),
-        ];
+        let Some([right, _, top, _, left, _, bottom, _]) = outline.ends else {
+            return true;
+        };
+        let corners = [left.x, right.x].map(|x| [bottom.y, top.y].map(|y| DVec2::new(x, y)));
+        let mut corners = corners.as_flattened().iter();
         self.nearest <= outline.nearest
             && outline.farthest <= self.farthest
-            && corners.iter().all(|corner| self.octagon.contains(*corner))
+            && corners.all(|corner| self.octagon.contains(*corner))
     }
 }
 
@@ -357,7 +363,7 @@ pub(crate) fn convex_hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     /// Number of points beyond which it pays to leave out those that are not on it.
     const MANY: usize = 256;
     if points.len() > MANY {
-        let octagon = Octagon::new(points.iter());
+        let octagon = Octagon::new(ends(points.iter().map(|point| [*point; 8])));
         points.retain(|point| !octagon.contains(*point));
     }
     points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));

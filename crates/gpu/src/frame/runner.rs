@@ -187,7 +187,11 @@ impl Runner {
         let ping_pong = &decision.ping_pong;
         let number = frame_in_flight.number;
         frame_in_flight.before.clone_from(&state.contents);
-        if let Some(uniforms) = frame_in_flight.uniforms.as_mut().filter(|_| !decision.rests) {
+        if let Some(uniforms) = frame_in_flight
+            .uniforms
+            .as_mut()
+            .filter(|_| !decision.rests)
+        {
             uniforms.copy(&state.memory, encoder);
         }
         state.copy_grown(encoder);

@@ -28,8 +28,8 @@ impl FrameUniforms {
         })
     }
 
-    /// Writes the contents of the uniforms into the source buffer of a finished frame, or into a new
-    /// one.
+    /// Writes the contents of the uniforms into the source buffer of a finished frame, or into a
+    /// new one.
     pub fn write(
         used: &mut Option<Self>,
         memory: &Memory,

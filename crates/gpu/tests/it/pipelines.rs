@@ -115,7 +115,10 @@ fn executors_share_the_pipelines_of_their_device_by_default() {
         executors.extend([new(gpu), new(gpu)]);
         assert_eq!(gpu.pipelines.made(), 3);
     }
-    for (executor, gpu) in executors.iter_mut().zip([&gpus[0], &gpus[0], &gpus[1], &gpus[1]]) {
+    for (executor, gpu) in executors
+        .iter_mut()
+        .zip([&gpus[0], &gpus[0], &gpus[1], &gpus[1]])
+    {
         assert_eq!(executor.pipelines().made(), 3);
         assert_eq!(firsts(executor, gpu), [11, 21, 1]);
     }

@@ -524,7 +524,9 @@ impl Uploads {
     }
 
     pub fn is_uniform(&self, name: &str) -> bool {
-        let described = self.find(name).map(|resource| (resource.describe)(self, name));
+        let described = self
+            .find(name)
+            .map(|resource| (resource.describe)(self, name));
         let binding = described.flatten().map(|provided| provided.binding);
         binding == Some(ProvidedBinding::Uniform)
     }

@@ -29,7 +29,7 @@ def plain(path):
     text = path.read_text()
     text = text.split("\n#[cfg(test)]\nmod ")[0]
     text = re.sub(r'"(?:\\.|[^"\\])*"', '""', text, flags=re.DOTALL)
-    text = re.sub(r"//[^\n]*", "", text)
+    text = re.sub(r"//[^\n]*|^#!\[[^\]\n]*\]", "", text, flags=re.MULTILINE)
     # A semicolon ends an item, so that of an array's type is another sign for a while.
     return re.sub(r";( \w+\])", BAR + r"\1", text)
 

@@ -187,6 +187,9 @@ def without_example(folder):
     known, left = modules(folder), [()]
     for module in left:
         lines = known[module].read_text().splitlines()
+        if lines[0] == '#![doc = include_str!("../README.md")]':
+            page = (folder.parent / "README.md").read_text().splitlines()
+            lines = [f"//! {line}" for line in page] + lines
         fences = [at for at, line in enumerate(lines) if line.startswith("//! ```")]
         words = {at: set(re.split(r"[`,]+", lines[at][4:])) for at in fences[::2]}
         shown = [at for at in words if words[at] <= {"", "rust", "no_run", "should_panic"}]

@@ -1,15 +1,4 @@
-//! Scenes on which shadow methods go wrong: the catalogue of `skiagraph stress`.
-//!
-//! Every case builds a small scene with one view named `main` and one light, with the same bits on
-//! every machine. One line of text says which error the case provokes. Of most cases the geometry
-//! alone tells which points are lit: tests hold the ray tracer of the reference against it.
-//!
-//! ```
-//! for case in skiagraph_cases::cases().into_iter().take(3) {
-//!     let scene = case.scene();
-//!     assert_eq!(scene.views[0].name, "main", "{}: {}", case.name, case.reason);
-//! }
-//! ```
+#![doc = include_str!("../README.md")]
 
 mod case;
 mod catalogue;

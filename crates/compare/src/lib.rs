@@ -1,27 +1,4 @@
-//! Runs, times and judges shadow methods on a scene: the program `skiagraph compare` as a library.
-//!
-//! ```no_run
-//! use skiagraph_compare::{
-//!     comparison::Comparison,
-//!     graphs::shadow_method::load_methods,
-//!     measuring::{device::{self, GpuRequest}, series::run},
-//!     sink::{Session, Silent},
-//! };
-//! use skiagraph_gpu::block_on;
-//! use skiagraph_passes::EmbeddedSources;
-//! use skiagraph_scene::SceneLibrary;
-//! use std::sync::Arc;
-//!
-//! let (scene, _) = SceneLibrary::from_environment().load("park")?;
-//! let methods = load_methods(&["light_buffer", "nsm@bias=0"], &[], &[1024], &EmbeddedSources)?;
-//! let gpu = device::open(&GpuRequest::default(), methods.iter().map(|it| &it.preset.graph))?;
-//! let comparison = Comparison::new(Arc::new(scene), methods)?;
-//! for run in block_on(run(&comparison, Session::new(&gpu, &Silent)))?.runs {
-//!     let measured = run.measured.ok_or("cannot run here")?;
-//!     println!("{}: {} wrong of {}", run.preset, measured.wrong.total, run.pixels.facing_light);
-//! }
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! A [`Comparison`](comparison::Comparison) holds methods, a scene, the views and camera paths from
 //! which it is seen, and a [`Protocol`](comparison::Protocol). [`run`](measuring::series::run)

@@ -1,24 +1,4 @@
-//! Runs the plans of [`skiagraph_graph`] on a wgpu device, inside the host's own command encoders.
-//!
-//! ```no_run
-//! use skiagraph_gpu::{Executor, Frame, device};
-//! use skiagraph_graph::{FolderSources, Graph, NoProvider, PlanRequest, Registry};
-//!
-//! let sources = FolderSources { root: "graphs".into() };
-//! let graph = Graph::load("ramp.ron", &Registry::standard(), &sources)?;
-//! let gpu = device::open(None)?; // or the host's own device and queue
-//! let mut request = PlanRequest::new([64, 32], &NoProvider);
-//! request.limits = gpu.device.limits();
-//! let plan = graph.plan(&request)?;
-//! let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider)?;
-//!
-//! let mut encoder = gpu.device.create_command_encoder(&Default::default());
-//! executor.encode(&mut encoder, &Frame::new().with_read(&["image"]))?;
-//! gpu.queue.submit([encoder.finish()]);
-//! let image = &executor.finish()?.readbacks[0].content;
-//! println!("{:?}", image.as_f32());
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! [`Executor`] puts a plan on a device: it creates the textures, buffers and pipelines that
 //! [live](skiagraph_graph#terms) passes use, and it encodes, times and reads back frames.

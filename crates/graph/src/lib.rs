@@ -1,28 +1,4 @@
-//! A render graph for wgpu, written in RON and WGSL. The crate loads documents (RON files) and
-//! plans them without a GPU.
-//!
-//! ```
-//! use skiagraph_graph::{Graph, MemorySources, NoProvider, PlanRequest, Registry};
-//!
-//! // `FolderSources` reads the files of a folder instead.
-//! let sources = MemorySources::new([
-//!     (
-//!         "ramp.ron",
-//!         r#"(format: 3, materials: [Texture(name: "image", format: R32Float)],
-//!             passes: [Fullscreen(name: "ramp", color: ["image"])], outputs: ["image"])"#,
-//!     ),
-//!     (
-//!         "shaders/ramp.wgsl",
-//!         "@fragment fn fragment(@builtin(position) at: vec4<f32>) -> @location(0) f32 {
-//!             return at.x / 64.0; }",
-//!     ),
-//! ]);
-//! let graph = Graph::load("ramp.ron", &Registry::standard(), &sources)?;
-//! let plan = graph.plan(&PlanRequest::new([64, 32], &NoProvider))?;
-//! assert_eq!(plan.passes()[0].name, "ramp");
-//! assert_eq!(plan.outputs()[0].size, [64, 32]);
-//! # Ok::<(), skiagraph_graph::Diagnostics>(())
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! A document names *materials* (textures, buffers, samplers) and *passes*, which run in the order
 //! of the document. Bindings, and the reads and writes of each pass, come from the shaders by

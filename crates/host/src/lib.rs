@@ -1,39 +1,4 @@
-//! One crate for a program that draws with Skiagraph: it brings the graph, the executor, the
-//! presets and scenes, each as a module, and the very versions of wgpu, naga and glam that they
-//! use. A program that names no other crate of these cannot mix versions.
-//!
-//! ```no_run
-//! use skiagraph_host::{
-//!     EmbeddedSources, Executor, Eye, Frame, Graph, Pipelines, PlanRequest, SceneProvider,
-//!     SceneView, matrix, passes::Depth, registry, scene::{DirectionalLight, Indexed}, wgpu,
-//! };
-//!
-//! # fn frame(
-//! #     device: &wgpu::Device,
-//! #     queue: &wgpu::Queue,
-//! #     encoder: &mut wgpu::CommandEncoder,
-//! #     (positions, indices): (&[[f32; 3]], &[u32]),
-//! #     (view, projection): ([[f64; 4]; 4], [[f64; 4]; 4]),
-//! # ) -> Result<wgpu::TextureView, Box<dyn std::error::Error>> {
-//! let mesh = Indexed { positions, normals: &[], indices }.mesh()?;
-//! let sun = DirectionalLight::new([0.3, -1.0, 0.2].into());
-//! let mut provider = SceneProvider::from_mesh(mesh, sun);
-//! let eye = Eye::new(matrix(view), matrix(projection), Depth::Reversed)?;
-//! let view = SceneView::new([1280, 720], &eye, sun);
-//!
-//! let graph = Graph::load("pipelines/light_buffer.ron", &registry(), &EmbeddedSources)?;
-//! let request = PlanRequest::new(view.size(), view.apply(&mut provider))
-//!     .with_device(device.limits(), device.features());
-//! let plan = graph.plan(&request)?;
-//! let pipelines = Pipelines::new(device);
-//! let mut executor = Executor::with_pipelines(&pipelines, queue, plan, &mut provider)?;
-//!
-//! view.refresh(&mut executor, &mut provider)?;
-//! executor.encode(encoder, &Frame::new())?;
-//! let visibility = executor.output_view("visibility");
-//! # visibility.ok_or_else(|| "the preset has no visibility".into())
-//! # }
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! The names that a host needs first are re-exported here; all others are in the modules. A program
 //! with another library for matrices and vectors hands them over as arrays: vectors by `[x, y,

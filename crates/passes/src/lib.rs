@@ -1,28 +1,6 @@
-//! Scene resources for Skiagraph's graphs, the tracer, and the shadow presets (shadow methods that
-//! ship with Skiagraph). docs/embedding.md is the guide for engines.
+#![doc = include_str!("../README.md")]
 //!
-//! ```no_run
-//! use skiagraph_gpu::{Executor, Frame, device};
-//! use skiagraph_graph::{Graph, PlanRequest};
-//! use skiagraph_passes::{EmbeddedSources, SceneProvider, registry};
-//! # fn scene() -> skiagraph_scene::Scene { unimplemented!() }
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let (scene, viewport) = (std::sync::Arc::new(scene()), [1024, 1024]);
-//! let mut provider = SceneProvider::new(scene.clone());
-//! provider.set_view(&scene.views[0], viewport);
-//!
-//! let graph = Graph::load("pipelines/rt.ron", &registry(), &EmbeddedSources)?;
-//! let plan = graph.plan(&PlanRequest::new(viewport, &provider))?;
-//! let gpu = device::open(None)?;
-//! let mut executor = Executor::new(&gpu.device, &gpu.queue, plan, &mut provider)?;
-//! let mut encoder = gpu.device.create_command_encoder(&Default::default());
-//! executor.encode(&mut encoder, &Frame::new().with_read(&["visibility"]))?;
-//! gpu.queue.submit([encoder.finish()]);
-//! let visibility = &executor.finish()?.readbacks[0];
-//! # let _ = visibility;
-//! # Ok(())
-//! # }
-//! ```
+//! docs/embedding.md in the repository is the guide for engines.
 //!
 //! - [`SceneProvider`] uploads a [`skiagraph_scene::Scene`] piece by piece, as the passes of a
 //!   graph need it.

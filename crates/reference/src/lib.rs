@@ -1,29 +1,4 @@
-//! The reference against which Skiagraph measures shadow methods: an f64 ray tracer ([`Oracle`]),
-//! the [`GroundTruth`] that it finds, pixel counts ([`Statistics`]) and pictures ([`Image`]).
-//!
-//! The oracle starts from what a GPU's G-buffer says each pixel shows (one primitive id per pixel),
-//! recomputes the hit on that primitive in f64, traces a shadow ray in f64, and marks the pixels
-//! *indeterminate*: their answer flips when receiver or casters move within their f32 error bounds.
-//! It knows no GPU and writes no files.
-//!
-//! ```
-//! use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics};
-//! use skiagraph_scene::{DirectionalLight, Mesh, View};
-//! use glam::DVec3;
-//!
-//! let mesh = Mesh::default();
-//! let view = View { far: 100.0, ..View::default() };
-//! let light = DirectionalLight::new(DVec3::NEG_Y);
-//! let camera = view.camera([8, 8]);
-//! let oracle = Oracle::new(&mesh);
-//! let primitives = oracle.primary(&camera, Progress::default())?;
-//! let (mode, progress) = (OracleMode::Exact, Progress::default());
-//! let truth = oracle.shade(&camera, &light, &primitives, mode, progress)?;
-//! let counts = Statistics::judged(&truth.visibility(), &truth.status(), &truth)?;
-//! assert_eq!(counts.pixels.background, 64);
-//! assert_eq!(counts.wrong.total, 0);
-//! # Ok::<(), skiagraph_reference::Error>(())
-//! ```
+#![doc = include_str!("../README.md")]
 //!
 //! # Terms
 //!

@@ -1,14 +1,4 @@
-//! Presents measurements as tables, documents, charts, CSV and traces. It reads the records of
-//! `skiagraph-compare`, and measures nothing itself.
-//!
-//! ```
-//! use skiagraph_compare::records::table::Table;
-//! use skiagraph_report::table::terminal;
-//!
-//! let rows = [vec!["nsm".to_owned(), "12".to_owned()]];
-//! let text = terminal(&Table::new(["method", "wrong"], 1, rows));
-//! assert!(text.contains("nsm") && text.contains("12"));
-//! ```
+#![doc = include_str!("../README.md")]
 
 pub mod baseline_text;
 pub mod charts;

@@ -1,31 +1,4 @@
-//! Scenes for Skiagraph: a triangle [`Mesh`] with its hierarchy ([`Bvh`]), named [`View`]s, and
-//! [`Light`]s.
-//!
-//! Meshes and scenes from files (`.obj`, `.gltf`, `.ron`) need the feature `files`.
-//!
-//! The crate does not use the GPU. World space is right-handed and in scene units, of any length.
-//! Positions are `f32` (the precision of mesh files and of the GPU); cameras and lights are `f64`,
-//! so that an exact reference starts from unrounded input. A *primitive* is a triangle, and its
-//! *id* the index in [`Mesh::triangles`]. A *receiver* is a point that is lit, a *caster* a
-//! triangle that may keep the light from it. *Light space* is the space of a shadow map.
-//!
-//! ```
-//! use skiagraph_scene::{Bvh, DirectionalLight, Indexed};
-//!
-//! let square = [[0.0; 3], [0.0, 0.0, 8.0], [8.0, 0.0, 8.0], [8.0, 0.0, 0.0]];
-//! let mesh = Indexed {
-//!     positions: &square,
-//!     normals: &[],
-//!     indices: &[0, 1, 2, 0, 2, 3],
-//! }
-//! .mesh()?;
-//! assert_eq!(Bvh::build(&mesh).primitives.len(), 2);
-//! // The light space of the sun, straight above: 8 by 8 units, and 0.2 % more.
-//! let sun = DirectionalLight::new(glam::DVec3::NEG_Y);
-//! let half = sun.fit(mesh.used_positions()).extent.x;
-//! assert!((half - 4.0).abs() < 0.01);
-//! # Ok::<(), skiagraph_scene::IndexedError>(())
-//! ```
+#![doc = include_str!("../README.md")]
 
 pub mod adjacency;
 #[cfg(feature = "files")]

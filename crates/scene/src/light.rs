@@ -1,6 +1,6 @@
 //! Directional lights and the orthographic light space of a shadow map.
 
-use crate::outline::{Outline, convex_hull};
+use crate::outline::Outline;
 use crate::vector::{Vector, is_default};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -172,6 +172,7 @@ fn least_rectangle(hull: &[DVec2]) -> (DVec2, DVec2, DVec2) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outline::convex_hull;
 
     const LIGHTS: [DVec3; 5] = [
         DVec3::NEG_Y,

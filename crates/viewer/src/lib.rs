@@ -1,27 +1,6 @@
-//! Shows shadow methods in a window, side by side and beside the ground truth. One thread runs the
-//! methods, another traces the reference, and the window shows their results. The logic is in
-//! `state.rs`, which uses no window toolkit.
+#![doc = include_str!("../README.md")]
 //!
-//! ```no_run
-//! use skiagraph_compare::{measuring::device::GpuRequest, sink::Silent};
-//! use skiagraph_scene::SceneLibrary;
-//! use skiagraph_viewer::{Opening, open};
-//!
-//! let opening = Opening {
-//!     methods: vec!["nsm".into(), "light_buffer".into()],
-//!     params: vec![],
-//!     map_size: None,
-//!     size: [640, 480],
-//!     scene: "park".into(),
-//!     load_scene: Box::new(|name| {
-//!         let (scene, _) = SceneLibrary::default().load(name)?;
-//!         Ok((scene, vec![]))
-//!     }),
-//!     gpu: GpuRequest::default(),
-//! };
-//! open(opening, &Silent)?;
-//! # Ok::<(), skiagraph_compare::error::CompareError>(())
-//! ```
+//! The logic is in `state.rs`, which uses no window toolkit.
 
 mod desired_state;
 mod drawn;

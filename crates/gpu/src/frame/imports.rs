@@ -92,7 +92,7 @@ impl Executor {
     /// has changed) that read it run, and those with `run: Always` also where the frame would
     /// otherwise compute nothing new (see [`encode`](Self::encode)); the frame after that finds
     /// this content as `.previous` (content of the frame before). With a provider that counts
-    /// [`versions`](Provider::version), call [`refresh`](Self::refresh) instead.
+    /// [`versions`](crate::Provider::version), call [`refresh`](Self::refresh) instead.
     ///
     /// # Errors
     /// [`ExecuteError::NotOfHost`] if the plan has neither an import nor a provided resource of

@@ -234,6 +234,14 @@ fn binary(
     [left, right]: &[Expr; 2],
     env: &mut dyn Environment,
 ) -> Reported<Value> {
+    if matches!(operator, Binary::Remainder) && left.is_frame_number() {
+        let length = count32(right, env)?;
+        if length > 0
+            && let Some(turn) = env.turn(length)
+        {
+            return Ok(Value::whole(turn));
+        }
+    }
     let holds: fn(Ordering) -> bool = match operator {
         Binary::Or => return Ok(Value::Bool(boolean(left, env)? || boolean(right, env)?)),
         Binary::And => return Ok(Value::Bool(boolean(left, env)? && boolean(right, env)?)),
@@ -243,14 +251,6 @@ fn binary(
         Binary::LessEqual => Ordering::is_le,
         Binary::Greater => Ordering::is_gt,
         Binary::GreaterEqual => Ordering::is_ge,
-        Binary::Remainder
-            if left.is_frame_number()
-                && let length = count32(right, env)?
-                && length > 0
-                && let Some(turn) = env.turn(length) =>
-        {
-            return Ok(Value::whole(turn));
-        }
         _ => {
             let values = [value(left, env)?, value(right, env)?];
             if matches!(operator, Binary::ShiftLeft | Binary::ShiftRight) {

@@ -204,7 +204,9 @@ fn views(gpu: &Gpu, stone: &Mesh, frames: usize) {
         host.submit(commands);
         spent
     };
-    (0..3).for_each(|turn| drop(frame(turn)));
+    for turn in 0..3 {
+        frame(turn);
+    }
     let spent: Vec<Spent> = (3..frames + 3).map(frame).collect();
     println!("four lights in two views, the cameras move: {}", of(&spent));
 }
@@ -266,7 +268,9 @@ fn fifty_lines(gpu: &Gpu, stone: &Mesh, frames: usize) {
         waited.expect("the GPU is there");
         spent
     };
-    (0..3).for_each(|turn| drop(frame(turn, FIVE)));
+    for turn in 0..3 {
+        frame(turn, FIVE);
+    }
     // Those lines have no say in which passes are encoded.
     for kind in KINDS.into_iter().filter(|kind| !kind.all) {
         let spent: Vec<Spent> = (0..frames).map(|turn| frame(turn, kind)).collect();
@@ -290,7 +294,7 @@ fn view(turn: usize) -> View {
 /// Times of a frame's steps, in milliseconds.
 #[derive(Clone, Copy)]
 struct Times {
-    all: Spent,
+    whole: Spent,
     set: f64,
     refresh: f64,
     encode: f64,
@@ -311,11 +315,11 @@ fn quantiles(times: impl Iterator<Item = f64>) -> String {
 
 fn print(preset: &str, what: &str, times: &[Times]) {
     let both = |time: fn(&Times) -> f64| quantiles(times.iter().map(time));
-    let all: Vec<Spent> = times.iter().map(|times| times.all).collect();
+    let whole: Vec<Spent> = times.iter().map(|times| times.whole).collect();
     println!(
         "{preset}, {what}: {}; set_transforms {}, refresh {}, encode {}, wgpu's finish {}; beside \
          it submitted and waited {}",
-        of(&all),
+        of(&whole),
         both(|times| times.set),
         both(|times| times.refresh),
         both(|times| times.encode),
@@ -413,7 +417,7 @@ impl<'a> Host<'a> {
         let commands = encoder.finish();
         let finish = since(start);
         Times {
-            all: clock.spent(),
+            whole: clock.spent(),
             set,
             refresh,
             encode,

@@ -8,10 +8,11 @@ use super::report::{Frame, FrameFault, FrameReport};
 use super::runner::Runner;
 use crate::device::Gpu;
 use crate::error::{ExecuteError, poll, submit, wait};
+use crate::memory::physical::Physical;
 use crate::pipelines::pipelines::Pipelines;
 use crate::provider::Provider;
 use crate::waiting::submitted_work;
-use skiagraph_graph::{ParamValue, Plan, ResourceKind};
+use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceKind};
 use std::time::Duration;
 use web_time::Instant;
 
@@ -335,6 +336,103 @@ impl Executor {
             after: began.elapsed(),
             passes: list(ran),
         }
+    }
+
+    /// Sets the texture of the import `name`, which
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
+    /// counts as changed, even if the texture is the one set before, unless the host tells its
+    /// [version](Self::set_import_version): passes that run only when an input has changed (`run:
+    /// OnChange` in the document) and read it run in the next frame. The texture may have more
+    /// usages than described.
+    ///
+    /// # Errors
+    /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name,
+    /// [`ExecuteError::Import`] if the texture differs from its description,
+    /// [`ExecuteError::OtherDevice`] if it is of another device, [`ExecuteError::DeviceLost`] if
+    /// the device is lost.
+    pub fn import_texture(
+        &mut self,
+        name: &str,
+        texture: &wgpu::Texture,
+    ) -> Result<(), ExecuteError> {
+        self.import(name, Physical::Texture(texture.clone()))
+    }
+
+    /// Sets the buffer of the import `name`, which
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Its content
+    /// counts as changed, even if the buffer is the one set before, unless the host tells its
+    /// [version](Self::set_import_version): passes with `run: OnChange` that read it run in the
+    /// next frame. The buffer may have more usages than described.
+    ///
+    /// # Errors
+    /// Those of [`import_texture`](Self::import_texture).
+    pub fn import_buffer(&mut self, name: &str, buffer: &wgpu::Buffer) -> Result<(), ExecuteError> {
+        self.import(name, Physical::Buffer(buffer.clone()))
+    }
+
+    /// Sets the sampler of the import `name`, which
+    /// [`PlanRequest::imports`](skiagraph_graph::PlanRequest::imports) describes. Passes with `run:
+    /// OnChange` that use it run in the next frame if it is not the one set before. wgpu tells
+    /// neither how a sampler filters nor which device it is of, so a wrong one is refused only when
+    /// a pass binds it.
+    ///
+    /// # Errors
+    /// Those of [`import_texture`](Self::import_texture).
+    pub fn import_sampler(
+        &mut self,
+        name: &str,
+        sampler: &wgpu::Sampler,
+    ) -> Result<(), ExecuteError> {
+        self.import(name, Physical::Sampler(sampler.clone()))
+    }
+
+    /// Tells which version the content of the import `name` has: a number that is larger whenever
+    /// the host has written into the texture or buffer. From then on only another version, another
+    /// texture or buffer, and [`touch`](Self::touch) count as a change; so a host whose camera and
+    /// scene stand still may hand over its depth in every frame, and no pass runs (see
+    /// [`encode`](Self::encode)). What is written without a new version is not seen.
+    ///
+    /// # Errors
+    /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name.
+    /// [`ExecuteError::ImportVersion`] if the version is lower than the one before, as that of a
+    /// content that was seen already may be: it is taken over, and the content counts as changed.
+    pub fn set_import_version(&mut self, name: &str, version: u64) -> Result<(), ExecuteError> {
+        let Runner { imports, state, .. } = &mut self.runner;
+        imports.set_version(name, version, state)
+    }
+
+    fn import(&mut self, name: &str, physical: Physical) -> Result<(), ExecuteError> {
+        let runner = &mut self.runner;
+        let on = (&runner.device, &runner.presence);
+        runner.imports.set(name, physical, &mut runner.state, on)
+    }
+
+    /// Marks the content of the import or provided resource `name` as changed, after the host has
+    /// written to it. In the next frame, passes with `run: OnChange` (which run only when an input
+    /// has changed) that read it run, and those with `run: Always` also where the frame would
+    /// otherwise compute nothing new (see [`encode`](Self::encode)); the frame after that finds
+    /// this content as `.previous` (content of the frame before). With a provider that counts
+    /// [`versions`](crate::Provider::version), call [`refresh`](Self::refresh) instead.
+    ///
+    /// # Errors
+    /// [`ExecuteError::NotOfHost`] if the plan has neither an import nor a provided resource of
+    /// this name. A name that no pass uses is accepted.
+    pub fn touch(&mut self, name: &str) -> Result<(), ExecuteError> {
+        let of_host = |resource: &Resource| resource.origin == Origin::Host;
+        if !self.plan().imports().contains_key(name) {
+            self.runner.host_changes.changed.note(name);
+        }
+        let live = self.runner.state.live(name);
+        if let Some(id) = live.filter(|id| of_host(self.plan().resource(*id))) {
+            self.runner.state.touch(id);
+        } else if !self.plan().offers(name) {
+            let used = self.plan().used().filter(|used| of_host(used));
+            return Err(ExecuteError::NotOfHost {
+                name: name.to_owned(),
+                known: list(used.map(|resource| resource.name.as_str())),
+            });
+        }
+        Ok(())
     }
 
     /// Asks the provider again for each resource whose [version](Provider::version) has changed

@@ -7,6 +7,7 @@ use super::fetch::Fetch;
 use super::growth::Unchanged;
 use super::growth_readback::GrowthReadback;
 use super::host_changes::HostChanges;
+use super::imports::Imports;
 use super::in_flight::{FrameInFlight, FramesInFlight};
 use super::pass::GpuPass;
 use super::replan::{ReplanReport, Reused, has_same_params};
@@ -23,7 +24,6 @@ use crate::pipelines::pipelines::Pipelines;
 use crate::presence::Presence;
 use crate::provider::Provider;
 use skiagraph_graph::{ParamValue, Plan, ResourceId, caught};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A plan on a device, and its frames.
@@ -39,8 +39,7 @@ pub(super) struct Runner {
     pub host_changes: HostChanges,
     /// True if the provider tells each change of a content by a version, or there is none to tell.
     pub knows_changes: bool,
-    /// Versions of the imports' contents, as far as the host has told them, by name.
-    pub import_versions: BTreeMap<String, u64>,
+    pub imports: Imports,
     /// Frames that were encoded.
     pub frames: u32,
     pub frames_in_flight: FramesInFlight,
@@ -77,7 +76,7 @@ impl Runner {
             decision: FrameDecision::default(),
             host_changes: HostChanges::default(),
             knows_changes: false,
-            import_versions: BTreeMap::new(),
+            imports: Imports::default(),
             frames: 0,
             frames_in_flight,
             staging: Staging::default(),
@@ -109,7 +108,7 @@ impl Runner {
         }
         self.grow_by_itself()?;
         let is_measured = frame.timing || frame.statistics;
-        let knows_all = self.knows_changes && self.knows_imports();
+        let knows_all = self.knows_changes && self.imports.are_told(self.plan());
         let may_rest = !frame.all && !is_measured && knows_all;
         let number = (self.frames, frame.all);
         self.state.decide(number, may_rest, &mut self.decision);

@@ -6,7 +6,7 @@ use criterion::{BenchmarkGroup, BenchmarkId, Criterion, measurement::WallTime};
 use skiagraph_benches::chain::{ByHand, Kind, executor};
 use skiagraph_benches::{Shaders, VIEWPORT, graph, median, open};
 use skiagraph_gpu::device::{Gpu, Wanted};
-use skiagraph_gpu::{Executor, Frame};
+use skiagraph_gpu::{Executor, Frame, Pipelines};
 use skiagraph_graph::{NoProvider, ParamValue, Plan, PlanRequest, Registry};
 use std::time::{Duration, Instant};
 
@@ -107,7 +107,12 @@ fn planned(passes: usize) -> Plan {
 /// param cost.
 fn changes(criterion: &mut Criterion, gpu: &Gpu) {
     let make = |plan| {
-        let made = Executor::new(&gpu.device, &gpu.queue, plan, &mut NoProvider);
+        let made = Executor::with_pipelines(
+            &Pipelines::new(&gpu.device),
+            &gpu.queue,
+            plan,
+            &mut NoProvider,
+        );
         made.expect("the generated graphs suit every device")
     };
     for passes in SIZES {

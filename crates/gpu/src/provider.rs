@@ -78,7 +78,9 @@ pub trait Provider: Describe {
     /// each frame fill with the content of the last [`refresh`](crate::Executor::refresh). So
     /// another content needs no new buffer, and nothing is bound anew. It is called only for names
     /// that a [live](skiagraph_graph#terms) pass binds, when their [version](Self::version) has
-    /// changed. The default implementation returns false: the resource is built.
+    /// changed; [`touch`](crate::Executor::touch) does not ask for the bytes again. The default
+    /// implementation returns false: the resource is built. A provider around another one should
+    /// hand the call on.
     ///
     /// # Errors
     /// If the content cannot be computed; the executor reports

@@ -14,9 +14,10 @@ pub struct Built {
     pub name: &'static str,
     /// Kind of work that the last build was.
     pub how: How,
-    /// Wall time on the CPU that the last build took, with its upload to the GPU.
+    /// Wall time on the CPU that the last build took, with its upload to the GPU; for a camera or a
+    /// single light without it, which is the executors'.
     pub time: Duration,
-    /// Number of bytes that the CPU uploaded to the GPU in the last build.
+    /// Number of bytes that the CPU uploaded to the GPU in the last build, or told executors.
     pub uploaded: u64,
     /// Number of times that the provider has built or refitted the resource so far.
     pub times: u32,
@@ -55,7 +56,8 @@ pub enum How {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Work {
-    /// Number of bytes that the CPU has written to buffers of the GPU.
+    /// Number of bytes that the CPU has written to buffers of the GPU, and those of cameras and
+    /// single lights, which executors bring there.
     pub uploaded: u64,
     /// Number of bytes that the GPU has copied from a buffer into the new one that replaces it,
     /// when only some of its items have changed.

@@ -56,8 +56,9 @@ impl Executor {
     /// a resource that the provider cannot build yet, is tried only in [`Executor::encode`], before
     /// the host's encoder is touched.
     ///
-    /// Executors on one device share their [pipelines](Pipelines::shared): beside another one of
-    /// the same graph, an executor makes none.
+    /// Executors that this function makes on one device share their
+    /// [pipelines](Pipelines::shared). If another executor of the same graph is there, this one
+    /// compiles nothing.
     ///
     /// # Errors
     /// See [`ExecuteError`]; an error about a pass names the pass and its place in the graph
@@ -394,8 +395,8 @@ impl Executor {
     ///
     /// # Errors
     /// [`ExecuteError::NoSuchImport`] if the plan has no import of this name.
-    /// [`ExecuteError::ImportVersion`] if the version is lower than the one before, as that of a
-    /// content that was seen already may be: it is taken over, and the content counts as changed.
+    /// [`ExecuteError::ImportVersion`] if the version is lower than the one before. The executor
+    /// takes it over all the same, and the content counts as changed.
     pub fn set_import_version(&mut self, name: &str, version: u64) -> Result<(), ExecuteError> {
         let Runner { imports, state, .. } = &mut self.runner;
         imports.set_version(name, version, state)

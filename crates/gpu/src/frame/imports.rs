@@ -14,12 +14,13 @@ use std::collections::BTreeMap;
 pub(super) struct Imports(BTreeMap<String, u64>);
 
 impl Imports {
-    /// True if the host tells each change of an import's content by a version, or there is none to
-    /// tell.
-    pub fn are_told(&self, plan: &Plan) -> bool {
-        let mut imports = plan.imports().iter();
+    /// True if the host tells each change of the content of an import that a live pass uses by a
+    /// version, or there is none to tell.
+    pub fn are_told(&self, state: &State) -> bool {
+        let mut imports = state.plan.imports().iter();
         imports.all(|(name, import)| {
-            matches!(import, Import::Sampler { .. }) || self.0.contains_key(name)
+            let has_content = !matches!(import, Import::Sampler { .. });
+            !has_content || self.0.contains_key(name) || state.live(name).is_none()
         })
     }
 

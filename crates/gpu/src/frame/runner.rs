@@ -108,7 +108,7 @@ impl Runner {
         }
         self.grow_by_itself()?;
         let is_measured = frame.timing || frame.statistics;
-        let knows_all = self.knows_changes && self.imports.are_told(self.plan());
+        let knows_all = self.knows_changes && self.imports.are_told(&self.state);
         let may_rest = !frame.all && !is_measured && knows_all;
         let number = (self.frames, frame.all);
         self.state.decide(number, may_rest, &mut self.decision);
@@ -125,8 +125,10 @@ impl Runner {
         let recorded = caught(|| self.record(&mut frame_in_flight, encoder, gives_up));
         let recorded = recorded.unwrap_or_else(|panicked| Err(in_encoder(panicked)));
         if let Err(error) = recorded {
-            // Its queries are not resolved, and what it has written stays.
+            // Its queries are not resolved, and what it has written stays. The source of its
+            // uniforms may be unmapped already.
             frame_in_flight.timer = None;
+            frame_in_flight.uniforms = None;
             let before = &frame_in_flight.before;
             self.state.forget_frame(&self.decision, before);
             self.frames_in_flight.recycle(frame_in_flight);

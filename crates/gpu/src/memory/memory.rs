@@ -283,13 +283,13 @@ impl Memory {
         }
         let name = &resource.name;
         let mut content = vec![0; size as usize];
-        let written = factory.provider.write_uniform(name, &mut content);
+        let write = || factory.provider.write_uniform(name, &mut content);
+        let written = scoped(factory.device, name, write)?;
         let is_written = written.map_err(|why| ExecuteError::Provider {
             name: name.clone(),
             why,
         })?;
         if !is_written {
-            self.uniforms.remove(&id);
             return Ok(false);
         }
         if !self.uniforms.contains_key(&id) {
@@ -369,6 +369,7 @@ impl Memory {
             ));
         }
         // Only now: what could not be built is asked for again.
+        self.uniforms.remove(&id);
         self.host.insert(id, built);
         self.provided.insert(id, Ok(version));
         Ok(())

@@ -88,21 +88,36 @@ const FULLSCREEN: &str =
     return vec4<f32>(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }";
 
-/// The objects that executors share by default.
-static SHARED: Mutex<Vec<Weak<Shared>>> = Mutex::new(Vec::new());
+/// Does something with the list of the objects that executors share by default.
+#[cfg(not(target_arch = "wasm32"))]
+fn with_shared<T>(act: impl FnOnce(&mut Vec<Weak<Shared>>) -> T) -> T {
+    static SHARED: Mutex<Vec<Weak<Shared>>> = Mutex::new(Vec::new());
+    act(&mut SHARED.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// In a browser each thread has a list of its own: a device stays on its thread.
+#[cfg(target_arch = "wasm32")]
+fn with_shared<T>(act: impl FnOnce(&mut Vec<Weak<Shared>>) -> T) -> T {
+    thread_local! {
+        static SHARED: std::cell::RefCell<Vec<Weak<Shared>>> = Default::default();
+    }
+    SHARED.with_borrow_mut(act)
+}
 
 impl Pipelines {
     /// Returns the object that executors on a device share by default: the one that was returned
     /// before, as long as a handle of it is left, or else a new one.
     pub fn shared(device: &wgpu::Device) -> Self {
-        let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
-        shared.retain(|made| made.strong_count() > 0);
-        let mut used = shared.iter().filter_map(Weak::upgrade);
-        if let Some(made) = used.find(|made| made.device.is(device)) {
-            return Self(made);
+        // The last handle of an object may be dropped here, not under the lock.
+        let used: Vec<Self> = with_shared(|shared| {
+            shared.retain(|made| made.strong_count() > 0);
+            shared.iter().filter_map(Weak::upgrade).map(Self).collect()
+        });
+        if let Some(made) = used.iter().find(|made| made.0.device.is(device)) {
+            return made.clone();
         }
         let made = Self::new(device);
-        shared.push(Arc::downgrade(&made.0));
+        with_shared(|shared| shared.push(Arc::downgrade(&made.0)));
         made
     }
 

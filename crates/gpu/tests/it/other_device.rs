@@ -4,6 +4,7 @@
 use crate::buffers::{compute, document, writes};
 use crate::given::{KIND, SAMPLED, STORAGE, sums};
 use crate::support::{Files, load, right};
+use crate::uniforms::{self, Teller};
 use skiagraph_gpu::{
     DeviceIdentity, ExecuteError, Executor, Frame, Provider, ProviderError, device::Gpu, import,
 };
@@ -355,11 +356,15 @@ fn an_encoder_of_another_device_is_no_panic() {
             counter.fetch_add(1, Ordering::Relaxed);
         }));
         let mut takes = Executor::on(&gpu, plan(&taker(), &number, &gpu), &mut number).unwrap();
+        let mut teller = Teller::default();
+        teller.value = 3;
+        let told_plan = plan(&uniforms::files(), &teller, &gpu);
+        let mut reader = Executor::on(&gpu, told_plan, &mut teller).unwrap();
         let mut sums = sums_on(&gpu);
         let (image, more) = (texture(&gpu.device), buffer(&gpu.device, 5, false));
         sums.import_texture("image", &image).unwrap();
         sums.import_buffer("more", &more).unwrap();
-        for executor in [&mut takes, &mut sums] {
+        for executor in [&mut takes, &mut reader, &mut sums] {
             let mut encoder = other.device.create_command_encoder(&Default::default());
             match executor.encode(&mut encoder, &Frame::default()) {
                 Ok(_) => {
@@ -370,6 +375,7 @@ fn an_encoder_of_another_device_is_no_panic() {
             }
         }
         assert_eq!(numbers(&gpu, &mut takes, "copy"), [3]);
+        assert_eq!(numbers(&gpu, &mut reader, "seen"), [303]);
         assert_eq!(numbers(&gpu, &mut sums, "sum"), [5; 64]);
     }
 }

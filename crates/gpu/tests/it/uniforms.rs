@@ -9,11 +9,13 @@ use skiagraph_graph::{Describe, ParamValue, Provided, ProvidedBinding};
 
 /// A provider of one uniform.
 #[derive(Default)]
-struct Teller {
-    value: u32,
+pub struct Teller {
+    pub value: u32,
     /// True if it builds a buffer instead of telling the bytes.
     builds: bool,
     fails: bool,
+    /// True if what it builds fails.
+    breaks: bool,
     built: Option<wgpu::Buffer>,
 }
 
@@ -54,6 +56,9 @@ impl Provider for Teller {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
         assert!(self.builds, "its bytes are told");
+        if self.breaks {
+            return Err("the buffer is broken".into());
+        }
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
             size: 4,
@@ -69,7 +74,7 @@ impl Provider for Teller {
 }
 
 /// The value, plus 100 × that of the frame before, plus 10,000 × a param.
-fn files() -> Files {
+pub fn files() -> Files {
     let take = compute(
         "take",
         "",
@@ -161,4 +166,15 @@ fn a_value_that_cannot_be_told_is_an_error_and_asked_for_again() {
     assert!(error.to_string().contains("host.value"), "{error}");
     provider.fails = false;
     assert_eq!(shown(executor, &mut provider, 4), 304);
+    // Told, and then to be built, which fails: the value that was told stays.
+    provider.value = 5;
+    executor.refresh(&mut provider).unwrap();
+    (provider.value, provider.builds, provider.breaks) = (6, true, true);
+    let error = executor.refresh(&mut provider).unwrap_err();
+    assert!(error.to_string().contains("host.value"), "{error}");
+    let mut encoder = encoder();
+    let frame = Frame::new().with_read(&["seen"]);
+    executor.encode(&mut encoder, &frame).unwrap();
+    GPU.queue.submit([encoder.finish()]);
+    assert_eq!(seen(executor), 405);
 }

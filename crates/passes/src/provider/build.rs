@@ -67,6 +67,12 @@ impl Provider for SceneProvider {
         let Some(bytes) = self.uploads.uniform(name)? else {
             return Ok(false);
         };
+        // A provider around this one may describe it otherwise.
+        if bytes.len() != content.len() {
+            let [described, own] = [content.len(), bytes.len()];
+            let why = format!("it was described as {described} bytes, and has {own}");
+            return Err(ProviderError::new(why));
+        }
         content.copy_from_slice(&bytes);
         Ok(true)
     }

@@ -36,7 +36,9 @@ use uploads::{Facts, Uploads};
 /// [`refresh`](skiagraph_gpu::Executor::refresh), which rebuilds those resources that depend on the
 /// change and that a pass of the plan reads.
 ///
-/// A buffer is never written again after it was handed out. So any number of executors may be
+/// Cameras and single lights are told by their bytes ([`write_uniform`](Provider::write_uniform)),
+/// which each executor keeps in a buffer of its own. Other buffers are never written again after
+/// they were handed out. So any number of executors may be
 /// refreshed and encoded for one submission, each with a light, a camera and a mesh of its own.
 /// Setting the same value again changes nothing for an executor that has seen it. Where a few parts
 /// of many have moved, the next buffer gets only those from the CPU; the GPU copies the rest from
@@ -128,6 +130,7 @@ impl SceneProvider {
             return;
         }
         self.uploads.buffers.clear();
+        self.uploads.told.clear();
         (self.structures, self.uploads.kernels) = Default::default();
         self.uploads.geometry.move_to(device);
         self.device = Some(DeviceIdentity::new(device));

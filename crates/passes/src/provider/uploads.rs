@@ -76,6 +76,9 @@ pub(super) struct Uploads {
     /// Materials of the mesh, once they were asked for.
     pub atlas: Arc<Atlas>,
     pub built: Vec<Built>,
+    /// Bytes of uniforms that executors were told, by name and version: those of views and lights
+    /// that take turns.
+    pub told: Vec<(String, u64, Vec<u8>)>,
 }
 
 impl Uploads {
@@ -95,6 +98,7 @@ impl Uploads {
             kernels: Kernels::default(),
             atlas: Arc::default(),
             built: Vec::new(),
+            told: Vec::new(),
         }
     }
 
@@ -534,11 +538,23 @@ impl Uploads {
     /// Returns the bytes of a uniform, for the executor to bring to the device; `None` for other
     /// resources.
     pub fn uniform(&mut self, name: &str) -> Result<Option<Vec<u8>>, Error> {
+        /// Number of contents that are kept.
+        const TOLD: usize = 64;
+        let version = self.version(name);
+        let mut earlier = self.told.iter();
+        if let Some((_, _, bytes)) = earlier.find(|(own, at, _)| own == name && *at == version) {
+            return Ok(Some(bytes.clone()));
+        }
         let began = self.begin();
         let content = self.content(name)?;
         if let Some(bytes) = &content {
             self.buffers.work.uploaded += bytes.len() as u64;
             self.note(name, How::Made, began);
+            remember(
+                &mut self.told,
+                (name.to_owned(), version, bytes.clone()),
+                TOLD,
+            );
         }
         Ok(content)
     }

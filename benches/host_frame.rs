@@ -77,13 +77,14 @@ const FIVE: Kind = Kind {
     moving: MOVING,
     ..NOTHING
 };
+const ALL_PASSES: Kind = Kind {
+    name: "nothing moves, all passes",
+    all: true,
+    ..NOTHING
+};
 const KINDS: [Kind; 4] = [
     NOTHING,
-    Kind {
-        name: "nothing moves, all passes",
-        all: true,
-        ..NOTHING
-    },
+    ALL_PASSES,
     Kind {
         name: "the camera moves",
         camera: true,
@@ -201,7 +202,7 @@ fn views(gpu: &Gpu, stone: &Mesh, frames: usize) {
         }
         let commands = encoder.finish();
         let spent = clock.spent();
-        host.submit(commands);
+        submit(gpu, commands);
         spent
     };
     for turn in 0..3 {
@@ -263,9 +264,7 @@ fn fifty_lines(gpu: &Gpu, stone: &Mesh, frames: usize) {
         seen.expect("the frame was encoded before");
         let commands = encoder.finish();
         let spent = clock.spent();
-        gpu.queue.submit([commands]);
-        let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        waited.expect("the GPU is there");
+        submit(gpu, commands);
         spent
     };
     for turn in 0..3 {
@@ -352,6 +351,15 @@ fn since(start: Instant) -> f64 {
     Duration::as_secs_f64(&start.elapsed()) * 1e3
 }
 
+/// Submits commands and waits for them; how long that took, in milliseconds.
+fn submit(gpu: &Gpu, commands: wgpu::CommandBuffer) -> f64 {
+    let start = Instant::now();
+    gpu.queue.submit([commands]);
+    let waited = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    waited.expect("the GPU is there");
+    since(start)
+}
+
 /// An engine with a scene of stones.
 struct Host<'a> {
     gpu: &'a Gpu,
@@ -422,17 +430,8 @@ impl<'a> Host<'a> {
             refresh,
             encode,
             finish,
-            rest: self.submit(commands),
+            rest: submit(self.gpu, commands),
         }
-    }
-
-    /// Submits commands and waits for them; how long that took, in milliseconds.
-    fn submit(&self, commands: wgpu::CommandBuffer) -> f64 {
-        let start = Instant::now();
-        self.gpu.queue.submit([commands]);
-        let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        waited.expect("the GPU is there");
-        since(start)
     }
 
     /// Prints the times of a frame by hand, of as many compute passes as the plan has dispatches,
@@ -443,19 +442,15 @@ impl<'a> Host<'a> {
             .filter(|step| matches!(step, Step::Dispatch(_)))
             .count();
         let by_hand = ByHand::new(self.gpu, chain::Kind::Dispatch, dispatches);
-        let kind = Kind {
-            all: true,
-            ..NOTHING
-        };
         let mut times = Vec::new();
         for turn in 0..frames {
-            self.frame(turn, kind);
+            self.frame(turn, ALL_PASSES);
             let clock = Clock::start();
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             by_hand.encode(&mut encoder, false);
             let commands = encoder.finish();
             times.push(clock.spent());
-            self.submit(commands);
+            submit(self.gpu, commands);
         }
         println!("{dispatches} dispatches by hand: {}", of(&times));
     }

@@ -32,9 +32,9 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// A frame is *lost* if its encoder is dropped instead, or wgpu refuses its commands, in `finish`
 /// or in `submit`. Each frame that is encoded after that is as if the lost one had never been
 /// encoded, but for its number; so are `.previous` contents and materials with
-/// [`keep`](skiagraph_graph::Resource::keep). A frame that was encoded before, and runs without the
-/// lost one or in another order than that of encoding, may show something stale; `.previous`
-/// contents and materials with `keep` then go on from what the frames have left that ran.
+/// [`keep`](Resource::keep). A frame that was encoded before, and runs without the lost one or in
+/// another order than that of encoding, may show something stale; `.previous` contents and
+/// materials with `keep` then go on from what the frames have left that ran.
 /// [`take_faults`](Self::take_faults) tells the numbers of all these frames.
 ///
 /// Terms: a pass is [*live*](skiagraph_graph#terms) if its results are needed. *Outputs* are the
@@ -44,7 +44,7 @@ const CALLBACK: Duration = Duration::from_secs(10);
 /// that a [`Provider`] builds. A material's `.previous` is its content at the end of the frame
 /// before.
 pub struct Executor {
-    pub(super) runner: Runner,
+    runner: Runner,
 }
 
 impl Executor {
@@ -131,10 +131,9 @@ impl Executor {
     /// outputs of that frame are still there. This needs a provider that
     /// [has versions](Provider::has_versions), or a plan without provided resources; imports whose
     /// [versions](Self::set_import_version) the host tells, or none; and a plan in which no pass
-    /// writes to an import, uses `.previous` contents, a resource with
-    /// [`keep`](skiagraph_graph::Resource::keep) or the uniform
-    /// [`frame`](skiagraph_graph::FRAME_BYTES). Frames with [`Frame::all`], [`Frame::timing`] or
-    /// [`Frame::statistics`] are never left out so.
+    /// writes to an import, uses `.previous` contents, a resource with [`keep`](Resource::keep) or
+    /// the uniform [`frame`](skiagraph_graph::FRAME_BYTES). Frames with [`Frame::all`],
+    /// [`Frame::timing`] or [`Frame::statistics`] are never left out so.
     ///
     /// While a frame before is not known to be done, `encode` polls the device, without waiting.
     ///
@@ -413,7 +412,7 @@ impl Executor {
     /// has changed) that read it run, and those with `run: Always` also where the frame would
     /// otherwise compute nothing new (see [`encode`](Self::encode)); the frame after that finds
     /// this content as `.previous` (content of the frame before). With a provider that counts
-    /// [`versions`](crate::Provider::version), call [`refresh`](Self::refresh) instead.
+    /// [`versions`](Provider::version), call [`refresh`](Self::refresh) instead.
     ///
     /// # Errors
     /// [`ExecuteError::NotOfHost`] if the plan has neither an import nor a provided resource of

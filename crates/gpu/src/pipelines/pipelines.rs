@@ -110,15 +110,15 @@ impl Pipelines {
     pub fn shared(device: &wgpu::Device) -> Self {
         // The last handle of an object may be dropped here, not under the lock.
         let used: Vec<Self> = with_shared(|shared| {
-            shared.retain(|made| made.strong_count() > 0);
+            shared.retain(|object| object.strong_count() > 0);
             shared.iter().filter_map(Weak::upgrade).map(Self).collect()
         });
-        if let Some(made) = used.iter().find(|made| made.0.device.is(device)) {
-            return made.clone();
+        if let Some(pipelines) = used.iter().find(|object| object.0.device.is(device)) {
+            return pipelines.clone();
         }
-        let made = Self::new(device);
-        with_shared(|shared| shared.push(Arc::downgrade(&made.0)));
-        made
+        let pipelines = Self::new(device);
+        with_shared(|shared| shared.push(Arc::downgrade(&pipelines.0)));
+        pipelines
     }
 
     /// Creates an object without pipelines for a device.

@@ -15,7 +15,7 @@ use crate::trees::nodes_to_walk;
 use crate::uniforms::LightAreaUniform;
 use bytemuck::bytes_of;
 use glam::{Vec3, Vec4};
-use skiagraph_graph::{Provided, ProvidedBinding};
+use skiagraph_graph::Provided;
 use skiagraph_scene::packed_masks::{mask_words, shadow_words};
 use skiagraph_scene::{BvhNode, LightKind, LightSpace, LightSpaceNode, Mesh, Scene, Sheets};
 use std::ops::Range;
@@ -527,12 +527,10 @@ impl Uploads {
         Ok(Some(bytes))
     }
 
+    /// True if a resource is told to executors by its bytes.
     pub fn is_uniform(&self, name: &str) -> bool {
-        let described = self
-            .find(name)
-            .map(|resource| (resource.describe)(self, name));
-        let binding = described.flatten().map(|provided| provided.binding);
-        binding == Some(ProvidedBinding::Uniform)
+        let held = self.find(name).map(|resource| resource.held);
+        matches!(held, Some(Held::Uniform)) || lights::number(name).is_some()
     }
 
     /// Returns the bytes of a uniform, for the executor to bring to the device; `None` for other

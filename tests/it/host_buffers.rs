@@ -17,13 +17,13 @@ use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics, statistics::
 use skiagraph_scene::{Camera, DirectionalLight, Indexed, Mesh, Movable, Shadows, View};
 use wgpu::{BufferUsages, VertexFormat, util::DeviceExt};
 
-const VIEWPORT: [u32; 2] = [96, 64];
+pub const VIEWPORT: [u32; 2] = [96, 64];
 
 fn sun() -> DirectionalLight {
     DirectionalLight::new(DVec3::new(0.4, -1.0, -0.3))
 }
 
-fn camera(size: [u32; 2]) -> Camera {
+pub fn camera(size: [u32; 2]) -> Camera {
     View {
         name: String::new(),
         eye: DVec3::new(2.0, 9.0, 14.0),
@@ -289,13 +289,13 @@ pub fn scenes(
     })
 }
 
-fn start(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Executor {
+pub fn start(gpu: &Gpu, preset: &str, provider: &mut SceneProvider) -> Executor {
     let path = format!("pipelines/{preset}.ron");
     let plan = graphs::plan(&path, provider, VIEWPORT, |_| {});
     Executor::on(gpu, plan, provider).unwrap()
 }
 
-fn shown(gpu: &Gpu, executor: &mut Executor) -> Vec<u32> {
+pub fn shown(gpu: &Gpu, executor: &mut Executor) -> Vec<u32> {
     values(&graphs::frame(gpu, executor, &["visibility"]), "visibility")
 }
 
@@ -862,6 +862,18 @@ const RAISE: &str = "
 ";
 
 fn raise(gpu: &Gpu, stones: &MegaBuffer, mesh: usize, amount: u32) {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    raise_in(gpu, &mut encoder, (stones, mesh), amount);
+    gpu.queue.submit([encoder.finish()]);
+}
+
+/// Records the pass into an encoder.
+pub fn raise_in(
+    gpu: &Gpu,
+    encoder: &mut wgpu::CommandEncoder,
+    (stones, mesh): (&MegaBuffer, usize),
+    amount: u32,
+) {
     let module = gpu
         .device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -903,14 +915,10 @@ fn raise(gpu: &Gpu, stones: &MegaBuffer, mesh: usize, amount: u32) {
             },
         ],
     });
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups(count.div_ceil(64), 1, 1);
-    }
-    gpu.queue.submit([encoder.finish()]);
+    let mut pass = encoder.begin_compute_pass(&Default::default());
+    pass.set_pipeline(&pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.dispatch_workgroups(count.div_ceil(64), 1, 1);
 }
 
 /// The same on the CPU.
@@ -933,6 +941,16 @@ pub fn places_of(maps: &[(usize, DAffine3)]) -> Vec<DAffine3> {
     maps.iter().map(|(_, map)| *map).collect()
 }
 
+/// Floor and stones uploaded, the stones raised by so much.
+pub fn uploaded(stones: &MegaBuffer, places: &[(usize, DAffine3)], lift: i32) -> SceneProvider {
+    let meshes = [&stones.meshes[0], &raised(&stones.meshes[1], lift)].map(Quantised::mesh);
+    let parts: Vec<&Mesh> = places.iter().map(|(mesh, _)| &meshes[*mesh]).collect();
+    let mut uploaded = SceneProvider::from_parts(Movable::joined(&parts), sun());
+    uploaded.set_transforms(&places_of(places)).unwrap();
+    uploaded.set_camera(&camera(VIEWPORT));
+    uploaded
+}
+
 /// A stone that is torn apart by a pass of the host: the trees stay, their boxes follow.
 #[test]
 fn a_part_that_the_host_has_rewritten_is_traced_as_it_is() {
@@ -952,11 +970,7 @@ fn a_part_that_the_host_has_rewritten_is_traced_as_it_is() {
         let bounds = [Vec3::new(-1.0, -1.6, -1.0), Vec3::ONE];
         host.rewrite_part(part, bounds).unwrap();
         host.check_bounds(&gpu.device, &gpu.queue).unwrap();
-        let meshes = [&stones.meshes[0], &raised(&stones.meshes[1], lift)].map(Quantised::mesh);
-        let parts = Movable::joined(&[&meshes[0], &meshes[1]]);
-        let mut uploaded = SceneProvider::from_parts(parts, sun());
-        uploaded.set_transforms(&places_of(places)).unwrap();
-        uploaded.set_camera(&camera(VIEWPORT));
+        let mut uploaded = uploaded(&stones, places, lift);
         for (executor, preset) in executors.iter_mut().zip(presets) {
             executor.refresh(&mut host).unwrap();
             let seen = shown(&gpu, executor);

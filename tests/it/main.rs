@@ -41,6 +41,7 @@ mod host;
 mod host_buffers;
 mod host_depth;
 mod hostile;
+mod in_encoder;
 mod lamp_maps;
 mod layers;
 mod light_buffer;

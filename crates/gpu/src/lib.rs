@@ -24,7 +24,8 @@ mod waiting;
 
 pub use error::ExecuteError;
 pub use frame::{
-    Executor, FaultKind, Frame, FrameFault, FrameReport, Prepared, Preparer, ReplanReport,
+    Executor, FaultKind, Frame, FrameFault, FrameReport, Prepared, Preparer, Recordings,
+    ReplanReport,
 };
 pub use identity::DeviceIdentity;
 pub use pipelines::pipelines::Pipelines;

@@ -1,7 +1,8 @@
 //! Uploaded buffers by name, each with the version of its content.
 
-use crate::{built::Work, error::Error, lights, names::*};
-use std::{collections::BTreeMap, ops::Range};
+use crate::{built::Work, error::Error, host_buffers::Bound, lights, names::*};
+use skiagraph_gpu::{ExecuteError, ProviderError, Recordings};
+use std::{collections::BTreeMap, ops::Range, sync::Arc};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// How buffers of a resource are made, and how many are kept.
@@ -27,37 +28,88 @@ pub(crate) struct On<'a> {
 
 /// Buffers by the names of resources.
 ///
-/// None is written again once it was handed out: what the queue writes comes before all that is
-/// submitted later, so a frame that was encoded with the buffer and not submitted yet would show
-/// what was set for another one. Another content is another buffer. Where only some of it is other,
-/// the GPU copies the rest from the buffer before. Of lists of lights, the last contents are kept:
-/// lights that take turns find their own.
+/// What the queue writes comes before all that is submitted later, so a frame that was encoded with
+/// a buffer and not submitted yet would show what was set for another one. So where the provider
+/// submits by itself, none is written again once it was handed out: another content is another
+/// buffer, and where only some of it is other, the GPU copies the rest from the buffer before. In a
+/// host's encoder, commands come between frames, and write [in place](Self::in_place). Of lists of
+/// lights, the last contents are kept: lights that take turns find their own.
 #[derive(Clone, Default)]
 pub(crate) struct Buffers {
     resources: BTreeMap<&'static str, Held>,
     /// The last one was made last.
-    held: BTreeMap<String, Vec<(wgpu::Buffer, u64)>>,
+    held: BTreeMap<String, Vec<Content>>,
     /// Version of the mesh's shape that the lights were laid over.
     shape: u64,
     /// True if the GPU writes some items, so that none between those that are changed is written.
     pub keeps_gaps: bool,
+    /// True if what is recorded comes into an encoder of the host, between the frames there: then
+    /// the buffers that no clone shares are written where they are.
+    pub in_place: bool,
     /// Bytes that were brought to the device so far.
     pub work: Work,
     recorded: Recorded,
 }
 
-/// Copies of buffers, and kernels that write them, which are submitted together. A clone has none
-/// of its own: it shares the buffers.
+/// A buffer with the version of its content.
+#[derive(Clone)]
+struct Content {
+    buffer: wgpu::Buffer,
+    version: u64,
+    /// Handles of it count the clones of the list that have the buffer.
+    owner: Arc<()>,
+}
+
+/// A command that writes a buffer; to do it once more changes nothing.
+#[derive(Clone)]
+enum Command {
+    /// Bytes of one buffer, from an offset, to another one, to an offset; how many.
+    Copy([(wgpu::Buffer, u64); 2], u64),
+    Kernels(Arc<Bound>),
+}
+
+/// Commands, and the names of the buffers that they write.
+#[derive(Clone, Default)]
+struct Commands {
+    list: Vec<Command>,
+    names: Vec<String>,
+}
+
+/// Commands that are submitted together, and those that are in encoders of the host. A clone, which
+/// shares the buffers, has all of them to record: it does not hear whether they have run.
 #[derive(Default)]
 struct Recorded {
-    encoder: Option<wgpu::CommandEncoder>,
-    /// Names of the buffers.
-    names: Vec<String>,
+    next: Commands,
+    in_encoders: Recordings<Commands>,
 }
 
 impl Clone for Recorded {
     fn clone(&self) -> Self {
-        Self::default()
+        let mut next = Commands::default();
+        let kept = self.in_encoders.iter().chain([&self.next]);
+        kept.cloned().for_each(|commands| next.extend(commands));
+        Self {
+            next,
+            in_encoders: Recordings::default(),
+        }
+    }
+}
+
+impl Commands {
+    fn extend(&mut self, others: Self) {
+        self.list.extend(others.list);
+        self.names.extend(others.names);
+    }
+
+    fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        for command in &self.list {
+            match command {
+                Command::Copy([(from, begin), (to, at)], size) => {
+                    encoder.copy_buffer_to_buffer(from, *begin, to, *at, *size);
+                }
+                Command::Kernels(kernels) => kernels.record(encoder),
+            }
+        }
     }
 }
 
@@ -130,16 +182,16 @@ impl Buffers {
 
     /// The buffer of that name, if there is one whose content is of that version.
     pub fn get(&self, name: &str, version: u64) -> Option<&wgpu::Buffer> {
-        let held = self.held.get(name)?.iter();
-        let mut held = held.filter(|(_, stored)| *stored == version);
-        held.next().map(|(buffer, _)| buffer)
+        let mut held = self.held.get(name)?.iter();
+        let content = held.find(|content| content.version == version);
+        content.map(|content| &content.buffer)
     }
 
     /// Marks the content of the buffer of that name that was made last, if there is one, as being
     /// of that version now.
     pub fn still_hold(&mut self, name: &str, version: u64) {
-        if let Some((_, before)) = self.held.get_mut(name).and_then(|held| held.last_mut()) {
-            *before = version;
+        if let Some(last) = self.held.get_mut(name).and_then(|held| held.last_mut()) {
+            last.version = version;
         }
     }
 
@@ -149,7 +201,7 @@ impl Buffers {
         let Some(held) = self.held.get_mut(name) else {
             return false;
         };
-        let at = held.iter().position(|(_, stored)| *stored == version);
+        let at = held.iter().position(|content| content.version == version);
         if let Some(at) = at {
             held[at..].rotate_left(1);
         }
@@ -159,7 +211,7 @@ impl Buffers {
     /// Drops the buffer of that name whose content is of a version, which another one has replaced.
     pub fn leave(&mut self, name: &str, version: u64, by: u64) {
         if let Some(held) = self.held.get_mut(name).filter(|_| version != by) {
-            held.retain(|(_, stored)| *stored != version);
+            held.retain(|content| content.version != version);
         }
     }
 
@@ -220,22 +272,65 @@ impl Buffers {
         Ok(())
     }
 
-    /// Submits what was recorded.
+    /// Submits what was recorded, with what is in encoders of the host and is not known to have run.
     ///
     /// # Errors
     /// If the device refuses them; the buffers are then made anew when they are asked for.
     pub fn submit(&mut self, on: On) -> Result<(), Error> {
-        let Recorded { encoder, names } = std::mem::take(&mut self.recorded);
-        let Some(encoder) = encoder else {
+        let Recorded { next, in_encoders } = &mut self.recorded;
+        if next.list.is_empty() {
             return Ok(());
-        };
-        match refused(on.device, || on.queue.submit([encoder.finish()])) {
-            Err(why) => {
-                names.iter().for_each(|name| drop(self.held.remove(name)));
-                Err(Error::Copies { names, why })
-            }
-            Ok(_) => Ok(()),
         }
+        let mut commands = Commands::default();
+        let earlier = in_encoders.take().into_iter();
+        earlier.for_each(|earlier| commands.extend(earlier));
+        commands.extend(std::mem::take(next));
+        let label = Some("changed items");
+        let begun = wgpu::CommandEncoderDescriptor { label };
+        let submit = || {
+            let mut encoder = on.device.create_command_encoder(&begun);
+            commands.record(&mut encoder);
+            on.queue.submit([encoder.finish()]);
+        };
+        let names = &commands.names;
+        refused(on.device, submit).map_err(|why| {
+            names.iter().for_each(|name| drop(self.held.remove(name)));
+            let names = names.clone();
+            Error::Copies { names, why }
+        })
+    }
+
+    /// Records what was recorded into an encoder of the host.
+    ///
+    /// # Errors
+    /// If the device refuses the buffers by which it tells whether they have run.
+    pub fn record_into(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        device: &wgpu::Device,
+    ) -> Result<(), ProviderError> {
+        let commands = std::mem::take(&mut self.recorded.next);
+        if commands.list.is_empty() {
+            return Ok(());
+        }
+        commands.record(encoder);
+        let kept = self.recorded.in_encoders.keep(commands, device, encoder);
+        kept.map_err(ProviderError::from_error)
+    }
+
+    /// Records once more what was in encoders of the host that were dropped, or submitted in another
+    /// order; returns true if there is any.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn record_lost(&mut self, device: &wgpu::Device) -> Result<bool, ExecuteError> {
+        let lost = self.recorded.in_encoders.lost(device)?;
+        let is_any = !lost.is_empty();
+        let mut commands = Commands::default();
+        lost.into_iter().for_each(|lost| commands.extend(lost));
+        commands.extend(std::mem::take(&mut self.recorded.next));
+        self.recorded.next = commands;
+        Ok(is_any)
     }
 
     /// Keeps a buffer as the last one of that name.
@@ -246,17 +341,53 @@ impl Buffers {
             Held::Lights => 16,
         };
         let held = self.held.entry(name.to_owned()).or_default();
-        remember(held, (buffer, version), most);
+        let content = Content {
+            buffer,
+            version,
+            owner: Arc::default(),
+        };
+        remember(held, content, most);
     }
 
-    /// Returns the buffer of that name that was made last, with the version of its content.
-    fn last(&self, name: &str) -> Option<&(wgpu::Buffer, u64)> {
+    /// Returns the buffer of that name that was made last.
+    fn last(&self, name: &str) -> Option<&Content> {
         self.held.get(name)?.last()
     }
 
     /// Returns the version of the content of the buffer of that name that was made last.
     pub fn version(&self, name: &str) -> Option<u64> {
-        self.last(name).map(|(_, version)| *version)
+        self.last(name).map(|last| last.version)
+    }
+
+    /// Returns a buffer of that size that begins with the content of the one that was made last,
+    /// and may be written: that one itself, or a copy.
+    fn successor(&mut self, name: &str, size: u64, on: On) -> Option<wgpu::Buffer> {
+        let last = self.last(name)?;
+        let is_own = Arc::strong_count(&last.owner) == 1;
+        if self.in_place && is_own && last.buffer.size() == size {
+            return Some(last.buffer.clone());
+        }
+        let (last, version) = (last.buffer.clone(), last.version);
+        let buffer = self.create(name, size, on.device);
+        self.work.copied += last.size();
+        self.copy([(&last, 0), (&buffer, 0)], last.size());
+        self.hold(name, buffer.clone(), version);
+        Some(buffer)
+    }
+
+    fn copy(&mut self, [(from, begin), (to, at)]: [(&wgpu::Buffer, u64); 2], size: u64) {
+        let copy = Command::Copy([(from.clone(), begin), (to.clone(), at)], size);
+        self.recorded.next.list.push(copy);
+    }
+
+    /// Records kernels that write the buffer of that name.
+    pub fn run(&mut self, name: &str, kernels: Bound) {
+        self.work.uploaded += kernels.uploaded();
+        self.recorded.next.names.push(name.to_owned());
+        self.recorded
+            .next
+            .list
+            .push(Command::Kernels(kernels.into()));
     }
 
     /// Does what [`patch`](Self::patch) does, with items that are there as a list.
@@ -286,21 +417,23 @@ impl Buffers {
         let gap = if self.keeps_gaps { 1 } else { GAP / stride };
         let ranges = joined(changed, gap);
         let written: usize = ranges.iter().map(Range::len).sum();
-        let last = self.last(name).map(|(buffer, _)| buffer.clone());
-        let last = last.filter(|buffer| buffer.size() == (count * stride) as u64);
-        if written == 0 && last.is_some() {
+        let size = (count * stride) as u64;
+        let is_there = self
+            .last(name)
+            .is_some_and(|last| last.buffer.size() == size);
+        if written == 0 && is_there {
             self.still_hold(name, version);
             return Ok(Patched::Nothing);
         }
-        let Some(last) = last.filter(|_| 2 * written <= count) else {
+        if !is_there || 2 * written > count {
             self.fill(name, (count, items), version, on)?;
             return Ok(Patched::All);
-        };
+        }
         let mut content = Vec::with_capacity(written);
         for range in &ranges {
             items(range.clone(), &mut content);
         }
-        self.succeed(name, &last, (count, &ranges, &content), version, on);
+        self.succeed(name, (count, &ranges, &content), version, on);
         Ok(Patched::Some)
     }
 
@@ -313,58 +446,47 @@ impl Buffers {
         version: u64,
         on: On,
     ) -> Result<(), Error> {
-        let last = self.last(name).map(|(buffer, _)| buffer.clone());
+        let last = self.last(name).map(|last| last.buffer.size());
         // One item may stand for none.
-        let last = last.map(|buffer| (buffer.size() as usize / size_of::<T>(), buffer));
-        match last.filter(|(there, _)| *there > 1 && *there <= items.len()) {
-            Some((there, _)) if there == items.len() => self.still_hold(name, version),
-            Some((there, last)) => {
-                check_binding(name, size_of_val(items) as u64, on.device)?;
-                let (range, content) = (there..items.len(), &items[there..]);
-                let changed = (items.len(), std::slice::from_ref(&range), content);
-                self.succeed(name, &last, changed, version, on);
-            }
-            None => return self.make(name, items, version, on),
+        let there = last.map_or(0, |size| size as usize / size_of::<T>());
+        if there <= 1 || there > items.len() {
+            return self.make(name, items, version, on);
         }
+        if there == items.len() {
+            self.still_hold(name, version);
+            return Ok(());
+        }
+        check_binding(name, size_of_val(items) as u64, on.device)?;
+        let (range, content) = (there..items.len(), &items[there..]);
+        let changed = (items.len(), std::slice::from_ref(&range), content);
+        self.succeed(name, changed, version, on);
         Ok(())
     }
 
-    /// Makes the buffer that follows `last`: of `count` items, of which `content` has those in
-    /// `ranges`.
+    /// Makes the buffer that follows the last one: of `count` items, of which `content` has those
+    /// in `ranges`.
     fn succeed<T: bytemuck::NoUninit>(
         &mut self,
         name: &str,
-        last: &wgpu::Buffer,
         (count, ranges, content): (usize, &[Range<usize>], &[T]),
         version: u64,
         on: On,
     ) {
         let stride = size_of::<T>();
-        let buffer = self.create(name, (count * stride) as u64, on.device);
-        let encoder = self.record(name, on);
-        encoder.copy_buffer_to_buffer(last, 0, &buffer, 0, last.size());
+        let Some(buffer) = self.successor(name, (count * stride) as u64, on) else {
+            return;
+        };
+        self.recorded.next.names.push(name.to_owned());
         let (content, usage) = (bytemuck::cast_slice(content), wgpu::BufferUsages::COPY_SRC);
         let staging = upload(on.device, "changed items", content, usage);
         let mut from = 0;
         for range in ranges {
             let [to, size] = [range.start, range.len()].map(|items| (items * stride) as u64);
-            encoder.copy_buffer_to_buffer(&staging, from, &buffer, to, size);
+            self.copy([(&staging, from), (&buffer, to)], size);
             from += size;
         }
         self.work.uploaded += from;
-        self.work.copied += last.size();
-        self.hold(name, buffer, version);
-    }
-
-    /// The encoder of what [`submit`](Self::submit) submits, of which some writes the buffer of
-    /// that name.
-    pub fn record(&mut self, name: &str, on: On) -> &mut wgpu::CommandEncoder {
-        self.recorded.names.push(name.to_owned());
-        self.recorded.encoder.get_or_insert_with(|| {
-            let label = Some("changed items");
-            let begun = wgpu::CommandEncoderDescriptor { label };
-            on.device.create_command_encoder(&begun)
-        })
+        self.still_hold(name, version);
     }
 
     /// Drops what was made of that name.
@@ -372,19 +494,13 @@ impl Buffers {
         self.held.remove(name);
     }
 
-    /// Makes the buffer of that name that was made last one that the GPU may write: a copy, if it
-    /// was handed out.
+    /// Makes the buffer of that name that was made last one that the GPU may write.
     pub fn renew(&mut self, name: &str, patched: Patched, on: On) -> Option<wgpu::Buffer> {
-        let (last, version) = self.last(name)?.clone();
-        if patched != Patched::Nothing {
-            return Some(last);
+        let last = self.last(name)?.buffer.clone();
+        match patched {
+            Patched::Nothing => self.successor(name, last.size(), on),
+            _ => Some(last),
         }
-        let buffer = self.create(name, last.size(), on.device);
-        let encoder = self.record(name, on);
-        encoder.copy_buffer_to_buffer(&last, 0, &buffer, 0, last.size());
-        self.work.copied += last.size();
-        self.hold(name, buffer.clone(), version);
-        Some(buffer)
     }
 }
 

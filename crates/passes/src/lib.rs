@@ -69,6 +69,6 @@ pub use host::{GpuMesh, GpuMeshError};
 pub use host_buffers::{HostDecoder, HostIndices, HostMesh, HostMeshError, HostVertices};
 pub use parts::{PartId, Room};
 pub use presets::{EmbeddedSources, Preset, load_unit_visibility, presets, registry};
-pub use provider::SceneProvider;
+pub use provider::{InEncoder, SceneProvider};
 pub use trace::{Direction, Engine, Mode, Trace};
 pub use view::SceneView;

@@ -3,7 +3,7 @@
 //! everything where it is. Where a piece has moved, it gets another bottom level; the others keep
 //! theirs.
 
-use crate::buffers::{refused, upload};
+use crate::buffers::{On, refused, upload};
 use crate::error::Error;
 use crate::geometry::Geometry;
 use crate::names::next_version;
@@ -79,8 +79,7 @@ pub(crate) struct Source<'a> {
     pub buffers: [&'a wgpu::Buffer; 2],
     /// Version of the mesh's shape.
     pub shape: u64,
-    pub device: &'a wgpu::Device,
-    pub queue: &'a wgpu::Queue,
+    pub on: On<'a>,
 }
 
 impl Structures {
@@ -94,7 +93,8 @@ impl Structures {
     }
 
     /// Returns the top level over the mesh, and the number of triangles of the bottom levels that
-    /// were built for it, if it was made anew; the builds are submitted. Primitives of an instance
+    /// were built for it, if it was made anew; the builds are recorded into `encoder`, a host's, or
+    /// else submitted. Only bottom levels whose build was submitted become compact. Primitives of an instance
     /// are counted from its custom data, and none is opaque: a query sees each as a candidate. A
     /// mesh without triangles is a structure without instances.
     ///
@@ -103,7 +103,11 @@ impl Structures {
     /// # Errors
     /// More triangles than the device can take, an index beyond the mesh's positions, or builds
     /// that the device refuses; those structures are built again when they are next asked for.
-    pub fn get(&mut self, source: Source<'_>) -> Result<(wgpu::Tlas, Option<usize>), Error> {
+    pub fn get(
+        &mut self,
+        source: Source<'_>,
+        encoder: Option<&mut wgpu::CommandEncoder>,
+    ) -> Result<(wgpu::Tlas, Option<usize>), Error> {
         let former = self.top.take();
         let is_same = former.as_ref().is_some_and(|top| top.shape == source.shape);
         if let Some(top) = former.as_ref().filter(|top| is_same && !top.is_ready()) {
@@ -111,14 +115,14 @@ impl Structures {
             self.top = former;
             return Ok((tlas, None));
         }
-        let limits = source.device.limits();
+        let limits = source.on.device.limits();
         let most = limits.max_tlas_instance_count;
         let solids = solids(source.geometry.pieces(), source.mesh, most);
         let mut versions = [source.shape, next_version()];
         let mut open = None;
         if let Some(top) = former {
             if top.is_ready() {
-                self.compact(source.queue);
+                self.compact(source.on.queue);
             } else {
                 open = top.open;
             }
@@ -127,9 +131,11 @@ impl Structures {
             }
         }
         let new = self.create(&solids, source)?;
-        let tlas = self.build(&solids, &new, source);
+        let is_submitted = encoder.is_none();
+        let tlas = self.build(&solids, &new, source, encoder);
         let tlas = tlas.inspect_err(|_| self.bottoms.clear())?;
-        for (solid, _) in new.iter().filter(|(_, is_first)| *is_first) {
+        let asks = |(_, is_first): &&(_, bool)| *is_first && is_submitted;
+        for (solid, _) in new.iter().filter(asks) {
             if let Some(bottom) = self.bottoms.get(&solid.piece) {
                 open.get_or_insert_with(Open::default).ask(&bottom.blas);
             }
@@ -159,7 +165,7 @@ impl Structures {
         solids: &'s [Solid],
         source: Source<'_>,
     ) -> Result<Vec<(&'s Solid, bool)>, Error> {
-        let most = source.device.limits().max_blas_primitive_count;
+        let most = source.on.device.limits().max_blas_primitive_count;
         let mut before = std::mem::take(&mut self.bottoms);
         let mut new = Vec::new();
         for solid in solids {
@@ -187,7 +193,7 @@ impl Structures {
                     let descriptors = vec![size_of(solid, source.mesh)];
                     let sizes = wgpu::BlasGeometrySizeDescriptors::Triangles { descriptors };
                     Bottom {
-                        blas: source.device.create_blas(&descriptor, sizes),
+                        blas: source.on.device.create_blas(&descriptor, sizes),
                         changed: solid.changed,
                     }
                 }
@@ -203,8 +209,9 @@ impl Structures {
         solids: &[Solid],
         new: &[(&Solid, bool)],
         source: Source<'_>,
+        encoder: Option<&mut wgpu::CommandEncoder>,
     ) -> Result<wgpu::Tlas, Error> {
-        let mut tlas = source.device.create_tlas(&wgpu::CreateTlasDescriptor {
+        let mut tlas = source.on.device.create_tlas(&wgpu::CreateTlasDescriptor {
             label: Some("scene.tlas"),
             max_instances: solids.len().max(1) as u32,
             flags: Flags::PREFER_FAST_TRACE,
@@ -216,13 +223,13 @@ impl Structures {
             let instance = |it: &Bottom| TlasInstance::new(&it.blas, IDENTITY, first, u8::MAX);
             tlas[index] = bottom.map(instance);
         }
-        let most = source.device.limits().max_tlas_instance_count;
+        let most = source.on.device.limits().max_tlas_instance_count;
         let together = new.iter().find(|(solid, _)| solid.piece.is_none());
         let together = together.map(|(solid, _)| {
             let corners = joined_corners(source.geometry.pieces(), source.mesh, solid, most);
             let corners = bytemuck::cast_slice(corners.as_flattened());
             let usage = wgpu::BufferUsages::BLAS_INPUT;
-            upload(source.device, "scene.blas", corners, usage)
+            upload(source.on.device, "scene.blas", corners, usage)
         });
         let sizes = new.iter().map(|(solid, _)| size_of(solid, source.mesh));
         let sizes: Vec<Size> = sizes.collect();
@@ -247,11 +254,16 @@ impl Structures {
             Some(wgpu::BlasBuildEntry { blas, geometry })
         });
         let entries: Vec<wgpu::BlasBuildEntry<'_>> = entries.collect();
+        if let Some(encoder) = encoder {
+            encoder.build_acceleration_structures(entries.iter(), [&tlas]);
+            return Ok(tlas);
+        }
         let label = Some("scene.tlas");
         let descriptor = wgpu::CommandEncoderDescriptor { label };
-        let mut encoder = source.device.create_command_encoder(&descriptor);
+        let mut encoder = source.on.device.create_command_encoder(&descriptor);
         encoder.build_acceleration_structures(entries.iter(), [&tlas]);
-        let submitted = refused(source.device, || source.queue.submit([encoder.finish()]));
+        let submit = || source.on.queue.submit([encoder.finish()]);
+        let submitted = refused(source.on.device, submit);
         submitted.map(|_| tlas).map_err(Error::Structures)
     }
 }

@@ -16,6 +16,7 @@ mod pass;
 mod poison;
 mod prepare;
 mod read_buffer;
+mod recordings;
 mod replan;
 mod report;
 mod runner;
@@ -28,6 +29,7 @@ mod uniform;
 
 pub use executor::Executor;
 pub use prepare::{Prepared, Preparer};
+pub use recordings::Recordings;
 pub use replan::ReplanReport;
 pub use report::{FaultKind, Frame, FrameFault, FrameReport};
 pub use statistics::PassStatistics;

@@ -99,8 +99,13 @@ struct Batch {
 }
 
 impl Bound {
-    /// Records the kernels; the number of bytes that were uploaded for them.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) -> u64 {
+    /// Returns the number of bytes that were uploaded for the kernels.
+    pub fn uploaded(&self) -> u64 {
+        self.0.iter().map(|batch| batch.uploaded).sum()
+    }
+
+    /// Records the kernels.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         let mut pass = encoder.begin_compute_pass(&Default::default());
         for batch in &self.0 {
             let [across, parts] = batch.workgroups;
@@ -108,7 +113,6 @@ impl Bound {
             pass.set_bind_group(0, &batch.group, &[]);
             pass.dispatch_workgroups(across, parts, 1);
         }
-        self.0.iter().map(|batch| batch.uploaded).sum()
     }
 }
 

@@ -23,6 +23,43 @@ impl Describe for SceneProvider {
     }
 }
 
+impl SceneProvider {
+    /// Builds the acceleration structure of that name, in an encoder of the host or a submission of
+    /// its own.
+    pub(super) fn build_structure(
+        &mut self,
+        name: &str,
+        on: On,
+        mut encoder: Option<&mut wgpu::CommandEncoder>,
+    ) -> Result<wgpu::Tlas, ProviderError> {
+        if name != TLAS {
+            return Err(self.uploads.unknown(name).into());
+        }
+        self.check_device(on.device)?;
+        let vertices = self.uploads.buffer(POSITIONS, on)?;
+        let indices = self.uploads.buffer(INDICES, on)?;
+        // It is built of what they hold.
+        match &mut encoder {
+            Some(encoder) => self.uploads.buffers.record_into(encoder, on.device)?,
+            None => self.uploads.buffers.submit(on)?,
+        }
+        let began = self.uploads.begin();
+        let source = Source {
+            mesh: &self.uploads.scene.mesh,
+            geometry: &self.uploads.geometry,
+            buffers: [&vertices, &indices],
+            shape: self.uploads.versions.shape,
+            on,
+        };
+        let (tlas, triangles) = self.structures.get(source, encoder)?;
+        if let Some(triangles) = triangles {
+            self.uploads.geometry.work.triangles += triangles as u64;
+            self.uploads.note(TLAS, How::Made, began);
+        }
+        Ok(tlas)
+    }
+}
+
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
         if name == TLAS {
@@ -91,29 +128,7 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Tlas, ProviderError> {
-        if name != TLAS {
-            return Err(self.uploads.unknown(name).into());
-        }
-        self.check_device(device)?;
-        let on = On { device, queue };
-        let vertices = self.uploads.buffer(POSITIONS, on)?;
-        let indices = self.uploads.buffer(INDICES, on)?;
-        // It is built of what they hold.
-        self.submit_built(device, queue)?;
-        let began = self.uploads.begin();
-        let (tlas, triangles) = self.structures.get(Source {
-            mesh: &self.uploads.scene.mesh,
-            geometry: &self.uploads.geometry,
-            buffers: [&vertices, &indices],
-            shape: self.uploads.versions.shape,
-            device,
-            queue,
-        })?;
-        if let Some(triangles) = triangles {
-            self.uploads.geometry.work.triangles += triangles as u64;
-            self.uploads.note(TLAS, How::Made, began);
-        }
-        Ok(tlas)
+        self.build_structure(name, On { device, queue }, None)
     }
 
     #[cfg(feature = "embree")]

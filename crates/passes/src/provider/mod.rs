@@ -1,6 +1,7 @@
 //! The scene as resources of a graph, each uploaded when a live pass first asks for it.
 
 mod build;
+mod in_encoder;
 mod resources;
 mod uploads;
 
@@ -16,6 +17,7 @@ use crate::names::*;
 use crate::parts::{PartId, Room};
 use crate::ray_query::Structures;
 use glam::{DAffine3, Vec3};
+pub use in_encoder::InEncoder;
 use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
 use skiagraph_graph::Plan;
 use skiagraph_scene::{Camera, Light, LightKind, Mesh, Movable, Scene, Sheets, View};

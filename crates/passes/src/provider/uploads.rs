@@ -338,8 +338,7 @@ impl Uploads {
         if let Some((rest, buffer)) = rest.zip(self.buffers.renew(POSITIONS, patched, on)) {
             let (buffers, maps) = ([&rest, &buffer], placed.own_maps());
             let bound = self.kernels.bind_own(buffers, maps, on.device)?;
-            let uploaded = bound.record(self.buffers.record(POSITIONS, on));
-            self.buffers.work.uploaded += uploaded;
+            self.buffers.run(POSITIONS, bound);
         }
         Ok(())
     }
@@ -360,8 +359,7 @@ impl Uploads {
         };
         match self.bind_host_parts((name, &buffer), HostWrite::sorted(writes), on) {
             Ok(bound) => {
-                let uploaded = bound.record(self.buffers.record(name, on));
-                self.buffers.work.uploaded += uploaded;
+                self.buffers.run(name, bound);
                 Ok(())
             }
             Err(error) => {

@@ -1,0 +1,251 @@
+//! Refreshes whose GPU work comes into the encoder of the frame: a host's skinning before it, moved
+//! parts written in place, encoders that are dropped or submitted in another order.
+
+use crate::host_buffers::{
+    MegaBuffer, VIEWPORT, places, places_of, raise_in, scenes, shown, start, stones, uploaded,
+};
+use crate::support::graphs::{self, allow_ray_queries, open, values};
+use crate::support::random::Random;
+use glam::{DAffine3, DVec3, Vec3};
+use skiagraph_gpu::{Executor, Frame, device::Gpu};
+use skiagraph_graph::ParamValue;
+use skiagraph_passes::SceneProvider;
+
+const PRESETS: [&str; 2] = ["rt", "light_buffer"];
+/// One step of `raise_in`, which lowers the right halves of stones.
+const STEP: i32 = -3000;
+const BOUNDS: [Vec3; 2] = [Vec3::new(-1.0, -1.7, -1.0), Vec3::ONE];
+
+fn begin(gpu: &Gpu) -> wgpu::CommandEncoder {
+    gpu.device.create_command_encoder(&Default::default())
+}
+
+/// Refreshes in an encoder, and encodes a frame there.
+fn encode(
+    executor: &mut Executor,
+    host: &mut SceneProvider,
+    encoder: &mut wgpu::CommandEncoder,
+    read: &[&str],
+) {
+    executor
+        .refresh(&mut host.in_encoder(encoder).unwrap())
+        .unwrap();
+    let frame = Frame::new().with_read(read);
+    executor.encode(encoder, &frame).unwrap();
+}
+
+/// A frame of each executor in one submission.
+fn frames(
+    gpu: &Gpu,
+    executors: &mut [Executor],
+    host: &mut SceneProvider,
+    mut encoder: wgpu::CommandEncoder,
+) -> Vec<Vec<u32>> {
+    for executor in &mut *executors {
+        encode(executor, host, &mut encoder, &["visibility"]);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    let reports = executors.iter_mut().map(|it| it.finish().unwrap());
+    reports.map(|it| values(&it, "visibility")).collect()
+}
+
+/// Pictures of a scene that is made of nothing.
+fn expected(
+    gpu: &Gpu,
+    stones: &MegaBuffer,
+    places: &[(usize, DAffine3)],
+    lift: i32,
+) -> Vec<Vec<u32>> {
+    let mut scene = uploaded(stones, places, lift);
+    let pictures = PRESETS.iter();
+    pictures
+        .map(|preset| shown(gpu, &mut start(gpu, preset, &mut scene)))
+        .collect()
+}
+
+/// Floor and stones, of which the last two move.
+fn placed(turn: usize) -> Vec<(usize, DAffine3)> {
+    let mut placed = places(0);
+    for (at, (_, map)) in placed.iter_mut().enumerate().skip(5) {
+        let turned = DAffine3::from_rotation_y(0.3 * (turn * at) as f64);
+        let raised = DVec3::Y * 0.1 * turn as f64;
+        *map = DAffine3::from_translation(map.translation + raised)
+            * turned
+            * DAffine3::from_mat3(map.matrix3);
+    }
+    placed
+}
+
+fn set(host: &mut SceneProvider, places: &[(usize, DAffine3)]) {
+    host.set_transforms(&places_of(places)).unwrap();
+}
+
+fn rewritten(host: &mut SceneProvider) {
+    let parts: Vec<_> = host.parts().skip(1).collect();
+    for part in parts {
+        host.rewrite_part(part, BOUNDS).unwrap();
+    }
+}
+
+/// Stones that the host skins in the encoder of the frame, and moves, are right in that very frame;
+/// nothing is copied. Lost frames, and frames of one executor alone, between them.
+#[test]
+fn what_the_host_writes_in_the_frames_encoder_is_shown_in_that_frame() {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
+    let copied = host.work().copied;
+    let (mut lift, mut random) = (0, Random(61));
+    for turn in 1..12 {
+        let places = placed(turn);
+        set(&mut host, &places);
+        let mut encoder = begin(&gpu);
+        if random.unit() < 0.5 {
+            // With the host's own commands, which never run.
+            let mut lost = begin(&gpu);
+            raise_in(&gpu, &mut lost, (&stones, 1), STEP.cast_unsigned() & 0xffff);
+            rewritten(&mut host);
+            let dropped = 1 + usize::from(random.unit() < 0.5);
+            for executor in &mut executors[..dropped] {
+                encode(executor, &mut host, &mut lost, &[]);
+            }
+        }
+        if random.unit() < 0.7 {
+            raise_in(
+                &gpu,
+                &mut encoder,
+                (&stones, 1),
+                STEP.cast_unsigned() & 0xffff,
+            );
+            lift += STEP;
+            rewritten(&mut host);
+        }
+        let seen = frames(&gpu, &mut executors, &mut host, encoder);
+        assert!(seen == expected(&gpu, &stones, &places, lift), "{turn}");
+    }
+    assert!(lift < 3 * STEP);
+    assert_eq!(host.work().copied, copied);
+}
+
+/// Of encoders that were submitted in the other order the next refresh writes all again.
+#[test]
+fn what_lost_encoders_held_is_written_by_the_next_refresh() {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
+    for turn in 1..5 {
+        let mut encoders = [begin(&gpu), begin(&gpu)];
+        for (at, encoder) in encoders.iter_mut().enumerate() {
+            set(&mut host, &placed(2 * turn + at));
+            encode(&mut executors[at], &mut host, encoder, &[]);
+        }
+        let [first, second] = encoders.map(wgpu::CommandEncoder::finish);
+        match turn % 3 {
+            0 => {
+                gpu.queue.submit([second, first]);
+                // The order is known once they have run.
+                gpu.device
+                    .poll(wgpu::PollType::wait_indefinitely())
+                    .unwrap();
+            }
+            1 => {
+                drop(first);
+                gpu.queue.submit([second]);
+            }
+            _ => {
+                drop(second);
+                gpu.queue.submit([first]);
+            }
+        }
+        // Nothing has changed since.
+        let seen = frames(&gpu, &mut executors, &mut host, begin(&gpu));
+        let expected = expected(&gpu, &stones, &placed(2 * turn + 1), 0);
+        assert!(seen == expected, "{turn}");
+    }
+}
+
+/// A branch keeps its scene, and what encoders held that had not run when it was made.
+#[test]
+fn branches_are_not_written_in_place() {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
+    set(&mut host, &placed(1));
+    let mut encoder = begin(&gpu);
+    encode(&mut executors[0], &mut host, &mut encoder, &[]);
+    let mut branch = host.branch();
+    drop(encoder);
+    let mut own = PRESETS.map(|preset| start(&gpu, preset, &mut branch));
+    set(&mut host, &placed(2));
+    let seen = frames(&gpu, &mut executors, &mut host, begin(&gpu));
+    assert!(seen == expected(&gpu, &stones, &placed(2), 0));
+    let seen = frames(&gpu, &mut own, &mut branch, begin(&gpu));
+    assert!(seen == expected(&gpu, &stones, &placed(1), 0));
+    let copied = host.work().copied;
+    drop((branch, own));
+    set(&mut host, &placed(3));
+    let seen = frames(&gpu, &mut executors, &mut host, begin(&gpu));
+    assert!(seen == expected(&gpu, &stones, &placed(3), 0));
+    assert_eq!(host.work().copied, copied);
+}
+
+/// A refresh with a submission of its own finds what encoders hold that are not submitted yet.
+#[test]
+fn both_ways_of_refreshing_go_together() {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
+    for turn in 1..4 {
+        let places = placed(turn);
+        set(&mut host, &places);
+        let mut encoder = begin(&gpu);
+        encode(&mut executors[0], &mut host, &mut encoder, &["visibility"]);
+        let part = host.parts().nth(1).unwrap();
+        host.rewrite_part(part, BOUNDS).unwrap();
+        executors[1].refresh(&mut host).unwrap();
+        let expected = expected(&gpu, &stones, &places, 0);
+        assert!(shown(&gpu, &mut executors[1]) == expected[1], "{turn}");
+        gpu.queue.submit([encoder.finish()]);
+        let report = executors[0].finish().unwrap();
+        assert!(values(&report, "visibility") == expected[0], "{turn}");
+        assert!(shown(&gpu, &mut executors[1]) == expected[1], "{turn}");
+    }
+}
+
+/// Acceleration structures are built in the encoder, of what was written there.
+#[test]
+#[ignore = "needs EXPERIMENTAL_RAY_QUERY"]
+fn ray_query_structures_are_built_in_the_encoder() {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let plan = graphs::plan("pipelines/rt.ron", &host, VIEWPORT, |request| {
+        allow_ray_queries(request);
+        let engine = ParamValue::Choice("ray_query".to_owned());
+        request.params.insert("engine".to_owned(), engine);
+    });
+    let mut executors = [Executor::on(&gpu, plan, &mut host).unwrap()];
+    for turn in 1..6 {
+        set(&mut host, &placed(turn));
+        let mut encoder = begin(&gpu);
+        if turn % 2 == 0 {
+            raise_in(
+                &gpu,
+                &mut encoder,
+                (&stones, 1),
+                STEP.cast_unsigned() & 0xffff,
+            );
+            rewritten(&mut host);
+        } else {
+            encode(&mut executors[0], &mut host, &mut begin(&gpu), &[]);
+        }
+        let lift = STEP * (turn / 2) as i32;
+        let seen = frames(&gpu, &mut executors, &mut host, encoder);
+        let expected = expected(&gpu, &stones, &placed(turn), lift);
+        assert!(seen[0] == expected[0], "{turn}");
+    }
+}

@@ -413,7 +413,10 @@ impl<'a> Host<'a> {
         placed.expect("the maps are turns and shifts");
         let set = since(start);
         let start = Instant::now();
-        let refreshed = self.executor.refresh(&mut self.provider);
+        let provider = self.provider.in_encoder(&mut encoder);
+        let refreshed = self
+            .executor
+            .refresh(&mut provider.expect("the device is there"));
         refreshed.expect("the same resources are built again");
         let refresh = since(start);
         let start = Instant::now();

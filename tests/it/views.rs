@@ -104,7 +104,7 @@ fn frame(
         let (camera, light) = now(view);
         view.set_camera(&camera);
         view.set_light(light)?;
-        view.refresh(executor, provider)?;
+        view.refresh_in(executor, provider, &mut encoder)?;
         executor.encode(&mut encoder, &READ)?;
     }
     queue.submit([encoder.finish()]);

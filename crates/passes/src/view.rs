@@ -1,7 +1,7 @@
 //! Views of a scene that all of them share.
 
 use crate::{error::Error, eye::Eye, provider::SceneProvider};
-use skiagraph_gpu::{ExecuteError, Executor};
+use skiagraph_gpu::{ExecuteError, Executor, Provider};
 use skiagraph_scene::{Camera, LightKind};
 
 /// One picture of a scene: its camera, its light and its size. Any number of views share one
@@ -117,10 +117,31 @@ impl SceneView {
         executor: &mut Executor,
         provider: &mut SceneProvider,
     ) -> Result<(), ExecuteError> {
+        self.bring(executor, self.apply(provider))
+    }
+
+    /// Does what [`refresh`](Self::refresh) does with the GPU's work in the
+    /// [encoder of the frame](SceneProvider::in_encoder).
+    ///
+    /// # Errors
+    /// Those of [`refresh`](Self::refresh) and [`SceneProvider::in_encoder`].
+    pub fn refresh_in(
+        &self,
+        executor: &mut Executor,
+        provider: &mut SceneProvider,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Result<(), ExecuteError> {
+        self.bring(executor, &mut self.apply(provider).in_encoder(encoder)?)
+    }
+
+    fn bring(
+        &self,
+        executor: &mut Executor,
+        provider: &mut dyn Provider,
+    ) -> Result<(), ExecuteError> {
         if self.size.contains(&0) {
             return Ok(());
         }
-        let provider = self.apply(provider);
         if executor.plan().viewport() != self.size {
             executor.resize(self.size, provider)?;
         }

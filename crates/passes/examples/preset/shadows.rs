@@ -37,7 +37,8 @@ impl Shadows {
         self.provider.set_camera(camera);
         self.provider.set_light(DirectionalLight::new(light).into());
         self.provider.set_transforms(places)?;
-        self.executor.refresh(&mut self.provider)?;
+        self.executor
+            .refresh(&mut self.provider.in_encoder(encoder)?)?;
         self.executor.encode(encoder, &Frame::default())?;
         let visibility = self.executor.output_view("visibility");
         visibility.ok_or_else(|| "the preset has no visibility".into())

@@ -73,12 +73,15 @@ impl Outlines {
         let fit = |sun: &DirectionalLight| {
             let mut direction = take(directions, sun.direction);
             direction.forget_moved(moved);
-            let own = &mut direction.boxes;
-            let loose = |piece: usize| {
-                let ends = bounds[piece].into_iter();
-                let outline = || sun.outline(ends.flat_map(box_corners));
-                own[piece].get_or_insert_with(outline).clone()
-            };
+            let Direction {
+                outlines, boxes, ..
+            } = &mut direction;
+            for (piece, own) in boxes.iter_mut().enumerate() {
+                if own.is_none() && outlines[piece].is_none() {
+                    let ends = bounds[piece].into_iter();
+                    *own = Some(sun.outline(ends.flat_map(box_corners)));
+                }
+            }
             let exact = |piece: usize| {
                 let own = &mut pieces[piece];
                 if own.border.is_empty() {
@@ -95,7 +98,7 @@ impl Outlines {
                 laid += own.border.len() as u64;
                 sun.outline(own.border.iter().copied())
             };
-            let outline = Outline::joined(&mut direction.outlines, loose, exact);
+            let outline = Outline::joined(outlines, boxes, exact);
             remember(directions, direction, DIRECTIONS);
             sun.fit_outline(&outline)
         };

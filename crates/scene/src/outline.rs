@@ -40,24 +40,29 @@ impl Outline {
 
     /// Returns the outline of the points of all parts together; all outlines are of the same light.
     /// `outlines` has an entry for each part: its outline, or `None` if the part has moved since.
-    /// For such a part, given its index in `outlines`, `loose` returns a rough outline that
-    /// contains the part, such as that of its box, and `exact` returns the part's own outline.
-    /// `exact` is called only for a part that may reach the border of the result; its outline is
-    /// then written into `outlines`.
+    /// For such a part `loose` has, at the same index, a rough outline that contains the part, such
+    /// as that of its box, and `exact`, given the index, returns the part's own outline. `exact` is
+    /// called only for a part that may reach the border of the result, or that has no rough
+    /// outline; its outline is then written into `outlines`.
     pub fn joined(
         outlines: &mut [Option<Self>],
-        mut loose: impl FnMut(usize) -> Self,
+        loose: &[Option<Self>],
         mut exact: impl FnMut(usize) -> Self,
     ) -> Self {
         let unknown = outlines.iter().enumerate();
         let unknown = unknown.filter(|(_, outline)| outline.is_none());
-        let open: Vec<(usize, Self)> = unknown.map(|(part, _)| (part, loose(part))).collect();
-        for part in farthest_of(outlines, &open) {
+        let unknown: Vec<usize> = unknown.map(|(part, _)| part).collect();
+        let rough = |part: usize| loose.get(part).and_then(Option::as_ref);
+        let open = unknown
+            .iter()
+            .filter_map(|&part| Some((part, rough(part)?)));
+        for part in farthest_of(outlines, open) {
             outlines[part] = Some(exact(part));
         }
         let within = Within::new(outlines);
-        for (part, loose) in open {
-            if outlines[part].is_none() && !within.contains(&loose) {
+        for part in unknown {
+            let is_inside = rough(part).is_some_and(|loose| within.contains(loose));
+            if outlines[part].is_none() && !is_inside {
                 outlines[part] = Some(exact(part));
             }
         }
@@ -275,9 +280,12 @@ fn ends(points: impl Iterator<Item = Ends>) -> Option<Ends> {
 }
 
 /// The unknown parts that may reach farthest in a direction, or along the light.
-fn farthest_of(outlines: &[Option<Outline>], open: &[(usize, Outline)]) -> Vec<usize> {
+fn farthest_of<'a>(
+    outlines: &'a [Option<Outline>],
+    open: impl Iterator<Item = (usize, &'a Outline)>,
+) -> Vec<usize> {
     let settled = outlines.iter().flatten().map(|outline| (None, outline));
-    let open = open.iter().map(|(part, loose)| (Some(*part), loose));
+    let open = open.map(|(part, loose)| (Some(part), loose));
     // The part that reaches farthest in each direction, and how far.
     let mut most: [(Option<usize>, f64); 10] = [(None, f64::NEG_INFINITY); 10];
     for (part, outline) in settled.chain(open) {

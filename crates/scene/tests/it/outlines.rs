@@ -45,14 +45,12 @@ fn the_box_of_parts_is_that_of_their_points() {
             let mut outlines = vec![None; count];
             let mut asked = 0;
             let mut joined = |outlines: &mut [Option<Outline>], clouds: &[Vec<Vec3>]| {
-                let outline = Outline::joined(
-                    outlines,
-                    |part| loose(&light, &clouds[part]),
-                    |part| {
-                        asked += 1;
-                        light.outline(clouds[part].iter().copied())
-                    },
-                );
+                let rough = clouds.iter().map(|cloud| Some(loose(&light, cloud)));
+                let rough: Vec<Option<Outline>> = rough.collect();
+                let outline = Outline::joined(outlines, &rough, |part| {
+                    asked += 1;
+                    light.outline(clouds[part].iter().copied())
+                });
                 light.fit_outline(&outline)
             };
             let fit =

@@ -128,7 +128,7 @@ fn what_the_host_writes_in_the_frames_encoder_is_shown_in_that_frame() {
     assert_eq!(host.work().copied, copied);
 }
 
-/// Of encoders that were submitted in the other order the next refresh writes all again.
+/// The next refresh writes what was in an encoder that was dropped, or came in the other order.
 #[test]
 fn what_lost_encoders_held_is_written_by_the_next_refresh() {
     let gpu = open();

@@ -1,6 +1,6 @@
 //! Uploaded buffers by name, each with the version of its content.
 
-use crate::{built::Work, error::Error, host_buffers::Bound, lights, names::*};
+use crate::{built::Work, error::Error, lights, names::*};
 use skiagraph_gpu::{ExecuteError, ProviderError, Recordings};
 use std::{collections::BTreeMap, ops::Range, sync::Arc};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -28,7 +28,7 @@ pub(crate) struct On<'a> {
 
 /// Buffers by the names of resources.
 ///
-/// What the queue writes comes before all that is submitted later, so a frame that was encoded with
+/// Writes of the queue come before all that is submitted later, so a frame that was encoded with
 /// a buffer and not submitted yet would show what was set for another one. So where the provider
 /// submits by itself, none is written again once it was handed out: another content is another
 /// buffer, and where only some of it is other, the GPU copies the rest from the buffer before. In a
@@ -60,12 +60,15 @@ struct Content {
     owner: Arc<()>,
 }
 
+/// Records kernels.
+type Kernels = dyn Fn(&mut wgpu::CommandEncoder) + Send + Sync;
+
 /// A command that writes a buffer; to do it once more changes nothing.
 #[derive(Clone)]
 enum Command {
     /// Bytes of one buffer, from an offset, to another one, to an offset; how many.
     Copy([(wgpu::Buffer, u64); 2], u64),
-    Kernels(Arc<Bound>),
+    Kernels(Arc<Kernels>),
 }
 
 /// Commands, and the names of the buffers that they write.
@@ -107,7 +110,7 @@ impl Commands {
                 Command::Copy([(from, begin), (to, at)], size) => {
                     encoder.copy_buffer_to_buffer(from, *begin, to, *at, *size);
                 }
-                Command::Kernels(kernels) => kernels.record(encoder),
+                Command::Kernels(record) => record(encoder),
             }
         }
     }
@@ -272,7 +275,8 @@ impl Buffers {
         Ok(())
     }
 
-    /// Submits what was recorded, with what is in encoders of the host and is not known to have run.
+    /// Submits what was recorded, behind what encoders of the host hold that is not known to have
+    /// run.
     ///
     /// # Errors
     /// If the device refuses them; the buffers are then made anew when they are asked for.
@@ -318,8 +322,8 @@ impl Buffers {
         kept.map_err(ProviderError::from_error)
     }
 
-    /// Records once more what was in encoders of the host that were dropped, or submitted in another
-    /// order; returns true if there is any.
+    /// Records once more what was in encoders of the host that were dropped, or submitted in
+    /// another order; returns true if there is any.
     ///
     /// # Errors
     /// If the device is lost.
@@ -381,13 +385,9 @@ impl Buffers {
     }
 
     /// Records kernels that write the buffer of that name.
-    pub fn run(&mut self, name: &str, kernels: Bound) {
-        self.work.uploaded += kernels.uploaded();
+    pub fn run(&mut self, name: &str, record: Arc<Kernels>) {
         self.recorded.next.names.push(name.to_owned());
-        self.recorded
-            .next
-            .list
-            .push(Command::Kernels(kernels.into()));
+        self.recorded.next.list.push(Command::Kernels(record));
     }
 
     /// Does what [`patch`](Self::patch) does, with items that are there as a list.

@@ -94,9 +94,9 @@ impl Structures {
 
     /// Returns the top level over the mesh, and the number of triangles of the bottom levels that
     /// were built for it, if it was made anew; the builds are recorded into `encoder`, a host's, or
-    /// else submitted. Only bottom levels whose build was submitted become compact. Primitives of an instance
-    /// are counted from its custom data, and none is opaque: a query sees each as a candidate. A
-    /// mesh without triangles is a structure without instances.
+    /// else submitted. Only bottom levels whose build was submitted become compact. Primitives of
+    /// an instance are counted from its custom data, and none is opaque: a query sees each as a
+    /// candidate. A mesh without triangles is a structure without instances.
     ///
     /// No structure is built a second time, since frames that are encoded may read it.
     ///

@@ -41,6 +41,7 @@ mod other_device;
 mod pipelines;
 mod provided;
 mod readback;
+mod recordings;
 mod refusals;
 mod robustness;
 mod stale;

@@ -23,43 +23,6 @@ impl Describe for SceneProvider {
     }
 }
 
-impl SceneProvider {
-    /// Builds the acceleration structure of that name, in an encoder of the host or a submission of
-    /// its own.
-    pub(super) fn build_structure(
-        &mut self,
-        name: &str,
-        on: On,
-        mut encoder: Option<&mut wgpu::CommandEncoder>,
-    ) -> Result<wgpu::Tlas, ProviderError> {
-        if name != TLAS {
-            return Err(self.uploads.unknown(name).into());
-        }
-        self.check_device(on.device)?;
-        let vertices = self.uploads.buffer(POSITIONS, on)?;
-        let indices = self.uploads.buffer(INDICES, on)?;
-        // It is built of what they hold.
-        match &mut encoder {
-            Some(encoder) => self.uploads.buffers.record_into(encoder, on.device)?,
-            None => self.uploads.buffers.submit(on)?,
-        }
-        let began = self.uploads.begin();
-        let source = Source {
-            mesh: &self.uploads.scene.mesh,
-            geometry: &self.uploads.geometry,
-            buffers: [&vertices, &indices],
-            shape: self.uploads.versions.shape,
-            on,
-        };
-        let (tlas, triangles) = self.structures.get(source, encoder)?;
-        if let Some(triangles) = triangles {
-            self.uploads.geometry.work.triangles += triangles as u64;
-            self.uploads.note(TLAS, How::Made, began);
-        }
-        Ok(tlas)
-    }
-}
-
 impl Provider for SceneProvider {
     fn version(&self, name: &str) -> u64 {
         if name == TLAS {
@@ -128,7 +91,7 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Tlas, ProviderError> {
-        self.build_structure(name, On { device, queue }, None)
+        build_structure(self, name, On { device, queue }, None)
     }
 
     #[cfg(feature = "embree")]
@@ -152,4 +115,39 @@ impl Provider for SceneProvider {
         self.uploads.note(EMBREE, How::Made, began);
         Ok(embree)
     }
+}
+
+/// Builds the acceleration structure of that name, in an encoder of the host or a submission of
+/// its own.
+pub(super) fn build_structure(
+    provider: &mut SceneProvider,
+    name: &str,
+    on: On,
+    mut encoder: Option<&mut wgpu::CommandEncoder>,
+) -> Result<wgpu::Tlas, ProviderError> {
+    if name != TLAS {
+        return Err(provider.uploads.unknown(name).into());
+    }
+    provider.check_device(on.device)?;
+    let vertices = provider.uploads.buffer(POSITIONS, on)?;
+    let indices = provider.uploads.buffer(INDICES, on)?;
+    // It is built of what they hold.
+    match &mut encoder {
+        Some(encoder) => provider.uploads.buffers.record_into(encoder, on.device)?,
+        None => provider.uploads.buffers.submit(on)?,
+    }
+    let began = provider.uploads.begin();
+    let source = Source {
+        mesh: &provider.uploads.scene.mesh,
+        geometry: &provider.uploads.geometry,
+        buffers: [&vertices, &indices],
+        shape: provider.uploads.versions.shape,
+        on,
+    };
+    let (tlas, triangles) = provider.structures.get(source, encoder)?;
+    if let Some(triangles) = triangles {
+        provider.uploads.geometry.work.triangles += triangles as u64;
+        provider.uploads.note(TLAS, How::Made, began);
+    }
+    Ok(tlas)
 }

@@ -17,8 +17,7 @@ use crate::names::*;
 use crate::parts::{PartId, Room};
 use crate::ray_query::Structures;
 use glam::{DAffine3, Vec3};
-pub use in_encoder::InEncoder;
-use skiagraph_gpu::{DeviceIdentity, Provider, ProviderError};
+use skiagraph_gpu::{DeviceIdentity, ExecuteError, Provider, ProviderError};
 use skiagraph_graph::Plan;
 use skiagraph_scene::{Camera, Light, LightKind, Mesh, Movable, Scene, Sheets, View};
 use std::sync::Arc;
@@ -62,6 +61,13 @@ pub struct SceneProvider {
     embree: Option<(Arc<crate::embree::Embree>, u64)>,
 }
 
+/// A [`SceneProvider`] that submits nothing: what its GPU work writes comes into an encoder of the
+/// host, between the commands that are there. [`SceneProvider::in_encoder`] makes it.
+pub struct InEncoder<'a> {
+    provider: &'a mut SceneProvider,
+    encoder: &'a mut wgpu::CommandEncoder,
+}
+
 impl SceneProvider {
     /// Creates a provider of `scene` without building any resource; each is built when an executor,
     /// or [`prepare`](Self::prepare), first needs it. Until [`set_view`](Self::set_view),
@@ -86,6 +92,43 @@ impl SceneProvider {
     /// either do not show in the other.
     pub fn branch(&self) -> Self {
         self.clone()
+    }
+
+    /// Returns this provider as one for [`refresh`](skiagraph_gpu::Executor::refresh) whose GPU
+    /// work comes into an encoder of the host, and not into a submission of its own:
+    ///
+    /// ```no_run
+    /// # fn frame(provider: &mut skiagraph_passes::SceneProvider,
+    /// #     executor: &mut skiagraph_gpu::Executor, gpu: &skiagraph_gpu::device::Gpu)
+    /// #     -> Result<(), Box<dyn std::error::Error>> {
+    /// let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    /// // Record the host's skinning here, into the same encoder.
+    /// executor.refresh(&mut provider.in_encoder(&mut encoder)?)?;
+    /// executor.encode(&mut encoder, &skiagraph_gpu::Frame::new())?;
+    /// gpu.queue.submit([encoder.finish()]);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// Parts of [hosts' buffers](Self::add_host_part) are read as the commands before have left
+    /// them, so vertices may be written in the same encoder. Where few parts have changed, only
+    /// these are written, into the buffers that executors have bound. So encoders must be submitted
+    /// in the order in which they were recorded, and each executor of the provider be refreshed
+    /// before its next frame: the scene is that of the last refresh, also for executors that have
+    /// not seen it. Buffers that a [branch](Self::branch) shares are copied first.
+    ///
+    /// Commands of an encoder that was dropped are recorded again by the next call of this method
+    /// and the refresh that follows it, and executors run all passes that read their results. The
+    /// same holds for an encoder that wgpu refused, or that was submitted after a later one, once
+    /// the GPU has finished. Frames that were submitted meanwhile lack them.
+    ///
+    /// # Errors
+    /// [`ExecuteError::DeviceLost`] if the device of the provider is lost.
+    pub fn in_encoder<'a>(
+        &'a mut self,
+        encoder: &'a mut wgpu::CommandEncoder,
+    ) -> Result<InEncoder<'a>, ExecuteError> {
+        InEncoder::new(self, encoder)
     }
 
     /// Builds the resources that the passes of a [`Plan`] read and that are missing or out of date,
@@ -538,5 +581,29 @@ impl SceneProvider {
     pub fn remove_part(&mut self, part: PartId) -> Result<(), Error> {
         self.uploads
             .change(|geometry, scene| geometry.remove(part, scene))
+    }
+}
+
+impl<'a> InEncoder<'a> {
+    fn new(
+        provider: &'a mut SceneProvider,
+        encoder: &'a mut wgpu::CommandEncoder,
+    ) -> Result<Self, ExecuteError> {
+        let device = provider.device.as_ref().map(|own| own.device().clone());
+        if let Some(device) = device
+            && provider.uploads.buffers.record_lost(&device)?
+        {
+            provider.structures = Structures::default();
+            provider.uploads.versions.change_mesh();
+        }
+        Ok(Self { provider, encoder })
+    }
+
+    /// Does something with the provider, whose buffers are written where they are.
+    fn in_place<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
+        self.provider.uploads.buffers.in_place = true;
+        let done = act(self);
+        self.provider.uploads.buffers.in_place = false;
+        done
     }
 }

@@ -338,7 +338,7 @@ impl Uploads {
         if let Some((rest, buffer)) = rest.zip(self.buffers.renew(POSITIONS, patched, on)) {
             let (buffers, maps) = ([&rest, &buffer], placed.own_maps());
             let bound = self.kernels.bind_own(buffers, maps, on.device)?;
-            self.buffers.run(POSITIONS, bound);
+            self.run(POSITIONS, bound);
         }
         Ok(())
     }
@@ -359,7 +359,7 @@ impl Uploads {
         };
         match self.bind_host_parts((name, &buffer), HostWrite::sorted(writes), on) {
             Ok(bound) => {
-                self.buffers.run(name, bound);
+                self.run(name, bound);
                 Ok(())
             }
             Err(error) => {
@@ -368,6 +368,12 @@ impl Uploads {
                 Err(error)
             }
         }
+    }
+
+    fn run(&mut self, name: &str, bound: Bound) {
+        self.buffers.work.uploaded += bound.uploaded();
+        let record = Arc::new(move |encoder: &mut _| bound.record(encoder));
+        self.buffers.run(name, record);
     }
 
     fn bind_host_parts(

@@ -99,9 +99,9 @@ impl Clone for Recorded {
 }
 
 impl Commands {
-    fn extend(&mut self, others: Self) {
-        self.list.extend(others.list);
-        self.names.extend(others.names);
+    fn extend(&mut self, later: Self) {
+        self.list.extend(later.list);
+        self.names.extend(later.names);
     }
 
     fn record(&self, encoder: &mut wgpu::CommandEncoder) {

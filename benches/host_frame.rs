@@ -14,7 +14,7 @@ use skiagraph_gpu::device::{self, Gpu};
 use skiagraph_gpu::{Executor, Frame};
 use skiagraph_graph::step::Step;
 use skiagraph_graph::{ParamValue, PlanRequest};
-use skiagraph_passes::{EmbeddedSources, Room, SceneProvider, SceneView, Work, registry};
+use skiagraph_passes::{EmbeddedSources, PartMesh, Room, SceneProvider, SceneView, Work, registry};
 use skiagraph_scene::{DirectionalLight, Indexed, Mesh, Movable, View};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -160,6 +160,11 @@ fn main() {
         times.sort_by(f64::total_cmp);
         let [median, most] = [times.len() / 2, times.len() - 1].map(|at| times[at]);
         println!("{preset}, one mesh more: {median:.2}, {most:.2} at most");
+        let level = PartMesh::new(&stone).map(PartMesh::with_hierarchy);
+        let level = level.expect("its numbers are finite");
+        let swaps: Vec<[f64; 2]> = (0..frames).map(|turn| host.swap(&level, turn)).collect();
+        let [set, refresh] = [0, 1].map(|at| quantiles(swaps.iter().map(|times| times[at])));
+        println!("{preset}, another level of detail: replace_part {set}, refresh {refresh}");
     }
     if is_asked("the fifty lines") {
         fifty_lines(&gpu, &stone, frames);
@@ -484,6 +489,30 @@ impl<'a> Host<'a> {
         let time = since(start);
         self.frame(0, NOTHING);
         time
+    }
+
+    /// Replaces the mesh of a part by another level of detail, of as many triangles; the times of
+    /// the call and of the refresh.
+    fn swap(&mut self, level: &PartMesh, turn: usize) -> [f64; 2] {
+        let number = turn % self.places.len();
+        let part = self.provider.parts().nth(number);
+        let part = part.expect("there are as many parts as places");
+        let start = Instant::now();
+        let replaced = self
+            .provider
+            .replace_part(part, level, &self.places[number]);
+        replaced.expect("the map is a shift");
+        let set = since(start);
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let start = Instant::now();
+        let provider = self.provider.in_encoder(&mut encoder);
+        let refreshed = self
+            .executor
+            .refresh(&mut provider.expect("the device is there"));
+        refreshed.expect("there is room for it");
+        let refresh = since(start);
+        submit(self.gpu, encoder.finish());
+        [set, refresh]
     }
 }
 

@@ -281,10 +281,7 @@ fn what_does_not_fit_the_mesh_or_the_plan_is_refused() {
     let (mut positions, normals) = (rest.positions.clone(), rest.normals.clone());
     positions[3].y = f32::NAN;
     let error = provider.deform(positions, normals).unwrap_err().to_string();
-    assert!(
-        error.contains("position 3 of a deformed mesh is ["),
-        "{error}"
-    );
+    assert!(error.contains("position 3 of the mesh is ["), "{error}");
 
     let mut mesh = park.scene.mesh.clone();
     mesh.triangles.pop();

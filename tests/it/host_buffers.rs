@@ -941,9 +941,19 @@ pub fn places_of(maps: &[(usize, DAffine3)]) -> Vec<DAffine3> {
     maps.iter().map(|(_, map)| *map).collect()
 }
 
+/// The stone, raised by so much.
+pub fn raised_stone(stones: &MegaBuffer, lift: i32) -> Mesh {
+    raised(&stones.meshes[1], lift).mesh()
+}
+
+/// The stone as the host has it.
+pub fn host_stone(stones: &MegaBuffer) -> &HostMesh {
+    &stones.hosts[1]
+}
+
 /// Floor and stones uploaded, the stones raised by so much.
 pub fn uploaded(stones: &MegaBuffer, places: &[(usize, DAffine3)], lift: i32) -> SceneProvider {
-    let meshes = [&stones.meshes[0], &raised(&stones.meshes[1], lift)].map(Quantised::mesh);
+    let meshes = [stones.meshes[0].mesh(), raised_stone(stones, lift)];
     let parts: Vec<&Mesh> = places.iter().map(|(mesh, _)| &meshes[*mesh]).collect();
     let mut uploaded = SceneProvider::from_parts(Movable::joined(&parts), sun());
     uploaded.set_transforms(&places_of(places)).unwrap();

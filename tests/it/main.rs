@@ -32,6 +32,7 @@ mod default_limits;
 mod depth;
 mod dissertation;
 mod documents;
+mod engine;
 mod extents;
 mod figures;
 mod filtered;

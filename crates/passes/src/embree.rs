@@ -1,6 +1,6 @@
 //! The scene in Embree 3: rays traced by the CPU, on all cores.
 
-use crate::{error::Error, ray_query::check_corners};
+use crate::{error::Error, part_mesh::check_corners};
 use embree3::{
     BufferUsage, BuildQuality, Config, Device, Format, GeometryKind, HitN, IntersectContext, Ray16,
     RayHit, RayN, Scene as Tree, SceneFlags, SoAHit, SoARay, ValidMaskN, ValidityN,

@@ -112,8 +112,8 @@ pub enum Error {
         /// Number of positions and number of normals that were given.
         given: [usize; 2],
     },
-    /// A position or normal of a deformed mesh is infinite or NaN.
-    #[error("{what} {index} of a deformed mesh is {value}, which is not finite")]
+    /// A position or normal of a mesh that was deformed or prepared is infinite or NaN.
+    #[error("{what} {index} of the mesh is {value}, which is not finite")]
     NotFinite {
         /// List that holds the value: `position` or `normal`.
         what: &'static str,

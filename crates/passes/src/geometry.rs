@@ -10,7 +10,7 @@ use crate::hierarchies::all;
 use crate::host_buffers::{HostMesh, HostWrite};
 use crate::names::next_version;
 use crate::outlines::Outlines;
-use crate::part::{HostPart, Part, placed};
+use crate::part::{Added, Moved, Part, placed};
 use crate::parts::{PartId, Room};
 use crate::piece::{Content, Outside, Piece};
 use crate::placed::Placed;
@@ -74,6 +74,7 @@ impl Geometry {
             number,
             at: PartPlace::default(),
             is_mirrored: false,
+            mesh: None,
             host: None,
         };
         let own: Vec<Part> = (0..parts.parts()).map(part).collect();
@@ -282,49 +283,39 @@ impl Geometry {
         Ok(())
     }
 
-    /// Adds a part to the scene's mesh, which grows if it has no room for it.
+    /// Adds a part to the scene's mesh, which grows if it has no room for it; `replaced` gives it
+    /// its room and its handle.
     ///
     /// # Errors
-    /// [`Error::NoParts`], [`Error::Move`], [`Error::TooLarge`].
+    /// [`Error::NoParts`], [`Error::NoPart`], [`Error::Move`], [`Error::TooLarge`].
     pub fn add(
         &mut self,
-        mesh: &Mesh,
+        added: Added,
         map: &DAffine3,
-        scene: &mut Arc<Scene>,
-    ) -> Result<(PartId, Change), Error> {
-        self.add_as((Arc::new(Movable::joined(&[mesh])), None), map, scene)
-    }
-
-    /// Adds a part whose vertices are in a buffer of the host.
-    ///
-    /// # Errors
-    /// [`Error::NoParts`], [`Error::Move`].
-    pub fn add_host(
-        &mut self,
-        mesh: &HostMesh,
-        map: &DAffine3,
-        scene: &mut Arc<Scene>,
-    ) -> Result<(PartId, Change), Error> {
-        let host = HostPart::new(mesh, map);
-        let host = host.map_err(|error| error.renumbered(self.parts.len()))?;
-        let part = (Arc::clone(mesh.movable()), Some(Box::new(host)));
-        self.add_as(part, map, scene)
-    }
-
-    fn add_as(
-        &mut self,
-        (movable, host): (Arc<Movable>, Option<Box<HostPart>>),
-        map: &DAffine3,
+        replaced: Option<PartId>,
         scene: &mut Arc<Scene>,
     ) -> Result<(PartId, Change), Error> {
         self.check_parts()?;
+        let number = replaced.map(|id| self.number(id)).transpose()?;
+        let number = number.unwrap_or(self.parts.len());
         let is_mirrored = map.matrix3.determinant() < 0.0;
-        let moved = host
-            .is_none()
-            .then(|| movable.moved_part(0, map))
-            .transpose();
-        let moved = moved.map_err(|error| error.renumbered(self.parts.len()))?;
-        let (at, is_grown) = self.place(&movable.rest, scene)?;
+        let moved = added.moved(map);
+        let moved = moved.map_err(|error| error.renumbered(number))?;
+        let movable = Arc::clone(added.movable());
+        let needed = Room::of(&movable.rest, 1);
+        if let Some(id) = replaced {
+            // Nothing fails behind this.
+            if let Some(more) = self.lacking(needed, scene) {
+                self.space.check(more, self.pieces.len(), &scene.mesh)?;
+            }
+            self.remove(id, scene)?;
+        }
+        let lacking = self.lacking(needed, scene);
+        let is_grown = lacking.is_some();
+        if let Some(more) = lacking {
+            self.reserve(more, scene)?;
+        }
+        let at = self.space.take(needed);
         let whole = &mut Arc::make_mut(scene).mesh;
         for (index, corners) in movable.rest.triangles.iter().enumerate() {
             let corner = |corner| at.position as u32 + corner;
@@ -336,28 +327,36 @@ impl Geometry {
         let total = whole.triangles.len();
         let own = (at.triangle, movable.rest.triangles.len());
         whole.surfaces.put(&movable.rest.surfaces, own, total);
-        if let Some(host) = &host {
-            let own = own.0 as u32..(own.0 + own.1) as u32;
-            whole.surfaces.set_shadows(own, total, host.mesh.shadows());
-            // Its tree may have to be built once more.
-            let positions = &mut whole.positions[at.position..];
-            positions[..movable.rest.positions.len()].copy_from_slice(&movable.rest.positions);
-        }
         let positions = movable.rest.positions.len();
-        if let Some(moved) = moved {
-            movable.put_at(0, &moved, whole, at);
-        }
+        let host = match moved {
+            Moved::OfHost(host) => {
+                let own = own.0 as u32..(own.0 + own.1) as u32;
+                whole.surfaces.set_shadows(own, total, host.mesh.shadows());
+                // Its tree may have to be built once more.
+                let own = &mut whole.positions[at.position..][..positions];
+                own.copy_from_slice(&movable.rest.positions);
+                Some(host)
+            }
+            Moved::Own(moved) => {
+                movable.put_at(0, &moved, whole, at);
+                None
+            }
+        };
         if is_mirrored {
             movable.turn_at(0, whole, at);
         }
         let piece = self.gone.pop().unwrap_or(self.pieces.len());
-        let id = PartId::new(piece, next_version());
+        let id = replaced.unwrap_or_else(|| PartId::new(piece, next_version()));
         let part = Piece::new(Content::Part(Part {
             id,
             number: 0,
             at,
             is_mirrored,
             of: movable,
+            mesh: match added {
+                Added::Own(mesh) => Some(mesh),
+                Added::OfHost(_) => None,
+            },
             host,
         }));
         self.rested = next_version();
@@ -369,7 +368,7 @@ impl Geometry {
             self.maps.push(None);
         }
         self.maps[piece] = Some(*map);
-        self.parts.push(id);
+        self.parts.insert(number, id);
         self.work.moved += positions as u64;
         let change = Change {
             is_elsewhere: true,
@@ -380,15 +379,10 @@ impl Geometry {
         Ok((id, change))
     }
 
-    /// Takes room for a mesh; true if there was none, and the scene's mesh has grown by a half.
-    fn place(&mut self, rest: &Mesh, scene: &mut Arc<Scene>) -> Result<(PartPlace, bool), Error> {
-        let needed = Room::of(rest, 1);
-        let has_room = self.space.has(needed);
-        if !has_room {
-            let more = self.space.more(needed, self.pieces.len(), &scene.mesh);
-            self.reserve(more, scene)?;
-        }
-        Ok((self.space.take(needed), !has_room))
+    /// The room by which the scene's mesh must grow for a part, if it has none for it.
+    fn lacking(&self, needed: Room, scene: &Scene) -> Option<Room> {
+        let more = || self.space.more(needed, self.pieces.len(), &scene.mesh);
+        (!self.space.has(needed)).then(more)
     }
 
     /// Removes a part from the scene's mesh: its triangles have no area any more, and its room is

@@ -1,9 +1,10 @@
 //! A part of a mesh, and the place of its items in the lists of that.
 
 use crate::host_buffers::{HostMesh, HostWrite};
+use crate::part_mesh::PartMesh;
 use crate::parts::PartId;
 use glam::{DAffine3, Vec3};
-use skiagraph_scene::{Movable, MoveError, PartPlace};
+use skiagraph_scene::{Movable, MoveError, MovedPart, PartPlace};
 use std::{ops::Range, sync::Arc};
 
 /// A part of a mesh; the geometry has its map.
@@ -17,8 +18,44 @@ pub(crate) struct Part {
     pub at: PartPlace,
     /// True if its triangles are wound the other way than at rest.
     pub is_mirrored: bool,
+    /// The mesh that it was added of; `None` for those that the scene began with, and for those in
+    /// buffers of the host.
+    pub mesh: Option<PartMesh>,
     /// Where its vertices are, if they are in a buffer of the host.
     pub host: Option<Box<HostPart>>,
+}
+
+/// A mesh of which a part is added.
+pub(crate) enum Added<'a> {
+    Own(PartMesh),
+    OfHost(&'a HostMesh),
+}
+
+impl Added<'_> {
+    pub fn movable(&self) -> &Arc<Movable> {
+        match self {
+            Self::Own(mesh) => mesh.movable(),
+            Self::OfHost(mesh) => mesh.movable(),
+        }
+    }
+
+    /// Checks the map that takes the part to its place; the part in a buffer of the host, or where
+    /// its corners are.
+    ///
+    /// # Errors
+    /// A map that cannot move it.
+    pub fn moved(&self, map: &DAffine3) -> Result<Moved, MoveError> {
+        Ok(match self {
+            Self::Own(mesh) => Moved::Own(mesh.movable().moved_part(0, map)?),
+            Self::OfHost(mesh) => Moved::OfHost(Box::new(HostPart::new(mesh, map)?)),
+        })
+    }
+}
+
+/// Such a part in its place.
+pub(crate) enum Moved {
+    Own(MovedPart),
+    OfHost(Box<HostPart>),
 }
 
 /// Part whose vertices are in a buffer of the host.

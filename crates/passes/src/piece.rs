@@ -63,7 +63,10 @@ impl Piece {
                 tree.state_bounds(piece, host.placed);
             }
             Some(_) => tree.add(piece, &Mesh::default(), 0),
-            None => tree.add(piece, &part.of.rest, part.at.triangle as u32),
+            None => match &part.mesh {
+                Some(mesh) => mesh.add_to(tree, piece, part.at.triangle),
+                None => tree.add(piece, &part.of.rest, part.at.triangle as u32),
+            },
         }
         tree.nodes_of(piece).len()
     }

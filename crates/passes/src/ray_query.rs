@@ -7,10 +7,10 @@ use crate::buffers::{On, refused, upload};
 use crate::error::Error;
 use crate::geometry::Geometry;
 use crate::names::next_version;
+use crate::part_mesh::check_corners;
 use crate::solids::{Solid, joined_corners, solids};
 use skiagraph_scene::Mesh;
 use std::collections::BTreeMap;
-use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use wgpu::{
@@ -275,16 +275,5 @@ fn size_of(solid: &Solid, mesh: &Mesh) -> Size {
         index_format: Some(wgpu::IndexFormat::Uint32),
         index_count: Some(3 * solid.triangles.len() as u32),
         flags: wgpu::AccelerationStructureGeometryFlags::empty(),
-    }
-}
-
-/// Refuses a mesh if some of its triangles have corners that it lacks. Builders of hierarchies do
-/// not look at indices, and the memory behind the positions may belong to anything.
-pub(crate) fn check_corners(mesh: &Mesh, triangles: Range<usize>) -> Result<(), Error> {
-    let corners = mesh.positions.len();
-    let mut used = mesh.triangles[triangles].as_flattened().iter();
-    match used.find(|index| **index as usize >= corners) {
-        Some(&index) => Err(Error::Corner { index, corners }),
-        None => Ok(()),
     }
 }

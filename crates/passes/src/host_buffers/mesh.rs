@@ -2,10 +2,11 @@
 
 use super::{error::HostMeshError, layout::HostVertices, rest::decoded};
 use crate::buffers::{On, binding_limit, upload};
+use crate::part_mesh::PartMesh;
 use crate::parts::Room;
 use glam::Vec3;
 use skiagraph_gpu::DeviceIdentity;
-use skiagraph_scene::{Bvh, Indexed, Mesh, Movable, Shadows, TwoLevelBvh};
+use skiagraph_scene::{Indexed, Mesh, Movable, Shadows, TwoLevelBvh};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -57,10 +58,8 @@ pub(super) struct Own {
 /// The part of a mesh that is on the CPU, whichever buffer its vertices are in.
 #[derive(Debug)]
 pub(super) struct Rest {
-    /// The only part of it.
-    pub movable: Arc<Movable>,
-    tree: Bvh,
-    order: Arc<[u32]>,
+    /// It, with its hierarchy.
+    pub mesh: PartMesh,
     /// The vertex of each position.
     sources: Vec<u32>,
     /// The vertex of each normal, and a triangle that has it.
@@ -119,14 +118,12 @@ impl HostMesh {
         }
         binds_mesh(device, &mesh)?;
         let welded = Welded::new(&mesh, &positions, indices);
-        let movable = Movable::joined(&[&mesh]);
-        let tree = Bvh::build(&movable.rest);
+        let mesh = PartMesh::unchecked(&mesh).with_hierarchy();
+        let at_rest = &mesh.movable().rest;
         let rest = Rest {
-            order: tree.order().into(),
-            tree,
-            sources: welded.sources(&movable.rest),
-            normal_sources: welded.normal_sources(&movable.rest, indices, has_normals),
-            movable: Arc::new(movable),
+            sources: welded.sources(at_rest),
+            normal_sources: welded.normal_sources(at_rest, indices, has_normals),
+            mesh,
         };
         Ok(Self {
             own: Arc::new(Own::new(device, (vertices, identity), Arc::new(rest))),
@@ -158,7 +155,7 @@ impl HostMesh {
             return Err(HostMeshError::OtherVertices { mesh, given });
         }
         binds(device, "the vertices", vertices.length())?;
-        binds_mesh(device, &self.own.rest.movable.rest)?;
+        binds_mesh(device, &self.movable().rest)?;
         let own = Own::new(device, (vertices, identity), Arc::clone(&self.own.rest));
         Ok(Self {
             own: Arc::new(own),
@@ -184,7 +181,7 @@ impl HostMesh {
     /// # Errors
     /// [`HostMeshError::Bounds`] if a vertex at rest lies outside, or a corner is not finite.
     pub fn with_bounds(mut self, [low, high]: [Vec3; 2]) -> Result<Self, HostMeshError> {
-        let rest = &self.own.rest.movable.rest;
+        let rest = &self.movable().rest;
         let is_within = |at: Vec3| at.cmpge(low).all() && at.cmple(high).all();
         let is_finite = low.is_finite() && high.is_finite();
         let is_beyond = |at: &Vec3| !is_finite || !is_within(*at);
@@ -208,12 +205,12 @@ impl HostMesh {
     /// Returns the room that so many parts of this mesh need in a scene
     /// ([`SceneProvider::reserve`](crate::SceneProvider::reserve)).
     pub fn room(&self, parts: usize) -> Room {
-        Room::of(&self.own.rest.movable.rest, parts)
+        self.own.rest.mesh.room(parts)
     }
 
     /// The mesh at rest, as a part.
     pub(crate) fn movable(&self) -> &Arc<Movable> {
-        &self.own.rest.movable
+        self.own.rest.mesh.movable()
     }
 
     /// True if its buffers are of a device.
@@ -223,9 +220,7 @@ impl HostMesh {
 
     /// Adds its tree to a hierarchy, for triangles from `first` on.
     pub(crate) fn add_to(&self, tree: &mut TwoLevelBvh, piece: usize, first: usize) {
-        let rest = &self.own.rest;
-        let own = (&rest.tree, &rest.order);
-        tree.add_tree(piece, own, &rest.movable.rest, first as u32);
+        self.own.rest.mesh.add_to(tree, piece, first);
     }
 
     /// The levels of its own tree, or of the one that a piece has in its stead.
@@ -239,7 +234,7 @@ impl HostMesh {
             let content = packed(&tree.levels_of(piece));
             storage(device, "host.levels", bytemuck::cast_slice(&content))
         };
-        if Arc::ptr_eq(tree.order_of(piece), &self.own.rest.order) {
+        if self.own.rest.mesh.has_order(tree.order_of(piece)) {
             self.own.levels.get_or_init(packed).clone()
         } else {
             packed()

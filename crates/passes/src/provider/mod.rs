@@ -7,13 +7,14 @@ mod uploads;
 
 use crate::buffers::{On, binding_limit};
 use crate::built::{Built, Work};
-use crate::changes::Change;
 use crate::error::Error;
 use crate::eye::Eye;
 use crate::geometry::Geometry;
 use crate::host_buffers::{HostMesh, HostWrite};
 use crate::lights;
 use crate::names::*;
+use crate::part::Added;
+use crate::part_mesh::PartMesh;
 use crate::parts::{PartId, Room};
 use crate::ray_query::Structures;
 use glam::{DAffine3, Vec3};
@@ -464,9 +465,51 @@ impl SceneProvider {
     /// [`reserve`](Self::reserve) was given. The mesh then stays as it was. If `reserve` was not
     /// called, a mesh that the device cannot bind is an error of the next refresh instead.
     pub fn add_part(&mut self, mesh: &Mesh, map: &DAffine3) -> Result<PartId, Error> {
-        let uploads = &mut self.uploads;
-        let added = uploads.geometry.add(mesh, map, &mut uploads.scene)?;
-        self.note_added(mesh, added)
+        self.put(Added::Own(PartMesh::unchecked(mesh)), map, None)
+    }
+
+    /// Adds a part of a mesh that was prepared, as [`add_part`](Self::add_part) does. Nothing is
+    /// prepared again: the hierarchy, too, is that of
+    /// [`with_hierarchy`](PartMesh::with_hierarchy), if it was built.
+    ///
+    /// # Errors
+    /// As [`add_part`](Self::add_part).
+    pub fn add_mesh(&mut self, mesh: &PartMesh, map: &DAffine3) -> Result<PartId, Error> {
+        self.put(Added::Own(mesh.clone()), map, None)
+    }
+
+    /// Replaces the mesh of a part by another one, such as another level of detail, at `map`. The
+    /// part keeps its handle and its place among the [`parts`](Self::parts); frames that are
+    /// already encoded show the mesh before. Its room is free for the new mesh, and plans stay
+    /// valid as with [`add_part`](Self::add_part).
+    ///
+    /// # Errors
+    /// [`Error::NoPart`] for a part that the mesh does not have, and those of
+    /// [`add_part`](Self::add_part). The part then stays as it was.
+    pub fn replace_part(
+        &mut self,
+        part: PartId,
+        mesh: &PartMesh,
+        map: &DAffine3,
+    ) -> Result<(), Error> {
+        let replaced = self.put(Added::Own(mesh.clone()), map, Some(part));
+        replaced.map(drop)
+    }
+
+    /// Replaces the mesh of a part by one in a buffer of the host, as
+    /// [`replace_part`](Self::replace_part) does.
+    ///
+    /// # Errors
+    /// [`Error::NoPart`] for a part that the mesh does not have, and those of
+    /// [`add_host_part`](Self::add_host_part). The part then stays as it was.
+    pub fn replace_by_host_part(
+        &mut self,
+        part: PartId,
+        mesh: &HostMesh,
+        map: &DAffine3,
+    ) -> Result<(), Error> {
+        self.check_mesh(mesh)?;
+        self.put(Added::OfHost(mesh), map, Some(part)).map(drop)
     }
 
     /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
@@ -488,16 +531,22 @@ impl SceneProvider {
     /// than the provider's resources.
     pub fn add_host_part(&mut self, mesh: &HostMesh, map: &DAffine3) -> Result<PartId, Error> {
         self.check_mesh(mesh)?;
-        let uploads = &mut self.uploads;
-        let added = uploads.geometry.add_host(mesh, map, &mut uploads.scene)?;
-        self.note_added(&mesh.movable().rest, added)
+        self.put(Added::OfHost(mesh), map, None)
     }
 
-    fn note_added(
+    /// Adds a part, in the place of another one if one is `replaced`.
+    fn put(
         &mut self,
-        rest: &Mesh,
-        (part, change): (PartId, Change),
+        added: Added,
+        map: &DAffine3,
+        replaced: Option<PartId>,
     ) -> Result<PartId, Error> {
+        let movable = Arc::clone(added.movable());
+        let rest = &movable.rest;
+        let uploads = &mut self.uploads;
+        let (part, change) = uploads
+            .geometry
+            .add(added, map, replaced, &mut uploads.scene)?;
         let first = self.uploads.geometry.part(part)?.at.triangle;
         self.uploads.put_sheets(rest, first);
         self.uploads.note_change(change);

@@ -320,7 +320,10 @@ fn the_program_of_the_document_pays_for_what_moves() {
                 provider.set_transform(*part, map).unwrap();
             }
         });
-        assert_eq!(frame(&maps, light), least, "{moving}, {turned}");
+        // In the frame's encoder parts are written where they are.
+        let mut in_place = least;
+        in_place.copied = 0;
+        assert_eq!(frame(&maps, light), in_place, "{moving}, {turned}");
         assert_eq!(least == Work::default(), moving == 0 && turned == 0.0);
     }
 }

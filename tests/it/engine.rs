@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use skiagraph_gpu::{ExecuteError, Executor, Frame, device::Gpu};
 use skiagraph_passes::{Error, PartId, PartMesh, Room, SceneProvider, SceneView};
 use skiagraph_scene::{
-    Camera, DirectionalLight, LightKind, Mesh, Movable, MoveError, SpotLight, View,
+    Camera, DirectionalLight, LightKind, Mesh, Movable, MoveError, Shadows, SpotLight, View,
 };
 
 const STEP: i32 = -2500;
@@ -321,6 +321,25 @@ fn mistakes_leave_parts_as_they_were() {
         "{error}"
     );
 
+    let mut mesh = engine.meshes[STONES[0]].clone();
+    mesh.normal_indices[3][2] = 70_000;
+    let error = PartMesh::new(&mesh).unwrap_err().to_string();
+    assert!(
+        error.starts_with("triangle 3 of the mesh has no normals"),
+        "{error}"
+    );
+
+    let mut mesh = engine.meshes[LEAVES].clone();
+    mesh.surfaces.of.truncate(7);
+    let error = PartMesh::new(&mesh).unwrap_err().to_string();
+    let named = "triangle 7 of the mesh has no material";
+    assert!(error.starts_with(named), "{error}");
+    let mut mesh = engine.meshes[LEAVES].clone();
+    mesh.surfaces.uv_indices[4][0] = 70_000;
+    let error = PartMesh::new(&mesh).unwrap_err().to_string();
+    let named = "triangle 4 of the mesh has no texture coordinates";
+    assert!(error.starts_with(named), "{error}");
+
     let before = engine.provider.scene().mesh.positions.clone();
     let (part, stone) = (&engine.parts[1], &engine.prepared[STONES[1]]);
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
@@ -347,6 +366,19 @@ fn mistakes_leave_parts_as_they_were() {
     let stone = &engine.prepared[STONES[1]];
     let refused = engine.provider.replace_part(gone.id, stone, &gone.map);
     assert!(matches!(refused, Err(Error::NoPart(id)) if id == gone.id));
+    // One that casts no shadow, nor its hierarchy.
+    let mut silent = engine.meshes[STONES[0]].clone();
+    silent.set_shadows(Shadows::Receives);
+    let silent = PartMesh::new(&silent).unwrap().with_hierarchy();
+    let at = (engine.parts[1].id, engine.parts[1].map);
+    engine.provider.replace_part(at.0, &silent, &at.1).unwrap();
+    let mut encoder = engine
+        .gpu
+        .device
+        .create_command_encoder(&Default::default());
+    engine.encode(&mut encoder, &[]);
+    engine.gpu.queue.submit([encoder.finish()]);
+    let stone = &engine.prepared[STONES[1]];
     // A stone of its own becomes the host's, and the host's one of its own.
     let ids: Vec<PartId> = engine.provider.parts().collect();
     let part = &mut engine.parts[1];

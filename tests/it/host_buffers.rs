@@ -946,6 +946,11 @@ pub fn raised_stone(stones: &MegaBuffer, lift: i32) -> Mesh {
     raised(&stones.meshes[1], lift).mesh()
 }
 
+/// Destroys the vertices.
+pub fn destroy(stones: &MegaBuffer) {
+    stones.buffer.destroy();
+}
+
 /// The stone as the host has it.
 pub fn host_stone(stones: &MegaBuffer) -> &HostMesh {
     &stones.hosts[1]

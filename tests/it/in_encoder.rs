@@ -2,7 +2,8 @@
 //! parts written in place, encoders that are dropped or submitted in another order.
 
 use crate::host_buffers::{
-    MegaBuffer, VIEWPORT, places, places_of, raise_in, scenes, shown, start, stones, uploaded,
+    MegaBuffer, VIEWPORT, camera, destroy, places, places_of, raise_in, raised_stone, scenes,
+    shown, start, stones, uploaded,
 };
 use crate::support::graphs::{self, allow_ray_queries, open, values};
 use crate::support::random::Random;
@@ -10,6 +11,7 @@ use glam::{DAffine3, DVec3, Vec3};
 use skiagraph_gpu::{Executor, Frame, device::Gpu};
 use skiagraph_graph::ParamValue;
 use skiagraph_passes::SceneProvider;
+use skiagraph_scene::Movable;
 
 const PRESETS: [&str; 2] = ["rt", "light_buffer"];
 /// One step of `raise_in`, which lowers the right halves of stones.
@@ -192,6 +194,83 @@ fn branches_are_not_written_in_place() {
     assert_eq!(host.work().copied, copied);
 }
 
+/// A lost copy from a buffer that a branch has meanwhile to itself finds it as it was; a branch
+/// notices a loss before it was made.
+#[test]
+fn a_branch_writes_no_buffer_that_is_to_be_copied() {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
+    let mut branch = host.branch();
+    let mut own = PRESETS.map(|preset| start(&gpu, preset, &mut branch));
+    set(&mut host, &placed(1));
+    let mut lost = begin(&gpu);
+    encode(&mut executors[0], &mut host, &mut lost, &[]);
+    drop(lost);
+    // Another part.
+    let mut other = placed(0);
+    other[1].1 = DAffine3::from_translation(DVec3::Y) * other[1].1;
+    set(&mut branch, &other);
+    let seen = frames(&gpu, &mut own, &mut branch, begin(&gpu));
+    assert!(seen == expected(&gpu, &stones, &other, 0));
+    let seen = frames(&gpu, &mut executors, &mut host, begin(&gpu));
+    assert!(seen == expected(&gpu, &stones, &placed(1), 0));
+
+    set(&mut host, &placed(2));
+    let mut lost = begin(&gpu);
+    for executor in &mut executors {
+        encode(executor, &mut host, &mut lost, &[]);
+    }
+    let mut branch = host.branch();
+    drop((host, lost));
+    let seen = frames(&gpu, &mut executors, &mut branch, begin(&gpu));
+    assert!(seen == expected(&gpu, &stones, &placed(2), 0));
+}
+
+/// Commands that wgpu refuses are not recorded for ever: they read vertices that are gone.
+#[test]
+fn buffers_whose_commands_are_refused_are_made_anew() {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let (stone, at) = (
+        raised_stone(&stones, 0),
+        DAffine3::from_scale(DVec3::splat(2.0)),
+    );
+    let parts: Vec<_> = host.parts().collect();
+    host.add_part(&stone, &at).unwrap();
+    let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
+    for (part, (_, map)) in parts.iter().zip(placed(1)) {
+        host.set_transform(*part, &map).unwrap();
+    }
+    let mut lost = begin(&gpu);
+    for executor in &mut executors {
+        encode(executor, &mut host, &mut lost, &[]);
+    }
+    drop(lost);
+    parts
+        .iter()
+        .for_each(|part| host.remove_part(*part).unwrap());
+    destroy(&stones);
+    let refused = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let mut encoder = begin(&gpu);
+    for executor in &mut executors {
+        encode(executor, &mut host, &mut encoder, &[]);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    assert!(skiagraph_gpu::block_on(refused.pop()).is_some());
+    gpu.device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .unwrap();
+    let seen = frames(&gpu, &mut executors, &mut host, begin(&gpu));
+    let mut alone = SceneProvider::from_parts(Movable::joined(&[&stone]), host.light());
+    alone.set_camera(&camera(VIEWPORT));
+    alone.set_transforms(&[at]).unwrap();
+    let expected = PRESETS.map(|preset| shown(&gpu, &mut start(&gpu, preset, &mut alone)));
+    assert!(seen == expected);
+}
+
 /// A refresh with a submission of its own finds what encoders hold that are not submitted yet.
 #[test]
 fn both_ways_of_refreshing_go_together() {
@@ -204,8 +283,10 @@ fn both_ways_of_refreshing_go_together() {
         set(&mut host, &places);
         let mut encoder = begin(&gpu);
         encode(&mut executors[0], &mut host, &mut encoder, &["visibility"]);
-        let part = host.parts().nth(1).unwrap();
-        host.rewrite_part(part, BOUNDS).unwrap();
+        if turn % 2 == 0 {
+            let part = host.parts().nth(1).unwrap();
+            host.rewrite_part(part, BOUNDS).unwrap();
+        }
         executors[1].refresh(&mut host).unwrap();
         let expected = expected(&gpu, &stones, &places, 0);
         assert!(shown(&gpu, &mut executors[1]) == expected[1], "{turn}");
@@ -229,6 +310,7 @@ fn ray_query_structures_are_built_in_the_encoder() {
         request.params.insert("engine".to_owned(), engine);
     });
     let mut executors = [Executor::on(&gpu, plan, &mut host).unwrap()];
+    let mut other = start(&gpu, "light_buffer", &mut host);
     for turn in 1..6 {
         set(&mut host, &placed(turn));
         let mut encoder = begin(&gpu);
@@ -241,6 +323,8 @@ fn ray_query_structures_are_built_in_the_encoder() {
             );
             rewritten(&mut host);
         } else {
+            // The positions are there already, and a structure alone is lost.
+            other.refresh(&mut host).unwrap();
             encode(&mut executors[0], &mut host, &mut begin(&gpu), &[]);
         }
         let lift = STEP * (turn / 2) as i32;

@@ -60,7 +60,8 @@ pub trait Provider: Describe {
     /// The commands that fill the buffer are submitted before this method returns, or by
     /// [`submit_built`](Self::submit_built). A frame reads the content that the buffer has when the
     /// frame is submitted. A provider that changes a content while encoded frames wait for
-    /// submission must return a new buffer for it.
+    /// submission must return a new buffer for it, unless it records the change into the host's
+    /// encoder between these frames.
     ///
     /// # Errors
     /// If the resource cannot be built; the executor reports

@@ -76,6 +76,10 @@ enum Command {
 struct Commands {
     list: Vec<Command>,
     names: Vec<String>,
+    /// Owners of buffers that they copy, which clones of the list must not write until then.
+    owners: Vec<Arc<()>>,
+    /// True if some of them were recorded before, and lost.
+    is_again: bool,
 }
 
 /// Commands that are submitted together, and those that are in encoders of the host. A clone, which
@@ -84,16 +88,21 @@ struct Commands {
 struct Recorded {
     next: Commands,
     in_encoders: Recordings<Commands>,
+    /// True in a clone with commands that executors may take for run.
+    is_lost: bool,
 }
 
 impl Clone for Recorded {
     fn clone(&self) -> Self {
         let mut next = Commands::default();
-        let kept = self.in_encoders.iter().chain([&self.next]);
-        kept.cloned().for_each(|commands| next.extend(commands));
+        let mut kept: Vec<&Commands> = self.in_encoders.iter().collect();
+        let is_lost = self.is_lost || !kept.is_empty();
+        kept.push(&self.next);
+        kept.into_iter().cloned().for_each(|own| next.extend(own));
         Self {
             next,
             in_encoders: Recordings::default(),
+            is_lost,
         }
     }
 }
@@ -102,6 +111,8 @@ impl Commands {
     fn extend(&mut self, later: Self) {
         self.list.extend(later.list);
         self.names.extend(later.names);
+        self.owners.extend(later.owners);
+        self.is_again |= later.is_again;
     }
 
     fn record(&self, encoder: &mut wgpu::CommandEncoder) {
@@ -143,6 +154,7 @@ impl Buffers {
     /// Drops all buffers.
     pub fn clear(&mut self) {
         (self.held, self.shape, self.recorded) = Default::default();
+        self.in_place = false;
     }
 
     fn held_as(&self, name: &str) -> Held {
@@ -281,14 +293,13 @@ impl Buffers {
     /// # Errors
     /// If the device refuses them; the buffers are then made anew when they are asked for.
     pub fn submit(&mut self, on: On) -> Result<(), Error> {
-        let Recorded { next, in_encoders } = &mut self.recorded;
-        if next.list.is_empty() {
+        let mut commands = Commands::default();
+        let earlier = self.recorded.in_encoders.iter().cloned();
+        earlier.for_each(|earlier| commands.extend(earlier));
+        commands.extend(std::mem::take(&mut self.recorded.next));
+        if commands.list.is_empty() {
             return Ok(());
         }
-        let mut commands = Commands::default();
-        let earlier = in_encoders.take().into_iter();
-        earlier.for_each(|earlier| commands.extend(earlier));
-        commands.extend(std::mem::take(next));
         let label = Some("changed items");
         let begun = wgpu::CommandEncoderDescriptor { label };
         let submit = || {
@@ -307,34 +318,72 @@ impl Buffers {
     /// Records what was recorded into an encoder of the host.
     ///
     /// # Errors
-    /// If the device refuses the buffers by which it tells whether they have run.
+    /// Those of [`follow`](Self::follow).
     pub fn record_into(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         device: &wgpu::Device,
     ) -> Result<(), ProviderError> {
-        let commands = std::mem::take(&mut self.recorded.next);
-        if commands.list.is_empty() {
-            return Ok(());
+        self.recorded.next.record(encoder);
+        match self.recorded.next.list.is_empty() {
+            true => Ok(()),
+            false => self.follow(encoder, device),
         }
-        commands.record(encoder);
+    }
+
+    /// Keeps what was recorded into an encoder of the host until that is known to have run, or
+    /// follows the encoder where nothing was.
+    ///
+    /// # Errors
+    /// If the device refuses the buffers by which it tells that; the buffers that were to be
+    /// written are then made anew when they are asked for.
+    pub fn follow(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        device: &wgpu::Device,
+    ) -> Result<(), ProviderError> {
+        let commands = std::mem::take(&mut self.recorded.next);
+        let names = commands.names.clone();
         let kept = self.recorded.in_encoders.keep(commands, device, encoder);
-        kept.map_err(ProviderError::from_error)
+        kept.map_err(|error| {
+            names.iter().for_each(|name| drop(self.held.remove(name)));
+            ProviderError::from_error(error)
+        })
+    }
+
+    /// True if encoders of the host hold commands that are not known to have run.
+    pub fn is_open(&self) -> bool {
+        self.recorded.is_lost || self.recorded.in_encoders.iter().next().is_some()
     }
 
     /// Records once more what was in encoders of the host that were dropped, or submitted in
-    /// another order; returns true if there is any.
+    /// another order; returns true if there is any. Buffers whose commands were lost twice, such as
+    /// those that wgpu refuses, are made anew.
     ///
     /// # Errors
     /// If the device is lost.
     pub fn record_lost(&mut self, device: &wgpu::Device) -> Result<bool, ExecuteError> {
-        let lost = self.recorded.in_encoders.lost(device)?;
-        let is_any = !lost.is_empty();
-        let mut commands = Commands::default();
-        lost.into_iter().for_each(|lost| commands.extend(lost));
-        commands.extend(std::mem::take(&mut self.recorded.next));
-        self.recorded.next = commands;
-        Ok(is_any)
+        /// Encoders that are followed at most.
+        const MOST: usize = 256;
+        let Recorded { in_encoders, .. } = &mut self.recorded;
+        let mut lost = in_encoders.lost(device)?;
+        if in_encoders.iter().count() > MOST {
+            lost.splice(..0, in_encoders.take());
+        }
+        if !lost.is_empty() {
+            let mut commands = Commands::default();
+            lost.into_iter().for_each(|lost| commands.extend(lost));
+            if commands.is_again {
+                let names = std::mem::take(&mut commands.names);
+                names.iter().for_each(|name| drop(self.held.remove(name)));
+                commands = Commands::default();
+            }
+            commands.is_again = !commands.list.is_empty();
+            commands.extend(std::mem::take(&mut self.recorded.next));
+            self.recorded.next = commands;
+            self.recorded.is_lost = true;
+        }
+        Ok(std::mem::take(&mut self.recorded.is_lost))
     }
 
     /// Keeps a buffer as the last one of that name.
@@ -371,10 +420,15 @@ impl Buffers {
         if self.in_place && is_own && last.buffer.size() == size {
             return Some(last.buffer.clone());
         }
-        let (last, version) = (last.buffer.clone(), last.version);
+        let Content {
+            buffer: last,
+            version,
+            owner,
+        } = last.clone();
         let buffer = self.create(name, size, on.device);
         self.work.copied += last.size();
         self.copy([(&last, 0), (&buffer, 0)], last.size());
+        self.recorded.next.owners.push(owner);
         self.hold(name, buffer.clone(), version);
         Some(buffer)
     }

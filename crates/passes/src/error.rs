@@ -70,6 +70,15 @@ pub enum Error {
         /// Number of positions of the mesh.
         corners: usize,
     },
+    /// A triangle of the mesh has no normals, material or texture coordinates, or some that the
+    /// mesh does not have.
+    #[error("triangle {triangle} of the mesh has no {what}, or some that the mesh does not have")]
+    Lacks {
+        /// Number of the triangle.
+        triangle: usize,
+        /// `normals`, `material` or `texture coordinates`.
+        what: &'static str,
+    },
     /// A light cannot be used, for example because a number is not finite or a sun is too wide.
     /// Holds the reason why the light cannot be used, with its name in the scene.
     #[error("{0}")]

@@ -304,13 +304,17 @@ impl Geometry {
         let movable = Arc::clone(added.movable());
         let needed = Room::of(&movable.rest, 1);
         if let Some(id) = replaced {
-            // Nothing fails behind this.
-            if let Some(more) = self.lacking(needed, scene) {
-                self.space.check(more, self.pieces.len(), &scene.mesh)?;
+            let mut space = self.space.clone();
+            if let Some(ranges) = self.part(id)?.room() {
+                space.give_back(ranges);
             }
+            if let Some(more) = space.lacking(needed, self.pieces.len(), &scene.mesh) {
+                space.check(more, self.pieces.len(), &scene.mesh)?;
+            }
+            // Nothing fails behind this.
             self.remove(id, scene)?;
         }
-        let lacking = self.lacking(needed, scene);
+        let lacking = self.space.lacking(needed, self.pieces.len(), &scene.mesh);
         let is_grown = lacking.is_some();
         if let Some(more) = lacking {
             self.reserve(more, scene)?;
@@ -379,12 +383,6 @@ impl Geometry {
         Ok((id, change))
     }
 
-    /// The room by which the scene's mesh must grow for a part, if it has none for it.
-    fn lacking(&self, needed: Room, scene: &Scene) -> Option<Room> {
-        let more = || self.space.more(needed, self.pieces.len(), &scene.mesh);
-        (!self.space.has(needed)).then(more)
-    }
-
     /// Removes a part from the scene's mesh: its triangles have no area any more, and its room is
     /// for other parts.
     ///
@@ -399,10 +397,7 @@ impl Geometry {
             mesh.triangles[triangle] = [0; 3];
             mesh.normal_indices[triangle] = [0; 3];
         }
-        // Those of a part that was cut out of a mesh may have others between them.
-        if part.of.is_joined() {
-            let [positions, normals] = part.ranges();
-            let ranges = [positions, normals, part.triangles()];
+        if let Some(ranges) = part.room() {
             self.space.give_back(ranges);
         }
         self.pieces[id.piece] = Piece::new(Content::Gone);

@@ -172,6 +172,14 @@ impl Part {
         [from(positions, at.position), from(normals, at.normal)]
     }
 
+    /// The positions, normals and triangles that are free for others without it. Those of a part
+    /// that was cut out of a mesh may have others between them.
+    pub fn room(&self) -> Option<[Range<usize>; 3]> {
+        let [positions, normals] = self.ranges();
+        let ranges = [positions, normals, self.triangles()];
+        self.of.is_joined().then_some(ranges)
+    }
+
     /// The range of the mesh that holds its triangles.
     pub fn triangles(&self) -> Range<usize> {
         let range = range_of(self.of.triangles(self.number));

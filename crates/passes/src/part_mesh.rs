@@ -29,7 +29,8 @@ impl PartMesh {
     ///
     /// # Errors
     /// [`Error::NotFinite`] for a position or normal that is not finite, [`Error::Corner`] for an
-    /// index beyond the mesh's positions.
+    /// index beyond the mesh's positions, [`Error::Lacks`] for a triangle without normals, material
+    /// or texture coordinates that others have.
     pub fn new(mesh: &Mesh) -> Result<Self, Error> {
         for (what, list) in [("position", &mesh.positions), ("normal", &mesh.normals)] {
             if let Some(index) = list.iter().position(|value: &Vec3| !value.is_finite()) {
@@ -38,6 +39,7 @@ impl PartMesh {
             }
         }
         check_corners(mesh, 0..mesh.triangles.len())?;
+        check_lists(mesh)?;
         let prepared = Self::unchecked(mesh);
         prepared.0.movable.moved_border(0, &DAffine3::IDENTITY);
         Ok(prepared)
@@ -51,9 +53,14 @@ impl PartMesh {
     }
 
     /// Builds the hierarchy over the mesh, too, which methods that trace rays need. Without it each
-    /// part gets one of its own when it is added to a scene that rays go through.
+    /// part gets one of its own when it is added to a scene that rays go through, and so does a
+    /// mesh of which some triangles cast no shadows.
     #[must_use]
     pub fn with_hierarchy(self) -> Self {
+        let rest = &self.0.movable.rest;
+        if rest.casters().len() < rest.triangles.len() {
+            return self;
+        }
         self.0.tree.get_or_init(|| {
             let tree = Bvh::build(&self.0.movable.rest);
             let order = tree.order().into();
@@ -85,6 +92,34 @@ impl PartMesh {
             Some((own, order)) => tree.add_tree(piece, (own, order), rest, first as u32),
             None => tree.add(piece, rest, first as u32),
         }
+    }
+}
+
+/// Refuses a mesh if some of its triangles have other things that it lacks.
+fn check_lists(mesh: &Mesh) -> Result<(), Error> {
+    let surfaces = &mesh.surfaces;
+    let corners = |list: &[[u32; 3]], most: usize| {
+        let is_there = move |own: &[u32; 3]| own.iter().all(|index| (*index as usize) < most);
+        list.iter().take_while(|own| is_there(own)).count()
+    };
+    let triangles = mesh.triangles.len();
+    let normals = corners(&mesh.normal_indices, mesh.normals.len());
+    let materials = surfaces.of.iter();
+    let is_there = |own: &&u32| (**own as usize) < surfaces.materials.len();
+    let materials = materials.take_while(is_there).count();
+    let uvs = corners(&surfaces.uv_indices, surfaces.uvs.len());
+    let unless = |is_empty: bool, count: usize| if is_empty { triangles } else { count };
+    let lists = [
+        ("normals", normals),
+        ("material", unless(surfaces.of.is_empty(), materials)),
+        (
+            "texture coordinates",
+            unless(surfaces.uv_indices.is_empty(), uvs),
+        ),
+    ];
+    match lists.into_iter().find(|(_, count)| *count < triangles) {
+        Some((what, triangle)) => Err(Error::Lacks { triangle, what }),
+        None => Ok(()),
     }
 }
 

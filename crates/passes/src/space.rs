@@ -69,14 +69,19 @@ impl Space {
     }
 
     /// True if there is that room.
-    pub fn has(&self, needed: Room) -> bool {
+    fn has(&self, needed: Room) -> bool {
         let [_, needed @ ..] = needed.numbers();
         let mut each = self.free.iter().zip(needed);
         each.all(|(free, needed)| needed <= free.longest())
     }
 
+    /// Returns the room by which a mesh of so many pieces must grow, if there is too little.
+    pub fn lacking(&self, needed: Room, pieces: usize, mesh: &Mesh) -> Option<Room> {
+        (!self.has(needed)).then(|| self.more(needed, pieces, mesh))
+    }
+
     /// Returns the room by which a mesh of so many pieces is to grow: a half, or what is needed.
-    pub fn more(&self, needed: Room, pieces: usize, mesh: &Mesh) -> Room {
+    fn more(&self, needed: Room, pieces: usize, mesh: &Mesh) -> Room {
         let there = self.numbers(pieces, mesh);
         let most = GROWING.map(|(_, bytes)| self.limit.map(|limit| (limit / bytes) as usize));
         let needed = needed.numbers();

@@ -82,6 +82,8 @@ impl Provider for SceneProvider {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<(), ProviderError> {
+        self.record_lost(device)
+            .map_err(ProviderError::from_error)?;
         Ok(self.uploads.buffers.submit(On { device, queue })?)
     }
 
@@ -134,7 +136,13 @@ pub(super) fn build_structure(
     // It is built of what they hold.
     match &mut encoder {
         Some(encoder) => provider.uploads.buffers.record_into(encoder, on.device)?,
-        None => provider.uploads.buffers.submit(on)?,
+        None => {
+            if provider.uploads.buffers.is_open() {
+                // The last one may be in an encoder that is not submitted yet, or never.
+                provider.structures = Default::default();
+            }
+            provider.uploads.buffers.submit(on)?;
+        }
     }
     let began = provider.uploads.begin();
     let source = Source {
@@ -144,7 +152,10 @@ pub(super) fn build_structure(
         shape: provider.uploads.versions.shape,
         on,
     };
-    let (tlas, triangles) = provider.structures.get(source, encoder)?;
+    let (tlas, triangles) = provider.structures.get(source, encoder.as_deref_mut())?;
+    if let Some(encoder) = encoder.filter(|_| triangles.is_some()) {
+        provider.uploads.buffers.follow(encoder, on.device)?;
+    }
     if let Some(triangles) = triangles {
         provider.uploads.geometry.work.triangles += triangles as u64;
         provider.uploads.note(TLAS, How::Made, began);

@@ -40,7 +40,7 @@ impl Provider for InEncoder<'_> {
         device: &wgpu::Device,
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Buffer, ProviderError> {
-        self.in_place(|own| own.provider.build(name, device, queue))
+        self.provider.build(name, device, queue)
     }
 
     fn write_uniform(&mut self, name: &str, content: &mut [u8]) -> Result<bool, ProviderError> {
@@ -63,7 +63,7 @@ impl Provider for InEncoder<'_> {
         queue: &wgpu::Queue,
     ) -> Result<wgpu::Tlas, ProviderError> {
         let on = On { device, queue };
-        self.in_place(|own| build_structure(own.provider, name, on, Some(own.encoder)))
+        build_structure(self.provider, name, on, Some(self.encoder))
     }
 
     fn build_cpu_work(&mut self, name: &str) -> Result<Arc<dyn CpuWork>, ProviderError> {

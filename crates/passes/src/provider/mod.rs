@@ -40,7 +40,8 @@ use uploads::{Facts, Uploads};
 ///
 /// Cameras and single lights are told by their bytes ([`write_uniform`](Provider::write_uniform)),
 /// which each executor keeps in a buffer of its own. Other buffers are never written again after
-/// they were handed out. So any number of executors may be
+/// they were handed out, unless the host refreshes [in its encoder](Self::in_encoder), where a
+/// frame is one submission and parts are written in place. So any number of executors may be
 /// refreshed and encoded for one submission, each with a light, a camera and a mesh of its own.
 /// Setting the same value again changes nothing for an executor that has seen it. Where a few parts
 /// of many have moved, the next buffer gets only those from the CPU; the GPU copies the rest from
@@ -120,16 +121,30 @@ impl SceneProvider {
     ///
     /// Commands of an encoder that was dropped are recorded again by the next call of this method
     /// and the refresh that follows it, and executors run all passes that read their results. The
-    /// same holds for an encoder that wgpu refused, or that was submitted after a later one, once
-    /// the GPU has finished. Frames that were submitted meanwhile lack them.
+    /// same holds for an encoder that wgpu refused, or that was submitted after a later one, as
+    /// soon as the GPU has finished. Frames that were submitted meanwhile lack them. A refresh that
+    /// submits by itself also submits what encoders hold that are not submitted yet, so that frames
+    /// encoded before them show it; it notices a loss only for the refresh after it.
+    ///
+    /// Bottom levels of acceleration structures that are built in encoders are not made compact.
     ///
     /// # Errors
-    /// [`ExecuteError::DeviceLost`] if the device of the provider is lost.
+    /// [`ExecuteError::DeviceLost`] if the device is lost while an encoder is looked after.
     pub fn in_encoder<'a>(
         &'a mut self,
         encoder: &'a mut wgpu::CommandEncoder,
     ) -> Result<InEncoder<'a>, ExecuteError> {
         InEncoder::new(self, encoder)
+    }
+
+    /// Records once more what was in encoders that were lost, with versions of its own, so that
+    /// executors run the passes that read it.
+    fn record_lost(&mut self, device: &wgpu::Device) -> Result<(), ExecuteError> {
+        if self.uploads.buffers.record_lost(device)? {
+            self.structures = Structures::default();
+            self.uploads.versions.change_mesh();
+        }
+        Ok(())
     }
 
     /// Builds the resources that the passes of a [`Plan`] read and that are missing or out of date,
@@ -480,12 +495,17 @@ impl SceneProvider {
 
     /// Replaces the mesh of a part by another one, such as another level of detail, at `map`. The
     /// part keeps its handle and its place among the [`parts`](Self::parts); frames that are
-    /// already encoded show the mesh before. Its room is free for the new mesh, and plans stay
-    /// valid as with [`add_part`](Self::add_part).
+    /// already encoded show the mesh before. Its room is free for the new mesh, if it was
+    /// added or [joined](Movable::joined), and plans stay valid as with
+    /// [`add_part`](Self::add_part).
     ///
     /// # Errors
     /// [`Error::NoPart`] for a part that the mesh does not have, and those of
     /// [`add_part`](Self::add_part). The part then stays as it was.
+    ///
+    /// In a scene with materials each call adds those of the mesh to the lists of materials and
+    /// texture coordinates, which do not become shorter again, as with
+    /// [`add_part`](Self::add_part).
     pub fn replace_part(
         &mut self,
         part: PartId,
@@ -638,21 +658,16 @@ impl<'a> InEncoder<'a> {
         provider: &'a mut SceneProvider,
         encoder: &'a mut wgpu::CommandEncoder,
     ) -> Result<Self, ExecuteError> {
-        let device = provider.device.as_ref().map(|own| own.device().clone());
-        if let Some(device) = device
-            && provider.uploads.buffers.record_lost(&device)?
-        {
-            provider.structures = Structures::default();
-            provider.uploads.versions.change_mesh();
+        if let Some(device) = provider.device.as_ref().map(|own| own.device().clone()) {
+            provider.record_lost(&device)?;
         }
+        provider.uploads.buffers.in_place = true;
         Ok(Self { provider, encoder })
     }
+}
 
-    /// Does something with the provider, whose buffers are written where they are.
-    fn in_place<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
-        self.provider.uploads.buffers.in_place = true;
-        let done = act(self);
+impl Drop for InEncoder<'_> {
+    fn drop(&mut self) {
         self.provider.uploads.buffers.in_place = false;
-        done
     }
 }

@@ -260,8 +260,7 @@ impl TwoLevelBvh {
         if tree.depth > depth_left(self.filled() + 1) {
             self.add(piece, at_rest, first);
         } else {
-            let ids = at_rest.casters().into_iter();
-            let ids: Vec<u32> = ids.map(|id| first + id).collect();
+            let ids: Vec<u32> = (first..).take(tree.primitives.len()).collect();
             self.add_built(piece, tree, Arc::clone(order), &ids);
         }
     }

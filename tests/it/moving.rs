@@ -450,7 +450,7 @@ fn maps_by_which_nothing_can_be_moved_are_named() {
     normals[5] = Vec3::INFINITY;
     let error = whole.deform(mesh.positions, normals).unwrap_err();
     assert!(
-        error.to_string().contains("normal 5 of a deformed mesh"),
+        error.to_string().contains("normal 5 of the mesh is"),
         "{error}"
     );
 }

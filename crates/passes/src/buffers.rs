@@ -325,10 +325,10 @@ impl Buffers {
         device: &wgpu::Device,
     ) -> Result<(), ProviderError> {
         self.recorded.next.record(encoder);
-        match self.recorded.next.list.is_empty() {
-            true => Ok(()),
-            false => self.follow(encoder, device),
+        if self.recorded.next.list.is_empty() {
+            return Ok(());
         }
+        self.follow(encoder, device)
     }
 
     /// Keeps what was recorded into an encoder of the host until that is known to have run, or

@@ -304,13 +304,7 @@ impl Geometry {
         let movable = Arc::clone(added.movable());
         let needed = Room::of(&movable.rest, 1);
         if let Some(id) = replaced {
-            let mut space = self.space.clone();
-            if let Some(ranges) = self.part(id)?.room() {
-                space.give_back(ranges);
-            }
-            if let Some(more) = space.lacking(needed, self.pieces.len(), &scene.mesh) {
-                space.check(more, self.pieces.len(), &scene.mesh)?;
-            }
+            self.check_replaced(id, needed, &scene.mesh)?;
             // Nothing fails behind this.
             self.remove(id, scene)?;
         }
@@ -381,6 +375,16 @@ impl Geometry {
             is_grown,
         };
         Ok((id, change))
+    }
+
+    /// Checks that there is room for a part in the place of another one, or can be.
+    fn check_replaced(&self, id: PartId, needed: Room, mesh: &Mesh) -> Result<(), Error> {
+        let (mut space, pieces) = (self.space.clone(), self.pieces.len());
+        if let Some(ranges) = self.part(id)?.room() {
+            space.give_back(ranges);
+        }
+        let more = space.lacking(needed, pieces, mesh);
+        more.map_or(Ok(()), |more| space.check(more, pieces, mesh))
     }
 
     /// Removes a part from the scene's mesh: its triangles have no area any more, and its room is

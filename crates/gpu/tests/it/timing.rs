@@ -80,7 +80,7 @@ fn every_pass_is_timed_or_the_reason_is_known() {
 fn a_frame_that_is_not_done_in_time_is_waited_for_again() {
     let files = Files::graph(
         r#"
-    materials: [Buffer(name: "sums", count: 4096)],
+    materials: [Buffer(name: "sums", count: 16384)],
     passes: [Compute(name: "work", dispatch: Over("sums.count"))],
     outputs: ["sums"],
 "#,
@@ -115,7 +115,7 @@ fn a_frame_that_is_not_done_in_time_is_waited_for_again() {
         let step = |sum: u32, _| sum.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (0..20_000).fold(first, step)
     };
-    let sums: Vec<u32> = (0..4096).map(expected).collect();
+    let sums: Vec<u32> = (0..16_384).map(expected).collect();
     assert_eq!(u32s(&report.readbacks[0].content), sums);
 }
 

@@ -1,7 +1,8 @@
 //! Uploaded buffers by name, each with the version of its content.
 
+use crate::recorded::{Command, Commands, Kernels, Recorded};
 use crate::{built::Work, error::Error, lights, names::*};
-use skiagraph_gpu::{ExecuteError, ProviderError, Recordings};
+use skiagraph_gpu::{ExecuteError, ProviderError};
 use std::{collections::BTreeMap, ops::Range, sync::Arc};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
@@ -58,73 +59,6 @@ struct Content {
     version: u64,
     /// Handles of it count the clones of the list that have the buffer.
     owner: Arc<()>,
-}
-
-/// Records kernels.
-type Kernels = dyn Fn(&mut wgpu::CommandEncoder) + Send + Sync;
-
-/// A command that writes a buffer; to do it once more changes nothing.
-#[derive(Clone)]
-enum Command {
-    /// Bytes of one buffer, from an offset, to another one, to an offset; how many.
-    Copy([(wgpu::Buffer, u64); 2], u64),
-    Kernels(Arc<Kernels>),
-}
-
-/// Commands, and the names of the buffers that they write.
-#[derive(Clone, Default)]
-struct Commands {
-    list: Vec<Command>,
-    names: Vec<String>,
-    /// Owners of buffers that they copy, which clones of the list must not write until then.
-    owners: Vec<Arc<()>>,
-    /// True if some of them were recorded before, and lost.
-    is_again: bool,
-}
-
-/// Commands that are submitted together, and those that are in encoders of the host. A clone, which
-/// shares the buffers, has all of them to record: it does not hear whether they have run.
-#[derive(Default)]
-struct Recorded {
-    next: Commands,
-    in_encoders: Recordings<Commands>,
-    /// True in a clone with commands that executors may take for run.
-    is_lost: bool,
-}
-
-impl Clone for Recorded {
-    fn clone(&self) -> Self {
-        let mut next = Commands::default();
-        let mut kept: Vec<&Commands> = self.in_encoders.iter().collect();
-        let is_lost = self.is_lost || !kept.is_empty();
-        kept.push(&self.next);
-        kept.into_iter().cloned().for_each(|own| next.extend(own));
-        Self {
-            next,
-            in_encoders: Recordings::default(),
-            is_lost,
-        }
-    }
-}
-
-impl Commands {
-    fn extend(&mut self, later: Self) {
-        self.list.extend(later.list);
-        self.names.extend(later.names);
-        self.owners.extend(later.owners);
-        self.is_again |= later.is_again;
-    }
-
-    fn record(&self, encoder: &mut wgpu::CommandEncoder) {
-        for command in &self.list {
-            match command {
-                Command::Copy([(from, begin), (to, at)], size) => {
-                    encoder.copy_buffer_to_buffer(from, *begin, to, *at, *size);
-                }
-                Command::Kernels(record) => record(encoder),
-            }
-        }
-    }
 }
 
 /// Items that a patch has written.

@@ -55,6 +55,7 @@ mod placed;
 mod presets;
 mod provider;
 mod ray_query;
+mod recorded;
 mod solids;
 mod space;
 mod trace;

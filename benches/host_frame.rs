@@ -418,11 +418,7 @@ impl<'a> Host<'a> {
         placed.expect("the maps are turns and shifts");
         let set = since(start);
         let start = Instant::now();
-        let provider = self.provider.in_encoder(&mut encoder);
-        let refreshed = self
-            .executor
-            .refresh(&mut provider.expect("the device is there"));
-        refreshed.expect("the same resources are built again");
+        self.refresh(&mut encoder);
         let refresh = since(start);
         let start = Instant::now();
         let frame = Frame::new().with_all(kind.all);
@@ -491,6 +487,13 @@ impl<'a> Host<'a> {
         time
     }
 
+    fn refresh(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        let provider = self.provider.in_encoder(encoder);
+        let mut provider = provider.expect("the device is there");
+        let refreshed = self.executor.refresh(&mut provider);
+        refreshed.expect("the plan stays valid");
+    }
+
     /// Replaces the mesh of a part by another level of detail, of as many triangles; the times of
     /// the call and of the refresh.
     fn swap(&mut self, level: &PartMesh, turn: usize) -> [f64; 2] {
@@ -505,11 +508,7 @@ impl<'a> Host<'a> {
         let set = since(start);
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let start = Instant::now();
-        let provider = self.provider.in_encoder(&mut encoder);
-        let refreshed = self
-            .executor
-            .refresh(&mut provider.expect("the device is there"));
-        refreshed.expect("there is room for it");
+        self.refresh(&mut encoder);
         let refresh = since(start);
         submit(self.gpu, encoder.finish());
         [set, refresh]

@@ -78,6 +78,19 @@ fn placed(turn: usize) -> Vec<(usize, DAffine3)> {
     placed
 }
 
+/// A scene of parts in the host's buffers.
+fn of_stones() -> (Gpu, MegaBuffer, SceneProvider) {
+    let gpu = open();
+    let stones = stones(&gpu);
+    let [host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    (gpu, stones, host)
+}
+
+/// Lowers the right halves of the stones by a step.
+fn lower(gpu: &Gpu, stones: &MegaBuffer, encoder: &mut wgpu::CommandEncoder) {
+    raise_in(gpu, encoder, (stones, 1), STEP.cast_unsigned() & 0xffff);
+}
+
 fn set(host: &mut SceneProvider, places: &[(usize, DAffine3)]) {
     host.set_transforms(&places_of(places)).unwrap();
 }
@@ -93,9 +106,7 @@ fn rewritten(host: &mut SceneProvider) {
 /// nothing is copied. Lost frames, and frames of one executor alone, between them.
 #[test]
 fn what_the_host_writes_in_the_frames_encoder_is_shown_in_that_frame() {
-    let gpu = open();
-    let stones = stones(&gpu);
-    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let (gpu, stones, mut host) = of_stones();
     let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
     let copied = host.work().copied;
     let (mut lift, mut random) = (0, Random(61));
@@ -106,7 +117,7 @@ fn what_the_host_writes_in_the_frames_encoder_is_shown_in_that_frame() {
         if random.unit() < 0.5 {
             // With the host's own commands, which never run.
             let mut lost = begin(&gpu);
-            raise_in(&gpu, &mut lost, (&stones, 1), STEP.cast_unsigned() & 0xffff);
+            lower(&gpu, &stones, &mut lost);
             rewritten(&mut host);
             let dropped = 1 + usize::from(random.unit() < 0.5);
             for executor in &mut executors[..dropped] {
@@ -114,12 +125,7 @@ fn what_the_host_writes_in_the_frames_encoder_is_shown_in_that_frame() {
             }
         }
         if random.unit() < 0.7 {
-            raise_in(
-                &gpu,
-                &mut encoder,
-                (&stones, 1),
-                STEP.cast_unsigned() & 0xffff,
-            );
+            lower(&gpu, &stones, &mut encoder);
             lift += STEP;
             rewritten(&mut host);
         }
@@ -133,9 +139,7 @@ fn what_the_host_writes_in_the_frames_encoder_is_shown_in_that_frame() {
 /// The next refresh writes what was in an encoder that was dropped, or came in the other order.
 #[test]
 fn what_lost_encoders_held_is_written_by_the_next_refresh() {
-    let gpu = open();
-    let stones = stones(&gpu);
-    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let (gpu, stones, mut host) = of_stones();
     let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
     for turn in 1..5 {
         let mut encoders = [begin(&gpu), begin(&gpu)];
@@ -171,9 +175,7 @@ fn what_lost_encoders_held_is_written_by_the_next_refresh() {
 /// A branch keeps its scene, and what encoders held that had not run when it was made.
 #[test]
 fn branches_are_not_written_in_place() {
-    let gpu = open();
-    let stones = stones(&gpu);
-    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let (gpu, stones, mut host) = of_stones();
     let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
     set(&mut host, &placed(1));
     let mut encoder = begin(&gpu);
@@ -198,9 +200,7 @@ fn branches_are_not_written_in_place() {
 /// notices a loss before it was made.
 #[test]
 fn a_branch_writes_no_buffer_that_is_to_be_copied() {
-    let gpu = open();
-    let stones = stones(&gpu);
-    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let (gpu, stones, mut host) = of_stones();
     let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
     let mut branch = host.branch();
     let mut own = PRESETS.map(|preset| start(&gpu, preset, &mut branch));
@@ -231,9 +231,7 @@ fn a_branch_writes_no_buffer_that_is_to_be_copied() {
 /// Commands that wgpu refuses are not recorded for ever: they read vertices that are gone.
 #[test]
 fn buffers_whose_commands_are_refused_are_made_anew() {
-    let gpu = open();
-    let stones = stones(&gpu);
-    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let (gpu, stones, mut host) = of_stones();
     let (stone, at) = (
         raised_stone(&stones, 0),
         DAffine3::from_scale(DVec3::splat(2.0)),
@@ -274,9 +272,7 @@ fn buffers_whose_commands_are_refused_are_made_anew() {
 /// A refresh with a submission of its own finds what encoders hold that are not submitted yet.
 #[test]
 fn both_ways_of_refreshing_go_together() {
-    let gpu = open();
-    let stones = stones(&gpu);
-    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let (gpu, stones, mut host) = of_stones();
     let mut executors = PRESETS.map(|preset| start(&gpu, preset, &mut host));
     for turn in 1..4 {
         let places = placed(turn);
@@ -301,9 +297,7 @@ fn both_ways_of_refreshing_go_together() {
 #[test]
 #[ignore = "needs EXPERIMENTAL_RAY_QUERY"]
 fn ray_query_structures_are_built_in_the_encoder() {
-    let gpu = open();
-    let stones = stones(&gpu);
-    let [mut host, _] = scenes(&stones, &placed(0), &gpu.device.limits());
+    let (gpu, stones, mut host) = of_stones();
     let plan = graphs::plan("pipelines/rt.ron", &host, VIEWPORT, |request| {
         allow_ray_queries(request);
         let engine = ParamValue::Choice("ray_query".to_owned());
@@ -315,12 +309,7 @@ fn ray_query_structures_are_built_in_the_encoder() {
         set(&mut host, &placed(turn));
         let mut encoder = begin(&gpu);
         if turn % 2 == 0 {
-            raise_in(
-                &gpu,
-                &mut encoder,
-                (&stones, 1),
-                STEP.cast_unsigned() & 0xffff,
-            );
+            lower(&gpu, &stones, &mut encoder);
             rewritten(&mut host);
         } else {
             // The positions are there already, and a structure alone is lost.

@@ -95,8 +95,9 @@ pub trait Provider: Describe {
     /// [`Describe::describe`] describes as
     /// [`ACCELERATION_STRUCTURE`](skiagraph_graph::Provided::ACCELERATION_STRUCTURE), or returns
     /// the structure built before. The commands that build it must be submitted to `queue` before
-    /// this method returns. It is called only for names that a [live](skiagraph_graph#terms) pass
-    /// binds, on devices with `EXPERIMENTAL_RAY_QUERY`.
+    /// this method returns, or be in the host's encoder before the frame's. It is called only for
+    /// names that a [live](skiagraph_graph#terms) pass binds, on devices with
+    /// `EXPERIMENTAL_RAY_QUERY`.
     ///
     /// # Errors
     /// If the structure cannot be built. The default implementation always fails.

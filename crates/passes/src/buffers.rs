@@ -227,10 +227,8 @@ impl Buffers {
     /// # Errors
     /// If the device refuses them; the buffers are then made anew when they are asked for.
     pub fn submit(&mut self, on: On) -> Result<(), Error> {
-        let mut commands = Commands::default();
-        let earlier = self.recorded.in_encoders.iter().cloned();
-        earlier.for_each(|earlier| commands.extend(earlier));
-        commands.extend(std::mem::take(&mut self.recorded.next));
+        let commands = self.recorded.open();
+        self.recorded.next = Commands::default();
         if commands.list.is_empty() {
             return Ok(());
         }
@@ -241,10 +239,10 @@ impl Buffers {
             commands.record(&mut encoder);
             on.queue.submit([encoder.finish()]);
         };
-        let names = &commands.names;
-        refused(on.device, submit).map_err(|why| {
-            names.iter().for_each(|name| drop(self.held.remove(name)));
-            let names = names.clone();
+        let submitted = refused(on.device, submit);
+        submitted.map_err(|why| {
+            let names = commands.names;
+            names.iter().for_each(|name| self.forget(name));
             Error::Copies { names, why }
         })
     }
@@ -280,14 +278,14 @@ impl Buffers {
         let names = commands.names.clone();
         let kept = self.recorded.in_encoders.keep(commands, device, encoder);
         kept.map_err(|error| {
-            names.iter().for_each(|name| drop(self.held.remove(name)));
+            names.iter().for_each(|name| self.forget(name));
             ProviderError::from_error(error)
         })
     }
 
     /// True if encoders of the host hold commands that are not known to have run.
     pub fn is_open(&self) -> bool {
-        self.recorded.is_lost || self.recorded.in_encoders.iter().next().is_some()
+        self.recorded.is_open()
     }
 
     /// Records once more what was in encoders of the host that were dropped, or submitted in
@@ -305,16 +303,14 @@ impl Buffers {
             lost.splice(..0, in_encoders.take());
         }
         if !lost.is_empty() {
-            let mut commands = Commands::default();
-            lost.into_iter().for_each(|lost| commands.extend(lost));
-            if commands.is_again {
-                let names = std::mem::take(&mut commands.names);
-                names.iter().for_each(|name| drop(self.held.remove(name)));
-                commands = Commands::default();
+            let mut again: Commands = lost.into_iter().collect();
+            if again.is_again {
+                again.names.iter().for_each(|name| self.forget(name));
+                again = Commands::default();
             }
-            commands.is_again = !commands.list.is_empty();
-            commands.extend(std::mem::take(&mut self.recorded.next));
-            self.recorded.next = commands;
+            again.is_again = !again.list.is_empty();
+            let next = std::mem::take(&mut self.recorded.next);
+            self.recorded.next = [again, next].into_iter().collect();
             self.recorded.is_lost = true;
         }
         Ok(std::mem::take(&mut self.recorded.is_lost))
@@ -436,16 +432,16 @@ impl Buffers {
     ) -> Result<(), Error> {
         let last = self.last(name).map(|last| last.buffer.size());
         // One item may stand for none.
-        let there = last.map_or(0, |size| size as usize / size_of::<T>());
-        if there <= 1 || there > items.len() {
+        let count = last.map_or(0, |size| size as usize / size_of::<T>());
+        if count <= 1 || count > items.len() {
             return self.make(name, items, version, on);
         }
-        if there == items.len() {
+        if count == items.len() {
             self.still_hold(name, version);
             return Ok(());
         }
         check_binding(name, size_of_val(items) as u64, on.device)?;
-        let (range, content) = (there..items.len(), &items[there..]);
+        let (range, content) = (count..items.len(), &items[count..]);
         let changed = (items.len(), std::slice::from_ref(&range), content);
         self.succeed(name, changed, version, on);
         Ok(())

@@ -37,28 +37,41 @@ pub(crate) struct Recorded {
 
 impl Clone for Recorded {
     fn clone(&self) -> Self {
-        let mut next = Commands::default();
-        let mut kept: Vec<&Commands> = self.in_encoders.iter().collect();
-        let is_lost = self.is_lost || !kept.is_empty();
-        kept.push(&self.next);
-        kept.into_iter().cloned().for_each(|own| next.extend(own));
         Self {
-            next,
+            next: self.open(),
             in_encoders: Recordings::default(),
-            is_lost,
+            is_lost: self.is_open(),
         }
     }
 }
 
-impl Commands {
-    /// Puts later commands behind these.
-    pub fn extend(&mut self, later: Self) {
-        self.list.extend(later.list);
-        self.names.extend(later.names);
-        self.owners.extend(later.owners);
-        self.is_again |= later.is_again;
+impl Recorded {
+    /// True if encoders of the host hold commands that are not known to have run.
+    pub fn is_open(&self) -> bool {
+        self.is_lost || self.in_encoders.iter().next().is_some()
     }
 
+    /// Returns all commands that are not known to have run.
+    pub fn open(&self) -> Commands {
+        let in_encoders = self.in_encoders.iter();
+        in_encoders.chain([&self.next]).cloned().collect()
+    }
+}
+
+/// Each behind the one before.
+impl FromIterator<Self> for Commands {
+    fn from_iter<T: IntoIterator<Item = Self>>(each: T) -> Self {
+        each.into_iter().fold(Self::default(), |mut joined, later| {
+            joined.list.extend(later.list);
+            joined.names.extend(later.names);
+            joined.owners.extend(later.owners);
+            joined.is_again |= later.is_again;
+            joined
+        })
+    }
+}
+
+impl Commands {
     /// Records the commands into an encoder.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         for command in &self.list {

@@ -10,6 +10,8 @@ use std::collections::VecDeque;
 pub struct Recordings<T> {
     numbers: Option<Numbers>,
     kept: VecDeque<Recording<T>>,
+    /// Stamps of commands that have run.
+    spare: Vec<Stamp>,
 }
 
 struct Recording<T> {
@@ -24,6 +26,7 @@ impl<T> Default for Recordings<T> {
         Self {
             numbers: None,
             kept: VecDeque::new(),
+            spare: Vec::new(),
         }
     }
 }
@@ -44,7 +47,9 @@ impl<T> Recordings<T> {
             Some(numbers) => numbers,
             none => none.insert(Numbers::new(device)?),
         };
-        let (stamp, number) = (Stamp::new(device)?, numbers.take(device)?);
+        let number = numbers.take(device)?;
+        let stamp = self.spare.pop();
+        let stamp = stamp.map_or_else(|| Stamp::new(device), Ok)?;
         stamp.copy(number, true, numbers, encoder);
         self.kept.push_back(Recording {
             commands,
@@ -75,7 +80,7 @@ impl<T> Recordings<T> {
         let first = self.kept.iter().position(is_lost);
         let lost = first.map(|first| self.kept.drain(first..).map(|it| it.commands).collect());
         while self.kept.front().is_some_and(has_run) {
-            self.kept.pop_front();
+            self.spare.extend(self.kept.pop_front().map(|it| it.stamp));
         }
         Ok(lost.unwrap_or_default())
     }

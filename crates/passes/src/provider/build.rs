@@ -131,18 +131,20 @@ pub(super) fn build_structure(
         return Err(provider.uploads.unknown(name).into());
     }
     provider.check_device(on.device)?;
+    if encoder.is_none() {
+        let settled = provider.record_lost(on.device);
+        settled.map_err(ProviderError::from_error)?;
+        if provider.uploads.buffers.is_open() {
+            // The last one may be in an encoder that is not submitted yet.
+            provider.structures = Default::default();
+        }
+    }
     let vertices = provider.uploads.buffer(POSITIONS, on)?;
     let indices = provider.uploads.buffer(INDICES, on)?;
     // It is built of what they hold.
     match &mut encoder {
         Some(encoder) => provider.uploads.buffers.record_into(encoder, on.device)?,
-        None => {
-            if provider.uploads.buffers.is_open() {
-                // The last one may be in an encoder that is not submitted yet, or never.
-                provider.structures = Default::default();
-            }
-            provider.uploads.buffers.submit(on)?;
-        }
+        None => provider.uploads.buffers.submit(on)?,
     }
     let began = provider.uploads.begin();
     let source = Source {

@@ -535,7 +535,8 @@ impl SceneProvider {
     /// Adds a part whose vertices are in a buffer of the host, as [`add_part`](Self::add_part)
     /// does. Refreshes read the buffer if the part was added, has moved or was
     /// [rewritten](Self::rewrite_part), and write its positions and normals for all passes: the
-    /// vertices must be in the buffer, or their upload submitted, before the first such refresh. No
+    /// vertices must be in the buffer, or their upload submitted (for a refresh
+    /// [in an encoder](Self::in_encoder): recorded there), before the first such refresh. No
     /// frame brings them to the CPU: shadow maps and light spaces are fitted to the bounds of the
     /// [`HostMesh`], which must hold all its vertices ([`HostMesh::with_bounds`]), and
     /// [`scene`](Self::scene) has the part's positions at rest.
@@ -577,7 +578,8 @@ impl SceneProvider {
     /// [moved](Self::move_to) to another device or the first buffer was destroyed. `mesh` is made
     /// of theirs by [`HostMesh::with_vertices`]. Their handles, places and stated bounds stay. The
     /// next [`refresh`](skiagraph_gpu::Executor::refresh) reads the vertices, which must be in the
-    /// buffer, or their upload submitted, before. Returns the number of these parts.
+    /// buffer, or their upload submitted or recorded, before, as for
+    /// [`add_host_part`](Self::add_host_part). Returns the number of these parts.
     ///
     /// # Errors
     /// [`Error::OtherDevice`] if the mesh is on another device than the provider's resources.
@@ -600,10 +602,11 @@ impl SceneProvider {
 
     /// Notes that the host has rewritten the vertices of a part in its buffer (skinning, morphing).
     /// The next [`refresh`](skiagraph_gpu::Executor::refresh) reads them; their writing must be
-    /// submitted before. All parts of the same [`HostMesh`] show them from their next move on, so
-    /// each part that is rewritten must have a mesh, and vertices, of its own. `bounds`, low and
-    /// high corner in the space of the vertices, must hold all vertices that triangles use: shadow
-    /// maps are fitted to them, and rays miss what is beyond them.
+    /// submitted before, or be recorded in the encoder of that refresh
+    /// ([`in_encoder`](Self::in_encoder)). All parts of the same [`HostMesh`] show them from their
+    /// next move on, so each part that is rewritten must have a mesh, and vertices, of its own.
+    /// `bounds`, low and high corner in the space of the vertices, must hold all vertices that
+    /// triangles use: shadow maps are fitted to them, and rays miss what is beyond them.
     /// [`check_bounds`](Self::check_bounds) finds bounds that are too small.
     ///
     /// # Errors

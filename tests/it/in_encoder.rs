@@ -291,6 +291,23 @@ fn both_ways_of_refreshing_go_together() {
         assert!(values(&report, "visibility") == expected[0], "{turn}");
         assert!(shown(&gpu, &mut executors[1]) == expected[1], "{turn}");
     }
+    // A loss is repaired by refreshes that submit by themselves, too, once something has changed.
+    set(&mut host, &placed(4));
+    let mut lost = begin(&gpu);
+    for executor in &mut executors {
+        encode(executor, &mut host, &mut lost, &[]);
+    }
+    drop(lost);
+    let mut other = placed(4);
+    other[1].1 = DAffine3::from_translation(DVec3::Y) * other[1].1;
+    set(&mut host, &other);
+    let expected = expected(&gpu, &stones, &other, 0);
+    for _ in 0..2 {
+        for (executor, expected) in executors.iter_mut().zip(&expected) {
+            executor.refresh(&mut host).unwrap();
+            assert!(shown(&gpu, executor) == *expected);
+        }
+    }
 }
 
 /// Acceleration structures are built in the encoder, of what was written there.

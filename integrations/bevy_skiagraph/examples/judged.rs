@@ -1,7 +1,9 @@
-//! Draws a view of a scene of Skiagraph under Bevy's own shadow maps, for `skiagraph judge`:
-//! `cargo run --bin judged -- SCENE VIEW WIDTHxHEIGHT FOLDER` writes `shadowed.npy`,
-//! `unshadowed.npy` and `depth.npy`. The plug-in takes no part. Materials are not followed: all
-//! surfaces are white, opaque and seen from their front.
+//! Draws a view of a scene of Skiagraph in Bevy, for `skiagraph judge`: `cargo run --example judged
+//! -- SCENE VIEW WIDTHxHEIGHT FOLDER [PRESET]` writes `shadowed.npy`, `unshadowed.npy` and
+//! `depth.npy`, under the shadows of a preset or, without one, under Bevy's own shadow maps.
+//! Materials are not followed: all surfaces are white, opaque and seen from their front.
+
+mod headless;
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -18,6 +20,7 @@ use bevy::{
         view::ViewDepthStencilTexture,
     },
 };
+use bevy_skiagraph::{SkiagraphPlugin, SkiagraphShadows};
 use skiagraph_scene::{Scene, SceneLibrary, View};
 use std::{error::Error, fs, path::Path, process::ExitCode};
 
@@ -39,7 +42,7 @@ fn main() -> ExitCode {
 
 fn run() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [scene, view, size, folder] = arguments.as_slice() else {
+    let [scene, view, size, folder, preset @ ..] = arguments.as_slice() else {
         return Err("give SCENE VIEW WIDTHxHEIGHT FOLDER: park bench_side 1280x720 out".into());
     };
     let size = parse_size(size)
@@ -53,9 +56,14 @@ fn run() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(folder)?;
 
     let mut app = App::new();
-    app.add_plugins(skiagraph_bevy::without_window())
+    app.add_plugins(headless::without_window())
         // Light from everywhere would stand in the quotient.
         .insert_resource(GlobalAmbientLight::NONE);
+    if let Some(preset) = preset.first() {
+        let shadows = SkiagraphShadows::new(preset);
+        app.add_plugins(SkiagraphPlugin::default())
+            .register_required_components_with::<DirectionalLight, _>(move || shadows.clone());
+    }
     app.finish();
     app.cleanup();
     let target = spawn(app.world_mut(), &scene, view, size)?;

@@ -1,0 +1,292 @@
+//! Casters of Bevy's world, on their way to the scene of the graphs. The main world prepares
+//! meshes, and tells the render world of what has changed only.
+
+use crate::{
+    skins::{Joints, skinned},
+    views::Views,
+};
+use bevy::{
+    asset::AssetEvent,
+    camera::visibility::InheritedVisibility,
+    ecs::entity::EntityHashMap,
+    image::{ImageAddressMode, ImageSampler},
+    light::NotShadowCaster,
+    math::Affine2,
+    mesh::{Indices, PrimitiveTopology, VertexAttributeValues, skinning::SkinnedMesh},
+    platform::collections::{HashMap, HashSet},
+    prelude::*,
+    render::MainWorld,
+};
+use glam::{DAffine3, Vec2 as Uv};
+use skiagraph_passes::PartMesh;
+use skiagraph_scene::{Indexed, Mask, Material, Mesh as Solid, Wrap};
+use std::{borrow::Cow, sync::Arc};
+
+/// Greatest alpha through which Bevy draws no shadow of a material that blends.
+const FAINTEST: f32 = 0.05;
+
+/// What has changed about a caster.
+pub enum Change {
+    /// It is there, or has another mesh.
+    Mesh(Entity, PartMesh, DAffine3),
+    /// It is elsewhere.
+    Place(Entity, DAffine3),
+    /// It casts no shadow any more.
+    Gone(Entity),
+}
+
+/// The casters that the render world has been told of.
+#[derive(Resource, Default)]
+pub struct Casters {
+    known: EntityHashMap<Key>,
+    /// Prepared meshes; `None` for those that cannot be, of which the log has told.
+    meshes: HashMap<Key, Option<PartMesh>>,
+    changes: Vec<Change>,
+}
+
+/// A mesh, and the holes that its material cuts into it.
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Key {
+    mesh: AssetId<Mesh>,
+    holes: Option<Holes>,
+    is_skinned: bool,
+}
+
+#[derive(Clone, PartialEq, Eq, Hash)]
+struct Holes {
+    image: AssetId<Image>,
+    /// Least alpha of a texel that is there, in bits of f32.
+    least: u32,
+    /// Columns of the map of texture coordinates, in bits of f32.
+    map: [u32; 6],
+}
+
+/// Assets that are read to prepare meshes.
+type Stores<'w> = (Res<'w, Assets<Mesh>>, Res<'w, Assets<Image>>);
+
+/// All that a caster's shadow depends on.
+type Caster<'a> = (
+    Entity,
+    &'a Mesh3d,
+    Ref<'a, GlobalTransform>,
+    &'a InheritedVisibility,
+    Option<&'a MeshMaterial3d<StandardMaterial>>,
+    Option<&'a SkinnedMesh>,
+);
+
+/// Compares all casters with those that the render world knows.
+pub fn gather(
+    query: Query<Caster, Without<NotShadowCaster>>,
+    (stores, joints): (Stores, Joints),
+    materials: Res<Assets<StandardMaterial>>,
+    (edited_meshes, edited_images): (
+        MessageReader<AssetEvent<Mesh>>,
+        MessageReader<AssetEvent<Image>>,
+    ),
+    mut casters: ResMut<Casters>,
+) {
+    let casters = &mut *casters;
+    let (meshes, images) = (edited(edited_meshes), edited(edited_images));
+    let is_edited = |key: &Key| {
+        let holes = key.holes.as_ref();
+        meshes.contains(&key.mesh) || holes.is_some_and(|holes| images.contains(&holes.image))
+    };
+    if !meshes.is_empty() || !images.is_empty() {
+        casters.meshes.retain(|key, _| !is_edited(key));
+    }
+    let mut seen = EntityHashMap::default();
+    for (entity, mesh, place, visibility, material, skin) in &query {
+        // Programs hide things by a scale of 0, too.
+        let has_extent = skin.is_some() || place.affine().matrix3.determinant() != 0.0;
+        let material = material.and_then(|material| materials.get(&material.0));
+        let Some(holes) = holes(material) else {
+            continue;
+        };
+        if !has_extent || !visibility.get() {
+            continue;
+        }
+        let mesh = mesh.0.id();
+        let key = Key {
+            mesh,
+            holes,
+            is_skinned: skin.is_some(),
+        };
+        let before = casters.known.remove(&entity);
+        let has_moved = skin.map_or(place.is_changed(), |skin| joints.have_moved(skin));
+        let is_same = before.as_ref() == Some(&key) && !is_edited(&key);
+        if is_same && !(has_moved && skin.is_some()) {
+            if has_moved {
+                let place = Change::Place(entity, affine(&place));
+                casters.changes.push(place);
+            }
+        } else {
+            let prepared = match skin {
+                // Its joints bring it into the world.
+                Some(skin) => {
+                    let joints = joints.matrices(skin);
+                    joints.and_then(|joints| prepare(&key, &stores, Some(&joints)))
+                }
+                None => {
+                    let prepared = casters.meshes.get(&key).cloned();
+                    prepared.or_else(|| prepare(&key, &stores, None))
+                }
+            };
+            let Some(prepared) = prepared else {
+                continue; // an asset is not loaded yet
+            };
+            if skin.is_none() {
+                casters.meshes.insert(key.clone(), prepared.clone());
+            }
+            let map = skin.map_or_else(|| affine(&place), |_| DAffine3::IDENTITY);
+            let change = match prepared {
+                Some(mesh) => Some(Change::Mesh(entity, mesh, map)),
+                None => before.map(|_| Change::Gone(entity)),
+            };
+            casters.changes.extend(change);
+        }
+        seen.insert(entity, key);
+    }
+    let gone = casters.known.keys().map(|entity| Change::Gone(*entity));
+    casters.changes.extend(gone);
+    if !casters.known.is_empty() {
+        let used: HashSet<&Key> = seen.values().collect();
+        casters.meshes.retain(|key, _| used.contains(key));
+    }
+    casters.known = seen;
+}
+
+fn edited<A: Asset>(mut messages: MessageReader<AssetEvent<A>>) -> HashSet<AssetId<A>> {
+    let edited = messages.read().filter_map(|message| match message {
+        AssetEvent::Modified { id } => Some(*id),
+        _ => None,
+    });
+    edited.collect()
+}
+
+/// Hands the changes to the render world.
+pub fn extract(mut world: ResMut<MainWorld>, mut views: ResMut<Views>) {
+    let mut casters = world.resource_mut::<Casters>();
+    if !casters.changes.is_empty() {
+        views.follow(std::mem::take(&mut casters.changes));
+    }
+}
+
+fn affine(place: &GlobalTransform) -> DAffine3 {
+    let columns = place.affine().to_cols_array();
+    DAffine3::from_cols_array(&columns.map(f64::from))
+}
+
+/// Returns the holes of a material, or `None` if none of it casts a shadow.
+fn holes(material: Option<&StandardMaterial>) -> Option<Option<Holes>> {
+    let Some(material) = material else {
+        return Some(None);
+    };
+    let least = match material.alpha_mode {
+        AlphaMode::Opaque => return Some(None),
+        AlphaMode::Mask(cutoff) => cutoff,
+        _ => FAINTEST,
+    };
+    let alpha = material.base_color.alpha();
+    let Some(image) = &material.base_color_texture else {
+        return (alpha >= least).then_some(None);
+    };
+    Some(Some(Holes {
+        image: image.id(),
+        least: (least / alpha).to_bits(),
+        map: material.uv_transform.to_cols_array().map(f32::to_bits),
+    }))
+}
+
+/// Prepares a mesh. `None` if it is not loaded yet; `Some(None)`, which the log tells, if it cannot
+/// be prepared.
+fn prepare(
+    key: &Key,
+    (meshes, images): &Stores,
+    joints: Option<&[Mat4]>,
+) -> Option<Option<PartMesh>> {
+    let mesh = meshes.get(key.mesh)?;
+    let holes = match &key.holes {
+        Some(holes) => Some((holes, images.get(holes.image)?)),
+        None => None,
+    };
+    let solid = solid(mesh, holes, joints).and_then(|solid| Ok(PartMesh::new(&solid)?));
+    let warn = |error| warn!("{:?} casts no shadow: {error}", key.mesh);
+    Some(solid.map_err(warn).ok())
+}
+
+fn solid(mesh: &Mesh, holes: Option<(&Holes, &Image)>, joints: Option<&[Mat4]>) -> Result<Solid> {
+    let positions = match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION)? {
+        VertexAttributeValues::Float32x3(positions) => positions,
+        _ => return Err("its positions are not Float32x3".into()),
+    };
+    let positions: Cow<[[f32; 3]]> = match joints {
+        Some(joints) => skinned(mesh, positions, joints)?.into(),
+        None => positions.into(),
+    };
+    let count = positions.len() as u32;
+    let indices: Vec<u32> = match mesh.try_indices_option()? {
+        Some(Indices::U32(indices)) => indices.clone(),
+        Some(Indices::U16(indices)) => indices.iter().copied().map(u32::from).collect(),
+        None => (0..count).collect(),
+    };
+    let indices = match mesh.primitive_topology() {
+        PrimitiveTopology::TriangleList => indices,
+        PrimitiveTopology::TriangleStrip => strip(&indices),
+        _ => return Err("it is not of triangles".into()),
+    };
+    let indexed = Indexed {
+        positions: &positions,
+        normals: &[],
+        indices: &indices,
+    };
+    let mut solid = indexed.mesh()?;
+    let uvs = mesh.try_attribute(Mesh::ATTRIBUTE_UV_0);
+    if let (Some((holes, image)), Ok(VertexAttributeValues::Float32x2(uvs))) = (holes, uvs) {
+        let map = Affine2::from_cols_array(&holes.map.map(f32::from_bits));
+        let mapped = |uv: &[f32; 2]| Uv::from(map.transform_point2(Vec2::from(*uv)).to_array());
+        let surfaces = &mut solid.surfaces;
+        surfaces.uvs = uvs.iter().map(mapped).collect();
+        // Triangles with equal positions at two corners were left out.
+        let at = |corner: u32| positions[corner as usize];
+        let has_area = |&[a, b, c]: &[u32; 3]| at(a) != at(b) && at(b) != at(c) && at(c) != at(a);
+        let triangles = indices.as_chunks::<3>().0.iter().copied();
+        surfaces.uv_indices = triangles.filter(has_area).collect();
+        surfaces.of = vec![0; surfaces.uv_indices.len()];
+        surfaces.materials = vec![Material {
+            mask: Some(Arc::new(mask(holes, image)?)),
+            ..Material::default()
+        }];
+    }
+    Ok(solid)
+}
+
+/// Every other triangle of a strip is wound the other way.
+fn strip(indices: &[u32]) -> Vec<u32> {
+    let triangle = |(at, corners): (usize, &[u32])| match at % 2 {
+        0 => [corners[0], corners[1], corners[2]],
+        _ => [corners[1], corners[0], corners[2]],
+    };
+    indices.windows(3).enumerate().flat_map(triangle).collect()
+}
+
+fn mask(holes: &Holes, image: &Image) -> Result<Mask> {
+    image.get_color_at(0, 0)?;
+    let least = f32::from_bits(holes.least);
+    let is_there = |x, y| {
+        let color = image.get_color_at(x, y);
+        color.is_ok_and(|color| color.alpha() >= least)
+    };
+    let wrap = match &image.sampler {
+        ImageSampler::Descriptor(it) => [it.address_mode_u, it.address_mode_v].map(wrap),
+        ImageSampler::Default => [Wrap::Clamp; 2],
+    };
+    Ok(Mask::new([image.width(), image.height()], wrap, is_there))
+}
+
+fn wrap(mode: ImageAddressMode) -> Wrap {
+    match mode {
+        ImageAddressMode::Repeat => Wrap::Repeat,
+        ImageAddressMode::MirrorRepeat => Wrap::Mirror,
+        _ => Wrap::Clamp,
+    }
+}

@@ -9,7 +9,7 @@ use crate::{
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use skiagraph_gpu::{ExecuteError, Executor, Frame, Provider, device::Gpu};
-use skiagraph_passes::{Error, How, PartId, Room, SceneProvider, Work};
+use skiagraph_passes::{Error, How, PartId, PartMesh, Room, SceneProvider, Work};
 use skiagraph_reference::statistics::status;
 use skiagraph_scene::{
     DirectionalLight, Group, LightKind, Mesh, Movable, MoveError, PointLight, View,
@@ -830,6 +830,68 @@ fn materials_are_uploaded_of_the_part_that_is_added() {
     provider.set_parts(Movable::joined(&[&bush]));
     let mut alone = self::provider(Movable::joined(&[&bush]));
     assert!(uploads(&mut provider) == uploads(&mut alone));
+}
+
+/// Lists of materials and texture coordinates hold those of a mesh once, however many parts have
+/// it, and those of meshes that are gone for a while only.
+#[test]
+fn lists_of_materials_follow_the_meshes_that_there_are() {
+    let gpu = open();
+    let floor = meshes::box_over_floor(12.0, Vec3::splat(0.4));
+    let place = |x: f64| DAffine3::from_translation(DVec3::new(x, 2.0, 8.0));
+    let mut provider = provider(Movable::joined(&[&floor]));
+    provider.set_transforms(&[place(6.0)]).unwrap();
+    let leaves = |seed| PartMesh::new(&meshes::foliage(80, 1.5, 4.0, seed)).unwrap();
+    let lengths = |provider: &SceneProvider| {
+        let surfaces = &provider.scene().mesh.surfaces;
+        [surfaces.materials.len(), surfaces.uvs.len()]
+    };
+    let common = leaves(0);
+    provider.add_mesh(&common, &place(3.0)).unwrap();
+    let once = lengths(&provider);
+    provider.add_mesh(&common, &place(9.0)).unwrap();
+    assert_eq!(lengths(&provider), once);
+
+    let part = provider.add_mesh(&common, &place(6.0)).unwrap();
+    let mut executor = start(&gpu, "light_buffer", &mut provider);
+    let mut longest = 0;
+    for seed in 1..60 {
+        let map = place(4.0 + 0.05 * seed as f64);
+        provider.replace_part(part, &leaves(seed), &map).unwrap();
+        longest = longest.max(lengths(&provider)[1]);
+        if seed % 10 != 9 {
+            continue;
+        }
+        let plan = executor.plan();
+        let plan = plan.with(|request| request.provider = &provider);
+        executor
+            .replace_graph(plan.unwrap(), &mut provider)
+            .unwrap();
+        let bush = meshes::foliage(80, 1.5, 4.0, seed);
+        let own = meshes::foliage(80, 1.5, 4.0, 0);
+        let mut whole = self::provider(Movable::joined(&[&floor, &own, &own, &bush]));
+        let maps = [place(6.0), place(3.0), place(9.0), map];
+        whole.set_transforms(&maps).unwrap();
+        let seen = shown(&gpu, &mut executor);
+        assert!(
+            seen == shown(&gpu, &mut start(&gpu, "light_buffer", &mut whole)),
+            "{seed}"
+        );
+        for id in 0..provider.scene().mesh.triangles.len() as u32 {
+            let [one, other] = [&provider, &whole].map(|it| &it.scene().mesh);
+            let own = (0..other.triangles.len() as u32).find(|own| {
+                other.corners(*own) == one.corners(id) && one.triangles[id as usize] != [0; 3]
+            });
+            if let Some(own) = own {
+                let [one, other] = [(one, id), (other, own)].map(|(mesh, id)| {
+                    let surfaces = &mesh.surfaces;
+                    (surfaces.corner_uvs(id), surfaces.mask(id).is_some())
+                });
+                assert_eq!(one, other, "triangle {id}");
+            }
+        }
+    }
+    assert!(longest < 5000, "{longest} texture coordinates");
 }
 
 /// A part that was cut out of a mesh is removed from between the others.

@@ -10,6 +10,7 @@ use crate::hierarchies::all;
 use crate::host_buffers::{HostMesh, HostWrite};
 use crate::names::next_version;
 use crate::outlines::Outlines;
+use crate::painted::Painted;
 use crate::part::{Added, Moved, Part, placed};
 use crate::parts::{PartId, Room};
 use crate::piece::{Content, Outside, Piece};
@@ -47,6 +48,7 @@ pub(crate) struct Geometry {
     /// True if the mesh moves, so that trees are worth their memory.
     is_deformed: bool,
     pub space: Space,
+    painted: Painted,
     trees: Trees,
     outlines: Outlines,
     adjacencies: Adjacencies,
@@ -93,6 +95,7 @@ impl Geometry {
             pieces,
             parts: ids,
             begun,
+            painted: Painted::new(&parts.rest.surfaces),
             is_unplaced: is_joined && parts.parts() > 0,
             first: Some(parts),
             is_deformed: true,
@@ -324,7 +327,7 @@ impl Geometry {
         }
         let total = whole.triangles.len();
         let own = (at.triangle, movable.rest.triangles.len());
-        whole.surfaces.put(&movable.rest.surfaces, own, total);
+        let is_packed = self.painted.put(&movable, own, whole);
         let positions = movable.rest.positions.len();
         let host = match moved {
             Moved::OfHost(host) => {
@@ -372,8 +375,11 @@ impl Geometry {
             is_elsewhere: true,
             is_turned: true,
             is_painted: !whole.surfaces.of.is_empty(),
-            is_grown,
+            is_grown: is_grown || is_packed,
         };
+        if is_packed {
+            self.begun = next_version();
+        }
         Ok((id, change))
     }
 

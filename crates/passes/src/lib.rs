@@ -47,6 +47,7 @@ mod host_buffers;
 mod lights;
 pub mod names;
 mod outlines;
+mod painted;
 mod part;
 mod part_mesh;
 mod parts;

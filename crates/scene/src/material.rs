@@ -58,9 +58,22 @@ pub struct Surfaces {
     pub of: Vec<u32>,
 }
 
+/// Place of the lists of another mesh among those of a mesh ([`Surfaces::put`]).
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePlace([u32; 2]);
+
 impl Surfaces {
     /// Those of another mesh behind these; a plain one for its triangles if it has none.
     pub(crate) fn append(&mut self, other: &Self, triangles: usize) {
+        let total = self.of.len() + triangles;
+        let place = self.append_lists(other);
+        self.of.resize(total, 0);
+        self.uv_indices.resize(total, [0; 3]);
+        self.put_again(other, place, (total - triangles, triangles));
+    }
+
+    /// Appends the materials and texture coordinates of another mesh, and returns where they are.
+    fn append_lists(&mut self, other: &Self) -> SurfacePlace {
         if self.uv_indices.len() < self.of.len() {
             self.uv_indices = vec![[self.uvs.len() as u32; 3]; self.of.len()];
             self.uvs.push(Vec2::ZERO);
@@ -68,24 +81,18 @@ impl Surfaces {
                 .iter_mut()
                 .for_each(Material::lose_coordinates);
         }
-        let [uv, material] = [self.uvs.len(), self.materials.len()].map(|count| count as u32);
+        let place = [self.uvs.len(), self.materials.len()].map(|count| count as u32);
         self.uvs.extend(&other.uvs);
-        if other.uv_indices.is_empty() {
-            self.uvs.push(Vec2::ZERO);
-            self.uv_indices.extend(vec![[uv; 3]; triangles]);
-        }
-        let moved = |corners: &[u32; 3]| corners.map(|index| uv + index);
-        self.uv_indices.extend(other.uv_indices.iter().map(moved));
         if other.of.is_empty() {
             self.materials.push(Material::default());
-            self.of.extend(vec![material; triangles]);
         }
         self.materials.extend(other.materials.iter().cloned());
         if other.uv_indices.is_empty() {
-            let appended = &mut self.materials[material as usize..];
+            self.uvs.push(Vec2::ZERO);
+            let appended = &mut self.materials[place[1] as usize..];
             appended.iter_mut().for_each(Material::lose_coordinates);
         }
-        self.of.extend(other.of.iter().map(|own| material + own));
+        SurfacePlace(place)
     }
 
     /// Adds surfaces for triangles that were appended to the mesh, which now has `triangles`
@@ -103,25 +110,58 @@ impl Surfaces {
     /// Gives `triangles` triangles of the mesh, from the primitive id `first` on, the surfaces of
     /// `other`, which is of another mesh with that many triangles. `total` is the number of
     /// triangles of this mesh. The materials and texture coordinates of `other` are appended to the
-    /// lists. If only one of the two meshes has materials, the other counts as plain white; if
-    /// neither has, nothing changes.
+    /// lists; where they are then is returned. If only one of the two meshes has materials, the
+    /// other counts as plain white; if neither has, nothing changes.
     ///
     /// # Panics
     /// If `first` and `triangles` together are more than `total`.
-    pub fn put(&mut self, other: &Self, (first, triangles): (usize, usize), total: usize) {
+    pub fn put(
+        &mut self,
+        other: &Self,
+        (first, triangles): (usize, usize),
+        total: usize,
+    ) -> Option<SurfacePlace> {
         if self.of.is_empty() && other.of.is_empty() {
-            return;
+            return None;
         }
         if self.of.is_empty() {
             self.append(&Self::default(), total);
         }
-        self.append(other, triangles);
+        let place = self.append_lists(other);
+        self.put_again(other, place, (first, triangles));
+        Some(place)
+    }
+
+    /// Gives triangles the surfaces of `other`, as [`put`](Self::put) does, where its lists were
+    /// put before, at `place`.
+    ///
+    /// # Panics
+    /// If the mesh has no such triangles.
+    pub fn put_again(
+        &mut self,
+        other: &Self,
+        SurfacePlace([uv, material]): SurfacePlace,
+        (first, triangles): (usize, usize),
+    ) {
         for triangle in 0..triangles {
-            self.of[first + triangle] = self.of[total + triangle];
-            self.uv_indices[first + triangle] = self.uv_indices[total + triangle];
+            let corners = other.uv_indices.get(triangle);
+            let own = other.of.get(triangle).copied().unwrap_or_default();
+            self.uv_indices[first + triangle] = corners.unwrap_or(&[0; 3]).map(|index| uv + index);
+            self.of[first + triangle] = material + own;
         }
-        self.of.truncate(total);
-        self.uv_indices.truncate(total);
+    }
+
+    /// Drops the materials and texture coordinates that no triangle uses, but for the first ones,
+    /// which triangles get of which `is_used` is false.
+    pub fn compact(&mut self, is_used: impl Fn(usize) -> bool) {
+        for triangle in (0..self.of.len()).filter(|triangle| !is_used(*triangle)) {
+            self.of[triangle] = 0;
+            if let Some(corners) = self.uv_indices.get_mut(triangle) {
+                *corners = [0; 3];
+            }
+        }
+        keep_used(&mut self.materials, &mut self.of);
+        keep_used(&mut self.uvs, self.uv_indices.as_flattened_mut());
     }
 
     /// Returns the material of triangle `primitive`, or `None` if it has none.
@@ -235,6 +275,27 @@ impl Surfaces {
         let [red, green, blue, _] = texels.rgba[y as usize * width as usize + x as usize];
         let [r, g, b] = material.base_color;
         [r * linear(red), g * linear(green), b * linear(blue)]
+    }
+}
+
+/// Drops the items that have no index, but for the first one.
+fn keep_used<T>(items: &mut Vec<T>, indices: &mut [u32]) {
+    let mut moved = vec![u32::MAX; items.len()];
+    let mut count = 0;
+    for &index in indices.iter() {
+        if let Some(place) = moved.get_mut(index as usize) {
+            *place = 0;
+        }
+    }
+    moved.iter_mut().take(1).for_each(|place| *place = 0);
+    for place in moved.iter_mut().filter(|place| **place == 0) {
+        *place = count;
+        count += 1;
+    }
+    let mut places = moved.iter();
+    items.retain(|_| places.next() != Some(&u32::MAX));
+    for index in indices {
+        *index = moved.get(*index as usize).copied().unwrap_or(*index);
     }
 }
 

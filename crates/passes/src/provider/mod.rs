@@ -502,10 +502,6 @@ impl SceneProvider {
     /// # Errors
     /// [`Error::NoPart`] for a part that the mesh does not have, and those of
     /// [`add_part`](Self::add_part). The part then stays as it was.
-    ///
-    /// In a scene with materials each call adds those of the mesh to the lists of materials and
-    /// texture coordinates, which do not become shorter again, as with
-    /// [`add_part`](Self::add_part).
     pub fn replace_part(
         &mut self,
         part: PartId,

@@ -597,6 +597,7 @@ impl Uploads {
     pub fn note_change(&mut self, change: Change) {
         self.current.take();
         if change.is_grown {
+            self.atlas = Arc::default();
             self.versions.change_mesh();
         }
         if change.is_turned || change.is_painted {

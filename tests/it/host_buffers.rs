@@ -14,7 +14,7 @@ use skiagraph_passes::{
     SceneProvider, Work,
 };
 use skiagraph_reference::{Oracle, OracleMode, Progress, Statistics, statistics::status};
-use skiagraph_scene::{Camera, DirectionalLight, Indexed, Mesh, Movable, Shadows, View};
+use skiagraph_scene::{Camera, DirectionalLight, Indexed, Material, Mesh, Movable, Shadows, View};
 use wgpu::{BufferUsages, VertexFormat, util::DeviceExt};
 
 pub const VIEWPORT: [u32; 2] = [96, 64];
@@ -383,6 +383,93 @@ fn host_parts_have_the_roles_of_their_meshes() {
         executor.refresh(&mut host).unwrap();
         let expected = shown(&gpu, &mut start(&gpu, preset, &mut uploaded));
         assert!(shown(&gpu, &mut executor) == expected, "{preset}, moved");
+    }
+}
+
+/// Leaves with holes, seen from both sides, in a host's buffer and uploaded.
+#[test]
+fn host_parts_have_the_materials_of_their_meshes() {
+    let gpu = open();
+    let mut leaves = meshes::foliage(40, 0.7, 0.8, 3);
+    leaves
+        .positions
+        .iter_mut()
+        .for_each(|at| *at = (*at / 2.0).clamp(Vec3::NEG_ONE, Vec3::ONE));
+    let triangles = 0..leaves.triangles.len() as u32;
+    let uvs = triangles.flat_map(|id| leaves.surfaces.corner_uvs(id).map(|uv| uv.to_array()));
+    let uvs: Vec<[f32; 2]> = uvs.collect();
+    let materials = leaves.surfaces.materials.iter();
+    let masked = materials.filter(|material| material.mask.is_some());
+    let masked = Material {
+        double_sided: true,
+        ..masked.last().unwrap().clone()
+    };
+    let own = Quantised::new(&leaves, Packing::Snorm16);
+    let buffer = upload(&gpu, &own.vertices);
+    let of = |material: &Material, uvs: &[[f32; 2]]| {
+        let vertices = HostVertices::new(&buffer, 0, STRIDE, own.positions.len() as u32)
+            .with_position(VertexFormat::Snorm16x4, 0)
+            .with_normal(VertexFormat::Snorm8x4, 8);
+        let on = (&gpu.device, &gpu.queue);
+        let indices = HostIndices::U16(&own.indices);
+        HostMesh::new_of_material(
+            on,
+            vertices,
+            &own.vertices,
+            indices,
+            (material.clone(), uvs),
+        )
+    };
+    let error = of(&masked, &uvs[1..]).unwrap_err().to_string();
+    let expected = format!(
+        "there are {} texture coordinates for {} positions: give one each",
+        uvs.len() - 1,
+        uvs.len()
+    );
+    assert!(error.contains(&expected), "{error}");
+
+    let floor = meshes::box_over_floor(9.0, Vec3::splat(0.3));
+    let indices: Vec<u32> = own.indices.iter().map(|&index| index.into()).collect();
+    let indexed = Indexed {
+        positions: &own.positions,
+        normals: &own.normals,
+        indices: &indices,
+    };
+    let place = |x: f64| {
+        let at = DAffine3::from_translation(DVec3::new(x, 3.0, 1.0));
+        at * DAffine3::from_scale(DVec3::splat(4.0))
+    };
+    let frame = frame_around();
+    let identity = DAffine3::IDENTITY;
+    let maps = |x: f64| [identity, identity, place(x), place(x + 3.0)];
+    for (material, uvs) in [(masked, &uvs[..]), (Material::default(), &[])] {
+        let mut host = SceneProvider::from_parts(Movable::joined(&[&floor, &frame]), sun());
+        host.set_transforms(&maps(0.0)[..2]).unwrap();
+        let part = of(&material, uvs).unwrap();
+        let mesh = indexed.mesh_of(material, uvs).unwrap();
+        for map in &maps(0.0)[2..] {
+            host.add_host_part(&part, map).unwrap();
+        }
+        let uploaded = Movable::joined(&[&floor, &frame, &mesh, &mesh]);
+        let mut uploaded = SceneProvider::from_parts(uploaded, sun());
+        uploaded.set_transforms(&maps(0.0)).unwrap();
+        let mut scenes = [host, uploaded];
+        scenes
+            .iter_mut()
+            .for_each(|scene| scene.set_camera(&camera(VIEWPORT)));
+        for preset in ["rt", "light_buffer", "crsm"] {
+            let mut executors = scenes.each_mut().map(|scene| start(&gpu, preset, scene));
+            for x in [0.0, -1.5] {
+                let mut seen = Vec::new();
+                for (scene, executor) in scenes.iter_mut().zip(&mut executors) {
+                    scene.set_transforms(&maps(x)).unwrap();
+                    executor.refresh(scene).unwrap();
+                    seen.push(shown(&gpu, executor));
+                }
+                assert!(seen[0].contains(&0) && seen[0].contains(&1));
+                assert!(seen[0] == seen[1], "{preset}, {x}");
+            }
+        }
     }
 }
 

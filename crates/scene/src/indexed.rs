@@ -1,9 +1,10 @@
 //! Triangle meshes in a program's memory, to be made into a [`Mesh`], in which equal positions are
 //! one (welded).
 
+use crate::material::Material;
 use crate::mesh::{Group, Mesh, names_one_twice};
 use crate::weld::Welder;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 /// Triangle mesh as a program holds it in memory: not welded, with one normal for each position.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,6 +41,14 @@ pub enum IndexedError {
         at: usize,
         /// Index that was found there.
         index: u32,
+        /// Number of positions that were given.
+        positions: usize,
+    },
+    /// The number of texture coordinates is not the number of positions.
+    #[error("there are {uvs} texture coordinates for {positions} positions: give one each")]
+    Uvs {
+        /// Number of texture coordinates that were given.
+        uvs: usize,
         /// Number of positions that were given.
         positions: usize,
     },
@@ -93,6 +102,34 @@ impl Indexed<'_> {
             triangles: 0..mesh.triangles.len() as u32,
         });
         (mesh.positions, mesh.normals) = (positions.values, normals.values);
+        Ok(mesh)
+    }
+
+    /// Returns the mesh, all of one material. `uvs` are texture coordinates, v down, one for each
+    /// position; none for a material without a mask and without a texture.
+    ///
+    /// # Errors
+    /// Those of [`mesh`](Self::mesh), and [`IndexedError::Uvs`] for another number of texture
+    /// coordinates.
+    pub fn mesh_of(&self, material: Material, uvs: &[[f32; 2]]) -> Result<Mesh, IndexedError> {
+        let mut mesh = self.mesh()?;
+        let (uvs, positions) = (uvs.iter().copied().map(Vec2::from), self.positions.len());
+        let surfaces = &mut mesh.surfaces;
+        surfaces.of = vec![0; mesh.triangles.len()];
+        surfaces.materials = vec![material];
+        surfaces.uvs = uvs.collect();
+        if surfaces.uvs.is_empty() {
+            return Ok(mesh);
+        }
+        if surfaces.uvs.len() != positions {
+            let uvs = surfaces.uvs.len();
+            return Err(IndexedError::Uvs { uvs, positions });
+        }
+        // Those that `mesh` leaves: places are equal as numbers, 0 and -0 too.
+        let at = |corner: u32| self.positions[corner as usize];
+        let is_left = |&[a, b, c]: &[u32; 3]| at(a) != at(b) && at(b) != at(c) && at(c) != at(a);
+        let triangles = self.indices.as_chunks::<3>().0.iter().copied();
+        surfaces.uv_indices = triangles.filter(is_left).collect();
         Ok(mesh)
     }
 }

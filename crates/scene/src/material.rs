@@ -35,6 +35,12 @@ impl Default for Material {
 }
 
 impl Material {
+    /// True if a triangle without a material looks as one with it.
+    pub fn is_plain(&self) -> bool {
+        let is_plain = self.mask.is_none() && self.texture.is_none() && !self.double_sided;
+        is_plain && self.base_color == [1.0; 3] && self.shadows == Shadows::Both
+    }
+
     /// Makes the material opaque, for triangles without texture coordinates.
     fn lose_coordinates(&mut self) {
         self.mask.take_if(|mask| !mask.is_uniform());

@@ -17,7 +17,7 @@ use bevy::{
     prelude::*,
     render::MainWorld,
 };
-use glam::{DAffine3, Vec2 as Uv};
+use glam::DAffine3;
 use skiagraph_passes::PartMesh;
 use skiagraph_scene::{Indexed, Mask, Material, Mesh as Solid, Wrap};
 use std::{borrow::Cow, sync::Arc};
@@ -239,25 +239,18 @@ fn solid(mesh: &Mesh, holes: Option<(&Holes, &Image)>, joints: Option<&[Mat4]>) 
         normals: &[],
         indices: &indices,
     };
-    let mut solid = indexed.mesh()?;
     let uvs = mesh.try_attribute(Mesh::ATTRIBUTE_UV_0);
-    if let (Some((holes, image)), Ok(VertexAttributeValues::Float32x2(uvs))) = (holes, uvs) {
-        let map = Affine2::from_cols_array(&holes.map.map(f32::from_bits));
-        let mapped = |uv: &[f32; 2]| Uv::from(map.transform_point2(Vec2::from(*uv)).to_array());
-        let surfaces = &mut solid.surfaces;
-        surfaces.uvs = uvs.iter().map(mapped).collect();
-        // Triangles with equal positions at two corners were left out.
-        let at = |corner: u32| positions[corner as usize];
-        let has_area = |&[a, b, c]: &[u32; 3]| at(a) != at(b) && at(b) != at(c) && at(c) != at(a);
-        let triangles = indices.as_chunks::<3>().0.iter().copied();
-        surfaces.uv_indices = triangles.filter(has_area).collect();
-        surfaces.of = vec![0; surfaces.uv_indices.len()];
-        surfaces.materials = vec![Material {
-            mask: Some(Arc::new(mask(holes, image)?)),
-            ..Material::default()
-        }];
-    }
-    Ok(solid)
+    let (Some((holes, image)), Ok(VertexAttributeValues::Float32x2(uvs))) = (holes, uvs) else {
+        return Ok(indexed.mesh()?);
+    };
+    let map = Affine2::from_cols_array(&holes.map.map(f32::from_bits));
+    let mapped = |uv: &[f32; 2]| map.transform_point2(Vec2::from(*uv)).to_array();
+    let uvs: Vec<[f32; 2]> = uvs.iter().map(mapped).collect();
+    let material = Material {
+        mask: Some(Arc::new(mask(holes, image)?)),
+        ..Material::default()
+    };
+    Ok(indexed.mesh_of(material, &uvs)?)
 }
 
 /// Every other triangle of a strip is wound the other way.

@@ -6,7 +6,7 @@ use crate::part_mesh::PartMesh;
 use crate::parts::Room;
 use glam::Vec3;
 use skiagraph_gpu::DeviceIdentity;
-use skiagraph_scene::{Indexed, Mesh, Movable, Shadows, TwoLevelBvh};
+use skiagraph_scene::{Indexed, Material, Mesh, Movable, Shadows, TwoLevelBvh};
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -35,9 +35,9 @@ pub enum HostIndices<'a> {
 /// The CPU keeps the welded mesh at rest, its hierarchy, and the numbers of the vertices that it
 /// came from.
 ///
-/// Its triangles have no materials: they are opaque and single-sided, and cast and receive shadows
-/// unless [`with_shadows`](Self::with_shadows) says otherwise. Masked and double-sided ones
-/// come by [`SceneProvider::add_part`](crate::SceneProvider::add_part).
+/// Its triangles are opaque and single-sided, unless they have a
+/// [material](Self::new_of_material), and cast and receive shadows unless that or
+/// [`with_shadows`](Self::with_shadows) says otherwise.
 #[derive(Clone, Debug)]
 pub struct HostMesh {
     pub(super) own: Arc<Own>,
@@ -77,11 +77,34 @@ impl HostMesh {
     /// # Errors
     /// [`HostMeshError`] if the vertices cannot be read as they are described, or form no mesh.
     pub fn new(
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        on: (&wgpu::Device, &wgpu::Queue),
         vertices: HostVertices,
         rest: &[u8],
         indices: HostIndices<'_>,
     ) -> Result<Self, HostMeshError> {
+        Self::new_of_material(on, vertices, rest, indices, (Material::default(), &[]))
+    }
+
+    /// Makes the mesh as [`new`](Self::new) does, all of one material, which may be masked,
+    /// double-sided, or cast or receive no shadows. Texture coordinates, v down, are those of the
+    /// vertices, in their order; none for a material without a mask and without a texture. They
+    /// stay those: a host that rewrites vertices does not change them.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new), and [`HostMeshError::Mesh`] for another number of texture
+    /// coordinates than of vertices.
+    pub fn new_of_material(
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        vertices: HostVertices,
+        rest: &[u8],
+        indices: HostIndices<'_>,
+        (material, uvs): (Material, &[[f32; 2]]),
+    ) -> Result<Self, HostMeshError> {
+        let shadows = material.shadows;
+        let material = Material {
+            shadows: Shadows::Both,
+            ..material
+        };
         let identity = checked(device, &vertices)?;
         if vertices.count == 0 {
             return Err(HostMeshError::Empty);
@@ -106,12 +129,15 @@ impl HostMesh {
             }
         };
         let has_normals = vertices.has_normals();
-        let mut mesh = Indexed {
+        let indexed = Indexed {
             positions: &positions,
             normals: &normals,
             indices,
-        }
-        .mesh()?;
+        };
+        let mut mesh = match material.is_plain() && uvs.is_empty() {
+            true => indexed.mesh()?,
+            false => indexed.mesh_of(material, uvs)?,
+        };
         let (low, high) = mesh.bounds().ok_or(HostMeshError::Empty)?;
         if !has_normals {
             part_normals(&mut mesh);
@@ -128,7 +154,7 @@ impl HostMesh {
         Ok(Self {
             own: Arc::new(Own::new(device, (vertices, identity), Arc::new(rest))),
             bounds: [low, high],
-            shadows: Shadows::default(),
+            shadows,
         })
     }
 

@@ -357,7 +357,8 @@ fn executor_on_depth(
         &graphs::layered(&files),
     );
     let graph = graph.unwrap_or_else(|error| panic!("{error}"));
-    let mut request = PlanRequest::new(VIEWPORT, provider);
+    let size = [drawn.depth.width(), drawn.depth.height()];
+    let mut request = PlanRequest::new(size, provider);
     let imports = [("depth", &drawn.depth), ("normal", &drawn.normal)];
     let described = imports.map(|(name, texture)| (name.to_owned(), import::texture(texture)));
     request.imports.extend(described);
@@ -369,6 +370,46 @@ fn executor_on_depth(
         executor.import_texture(name, texture).unwrap();
     }
     executor
+}
+
+/// A picture whose resolution changes within textures that stay: one executor, never planned anew.
+#[test]
+fn a_part_of_a_larger_target_is_shown_as_a_picture_of_its_size() {
+    let (gpu, park) = (open(), scenes::load("park"));
+    for (name, eye, projection, depth) in cameras(&park) {
+        let mut provider = SceneProvider::new(Arc::clone(&park));
+        provider.set_eye(&Eye::new(eye, projection, depth).unwrap());
+        let whole = gbuffer::draw(&gpu, &park.mesh, projection * eye, depth, VIEWPORT);
+        let mut executor = executor_on_depth(&gpu, "light_buffer", &mut provider, &whole);
+        for [x, y, width, height] in [[0, 0, 96, 64], [11, 6, 150, 100], [3, 0, 189, 126]] {
+            let own = gbuffer::draw(&gpu, &park.mesh, projection * eye, depth, [width, height]);
+            let mut alone = SceneProvider::new(Arc::clone(&park));
+            alone.set_eye(&Eye::new(eye, projection, depth).unwrap());
+            let expected = on_depth(&gpu, "light_buffer", &mut alone, &own);
+            let expected = values(&expected, "visibility");
+
+            let part = [x, y, width, height];
+            let camera = (projection * eye, depth);
+            let part_drawn = gbuffer::draw_part(&gpu, &park.mesh, camera, (VIEWPORT, part));
+            let viewport = part.map(f64::from);
+            let within = Eye::in_viewport(eye, projection, depth, viewport, VIEWPORT).unwrap();
+            provider.set_eye(&within);
+            executor.refresh(&mut provider).unwrap();
+            let gbuffer::GBuffer { depth, normal, .. } = &part_drawn;
+            for (name, texture) in [("depth", depth), ("normal", normal)] {
+                executor.import_texture(name, texture).unwrap();
+            }
+            let seen = graphs::frame(&gpu, &mut executor, &["visibility"]);
+            let seen = values(&seen, "visibility");
+            let mut wrong = 0;
+            for (index, expected) in (0u32..).zip(&expected) {
+                let at = [index % width + x, index / width + y];
+                wrong += u32::from(seen[(at[1] * VIEWPORT[0] + at[0]) as usize] != *expected);
+            }
+            assert!(expected.contains(&0) && expected.contains(&1), "{name}");
+            assert!(wrong <= 2, "{name}, {width}x{height}: {wrong}");
+        }
+    }
 }
 
 /// A host that tells the versions of its depth and normals pays nothing at rest, though it hands

@@ -406,7 +406,7 @@ fn host_parts_have_the_materials_of_their_meshes() {
     };
     let own = Quantised::new(&leaves, Packing::Snorm16);
     let buffer = upload(&gpu, &own.vertices);
-    let of = |material: &Material, uvs: &[[f32; 2]]| {
+    let host_mesh = |material: &Material, uvs: &[[f32; 2]]| {
         let vertices = HostVertices::new(&buffer, 0, STRIDE, own.positions.len() as u32)
             .with_position(VertexFormat::Snorm16x4, 0)
             .with_normal(VertexFormat::Snorm8x4, 8);
@@ -420,7 +420,7 @@ fn host_parts_have_the_materials_of_their_meshes() {
             (material.clone(), uvs),
         )
     };
-    let error = of(&masked, &uvs[1..]).unwrap_err().to_string();
+    let error = host_mesh(&masked, &uvs[1..]).unwrap_err().to_string();
     let expected = format!(
         "there are {} texture coordinates for {} positions: give one each",
         uvs.len() - 1,
@@ -445,7 +445,7 @@ fn host_parts_have_the_materials_of_their_meshes() {
     for (material, uvs) in [(masked, &uvs[..]), (Material::default(), &[])] {
         let mut host = SceneProvider::from_parts(Movable::joined(&[&floor, &frame]), sun());
         host.set_transforms(&maps(0.0)[..2]).unwrap();
-        let part = of(&material, uvs).unwrap();
+        let part = host_mesh(&material, uvs).unwrap();
         let mesh = indexed.mesh_of(material, uvs).unwrap();
         for map in &maps(0.0)[2..] {
             host.add_host_part(&part, map).unwrap();

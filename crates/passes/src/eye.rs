@@ -101,6 +101,30 @@ impl Eye {
         })
     }
 
+    /// Creates the eye of a picture that is drawn into a part of a larger target: the view of one
+    /// of several players, or a picture whose resolution changes within textures that stay.
+    /// `viewport` is the part, in pixels of the target: left and upper edge, width and height. The
+    /// graph is planned for the target's size, and takes its depth
+    /// (`shared/from_depth.ron`), which is that of the far plane outside of the viewport.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new). A viewport or target without area makes the projection singular
+    /// or not finite.
+    pub fn in_viewport(
+        view: DMat4,
+        projection: DMat4,
+        depth: Depth,
+        [x, y, width, height]: [f64; 4],
+        target: [u32; 2],
+    ) -> Result<Self, EyeError> {
+        let target = DVec2::from(target.map(f64::from));
+        let scale = DVec2::new(width, height) / target;
+        let corner = 2.0 * DVec2::new(x, y) / target;
+        let shift = DVec3::new(corner.x + scale.x - 1.0, 1.0 - corner.y - scale.y, 0.0);
+        let within = DMat4::from_translation(shift) * DMat4::from_scale(scale.extend(1.0));
+        Self::new(view, within * projection, depth)
+    }
+
     /// Itself, unless its camera was none.
     pub(crate) fn finite(&self) -> Result<&Self, Error> {
         let numbers: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&self.camera));

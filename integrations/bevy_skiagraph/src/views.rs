@@ -409,16 +409,14 @@ fn eye(
         jitter.jitter_projection(&mut projection, Vec2::new(width, height));
     }
     let matrix = |matrix: Mat4| DMat4::from_cols_array(&matrix.to_cols_array().map(f64::from));
-    let target = glam::DVec2::new(target.width.into(), target.height.into());
-    let scale = glam::DVec2::new(width.into(), height.into()) / target;
-    let corner = 2.0 * glam::DVec2::new(x.into(), y.into()) / target;
-    let shift = DVec3::new(corner.x + scale.x - 1.0, 1.0 - corner.y - scale.y, 0.0);
-    let within = DMat4::from_translation(shift) * DMat4::from_scale(scale.extend(1.0));
     let view_from_world = matrix(view.world_from_view.to_matrix()).inverse();
-    Eye::new(
+    let viewport = [x, y, width, height].map(f64::from);
+    Eye::in_viewport(
         view_from_world,
-        within * matrix(projection),
+        matrix(projection),
         Depth::Reversed,
+        viewport,
+        [target.width, target.height],
     )
     .ok()
 }

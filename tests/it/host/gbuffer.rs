@@ -56,6 +56,17 @@ pub fn corners(mesh: &Mesh) -> Vec<[f32; 6]> {
 }
 
 pub fn draw(gpu: &Gpu, mesh: &Mesh, matrix: DMat4, depth: Depth, size: [u32; 2]) -> GBuffer {
+    let [width, height] = size;
+    draw_part(gpu, mesh, (matrix, depth), (size, [0, 0, width, height]))
+}
+
+/// Draws into a part of textures: left and upper edge, width and height.
+pub fn draw_part(
+    gpu: &Gpu,
+    mesh: &Mesh,
+    (matrix, depth): (DMat4, Depth),
+    (size, part): ([u32; 2], [u32; 4]),
+) -> GBuffer {
     let device = &gpu.device;
     let texture = |format, usage| {
         device.create_texture(&wgpu::TextureDescriptor {
@@ -123,6 +134,8 @@ pub fn draw(gpu: &Gpu, mesh: &Mesh, matrix: DMat4, depth: Depth, size: [u32; 2])
         }),
         ..Default::default()
     });
+    let [x, y, width, height] = part.map(|edge| edge as f32);
+    pass.set_viewport(x, y, width, height, 0.0, 1.0);
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &group, &[]);
     pass.set_vertex_buffer(0, vertices.slice(..));

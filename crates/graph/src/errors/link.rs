@@ -437,7 +437,8 @@ mistakes! {
 
     Samples(samples: u32) =>
         ResourceKind(
-            "it has {samples} samples: declare a multisampled texture where these are more than one"
+            "it has {samples} samples: declare a multisampled texture where these are more than \
+             one, or resolve it to one sample before"
         );
 
     StorageFormat(declared: String) =>

@@ -12,7 +12,7 @@ use crate::memory::physical::Physical;
 use crate::pipelines::pipelines::Pipelines;
 use crate::provider::Provider;
 use crate::waiting::submitted_work;
-use skiagraph_graph::{Origin, ParamValue, Plan, Resource, ResourceKind};
+use skiagraph_graph::{Origin, ParamValue, Plan, Provided, Resource, ResourceKind};
 use std::time::Duration;
 use web_time::Instant;
 
@@ -438,19 +438,27 @@ impl Executor {
     /// Asks the provider again for each resource whose [version](Provider::version) has changed
     /// since the executor last got it, and for each that was [missing](Provider::missing) then.
     /// Call it before [`encode`](Self::encode) when the provider may have changed. Frames that are
-    /// already encoded keep their resources.
+    /// already encoded keep their resources. Where resources have other numbers of items than the
+    /// graph was planned for, it is planned for these, as [`replace_graph`](Self::replace_graph)
+    /// does: pipelines and textures that stay the same are kept.
     ///
     /// # Errors
     /// If a resource cannot be built or its description differs from the one that the graph was
-    /// planned for ([`ExecuteError::OtherThanPlanned`], for example in the number of items or the
-    /// kind of light), the provider's resources are on another device
+    /// planned for ([`ExecuteError::OtherThanPlanned`], for example in the kind of light, or in
+    /// having no items, as a scene without masks), the graph cannot be planned for other numbers of
+    /// items, the provider's resources are on another device
     /// ([`ExecuteError::OtherDevice`]), or the device is lost. That resource and those after it
     /// stay as they are; the next call asks for them again. [`Plan::relies_on`] lists resources
     /// whose description counts although no live pass binds them: if one of them differs, all stay
     /// as they are. The way out is another plan: [`Plan::with`], with the provider set, and
     /// [`replace_graph`](Self::replace_graph).
     pub fn refresh(&mut self, provider: &mut dyn Provider) -> Result<(), ExecuteError> {
-        self.runner.refresh(provider)
+        let refreshed = self.runner.refresh(provider);
+        if !refreshed.as_ref().is_err_and(is_of_numbers) {
+            return refreshed;
+        }
+        let plan = self.plan().with(|request| request.provider = &*provider)?;
+        self.replace_graph(plan, provider).map(drop)
     }
 
     /// Returns a view of the output or capture `name` (see [`Executor`]) with the content of the
@@ -612,6 +620,21 @@ impl Executor {
         }
         Ok(report)
     }
+}
+
+/// True if a resource has another number of items than planned, and nothing else is other.
+fn is_of_numbers(error: &ExecuteError) -> bool {
+    let ExecuteError::OtherThanPlanned { planned, given, .. } = error else {
+        return false;
+    };
+    let (Some(planned), Some(given)) = (planned, given) else {
+        return false;
+    };
+    let has_items = |provided: &Provided| provided.items.is_some_and(|items| items > 0);
+    let mut counted = *given;
+    counted.items = planned.items;
+    counted.kind = counted.kind.filter(|_| planned.kind.is_some());
+    has_items(planned) && has_items(given) && *planned == counted
 }
 
 impl std::fmt::Debug for Executor {

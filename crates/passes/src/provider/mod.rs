@@ -319,10 +319,11 @@ impl SceneProvider {
     /// with `run: OnChange` that reads `lights[2]` but no other light runs again only if that light
     /// or the mesh has changed.
     ///
-    /// A plan depends on the kind of each light that it reads, and on the number of the lights if
-    /// its documents count them (`lights.count`) or its shaders bind the list: after a change of
-    /// these, graphs must be planned anew. Until then [`refresh`](skiagraph_gpu::Executor::refresh)
-    /// fails with an error that names the light, or the list.
+    /// A plan depends on the kind of each light that it reads: after a change of kind, or without
+    /// that light, graphs must be planned anew, and until then
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) fails with an error that names the light. For
+    /// another number of lights, if its documents count them (`lights.count`) or its shaders bind
+    /// the list, `refresh` plans a graph by itself.
     ///
     /// # Errors
     /// [`Error::LightNumber`] for a light that cannot be used, [`Error::NoLights`] for an empty
@@ -334,8 +335,8 @@ impl SceneProvider {
     }
 
     /// Replaces the mesh by one without parts to move. A plan depends on the numbers of positions,
-    /// triangles and other items: if they change, graphs must be planned anew
-    /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)).
+    /// triangles and other items; the next [`refresh`](skiagraph_gpu::Executor::refresh) plans for
+    /// other numbers, as for [`add_part`](Self::add_part).
     pub fn set_mesh(&mut self, mesh: Mesh) {
         self.uploads.facts = Facts::new(&mesh).into();
         self.uploads.sheets = Sheets::new(&mesh).into();
@@ -461,17 +462,14 @@ impl SceneProvider {
     /// primitive ids that are unused or that a removed part had. If it does not fit, the mesh grows
     /// by a half, and all of it is uploaded.
     ///
-    /// A part that fits leaves every plan valid that neither binds nor
-    /// [counts](skiagraph_graph::Plan::relies_on) masks, materials and texture coordinates
-    /// (`scene.masks`, `scene.materials`, `scene.uvs` and their like). It makes other plans invalid
-    /// if it changes numbers of items that they use. Each masked part changes that of masks, and so
-    /// does the first double-sided one in a mesh without masks; the first part with [`Sheets`]
-    /// changes that of `scene.sheets`, and each part that casts or receives no shadow those of
-    /// `scene.casters` and `scene.shadows`. If the mesh or the part has
-    /// materials, the numbers of items of materials and texture coordinates change. All plans are
-    /// invalid if the mesh grows. Invalid plans must be made anew
-    /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)). Until then
-    /// [`refresh`](skiagraph_gpu::Executor::refresh) returns
+    /// Where numbers of items change that a plan uses,
+    /// [`refresh`](skiagraph_gpu::Executor::refresh) plans the graph for these: for a mesh that
+    /// grows, for each masked part those of masks, for each part that casts or receives no shadow
+    /// those of `scene.casters` and `scene.shadows`, and for a mesh that was not there yet those of
+    /// materials and texture coordinates, if the scene has any. The first masked or double-sided
+    /// part, the first one with [`Sheets`] and the first that casts or receives no shadow need
+    /// other shaders: until the graph is planned anew
+    /// ([`replace_graph`](skiagraph_gpu::Executor::replace_graph)) `refresh` returns
     /// [`ExecuteError::OtherThanPlanned`](skiagraph_gpu::ExecuteError::OtherThanPlanned).
     ///
     /// # Errors
@@ -496,7 +494,7 @@ impl SceneProvider {
     /// Replaces the mesh of a part by another one, such as another level of detail, at `map`. The
     /// part keeps its handle and its place among the [`parts`](Self::parts); frames that are
     /// already encoded show the mesh before. Its room is free for the new mesh, if it was
-    /// added or [joined](Movable::joined), and plans stay valid as with
+    /// added or [joined](Movable::joined), and plans follow as with
     /// [`add_part`](Self::add_part).
     ///
     /// # Errors

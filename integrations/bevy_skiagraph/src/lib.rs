@@ -12,9 +12,16 @@
 //!         .run();
 //! }
 //!
-//! fn set_up(mut commands: Commands) {
-//!     commands.spawn((DirectionalLight::default(), SkiagraphShadows::default()));
-//!     commands.spawn((Camera3d::default(), Msaa::Off));
+//! fn set_up(mut commands: Commands, mut meshes: ResMut<Assets<Mesh>>) {
+//!     let material = MeshMaterial3d::<StandardMaterial>::default();
+//!     let floor = Mesh3d(meshes.add(Plane3d::default().mesh().size(9.0, 9.0)));
+//!     let ring = Mesh3d(meshes.add(Torus::new(0.4, 1.0)));
+//!     commands.spawn((floor, material.clone()));
+//!     commands.spawn((ring, material, Transform::from_xyz(0.0, 1.0, 0.0)));
+//!     let sun = Transform::from_xyz(2.0, 3.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y);
+//!     commands.spawn((DirectionalLight::default(), SkiagraphShadows::default(), sun));
+//!     let eye = Transform::from_xyz(1.0, 4.0, 5.0).looking_at(Vec3::ZERO, Vec3::Y);
+//!     commands.spawn((Camera3d::default(), Msaa::Off, eye));
 //! }
 //! ```
 //!

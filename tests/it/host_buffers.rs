@@ -399,10 +399,10 @@ fn host_parts_have_the_materials_of_their_meshes() {
     let uvs = triangles.flat_map(|id| leaves.surfaces.corner_uvs(id).map(|uv| uv.to_array()));
     let uvs: Vec<[f32; 2]> = uvs.collect();
     let materials = leaves.surfaces.materials.iter();
-    let masked = materials.filter(|material| material.mask.is_some());
+    let mut masked = materials.filter(|material| material.mask.is_some());
     let masked = Material {
         double_sided: true,
-        ..masked.last().unwrap().clone()
+        ..masked.next().unwrap().clone()
     };
     let own = Quantised::new(&leaves, Packing::Snorm16);
     let buffer = upload(&gpu, &own.vertices);

@@ -328,6 +328,7 @@ impl Geometry {
         let total = whole.triangles.len();
         let own = (at.triangle, movable.rest.triangles.len());
         let is_packed = self.painted.put(&movable, own, whole);
+        self.begun = if is_packed { next_version() } else { self.begun };
         let positions = movable.rest.positions.len();
         let host = match moved {
             Moved::OfHost(host) => {
@@ -377,9 +378,6 @@ impl Geometry {
             is_painted: !whole.surfaces.of.is_empty(),
             is_grown: is_grown || is_packed,
         };
-        if is_packed {
-            self.begun = next_version();
-        }
         Ok((id, change))
     }
 

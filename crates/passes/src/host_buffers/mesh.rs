@@ -134,9 +134,10 @@ impl HostMesh {
             normals: &normals,
             indices,
         };
-        let mut mesh = match material.is_plain() && uvs.is_empty() {
-            true => indexed.mesh()?,
-            false => indexed.mesh_of(material, uvs)?,
+        let mut mesh = if material.is_plain() && uvs.is_empty() {
+            indexed.mesh()?
+        } else {
+            indexed.mesh_of(material, uvs)?
         };
         let (low, high) = mesh.bounds().ok_or(HostMeshError::Empty)?;
         if !has_normals {

@@ -824,6 +824,35 @@ fn materials_are_uploaded_of_the_part_that_is_added() {
     assert!(uploads(&mut provider) == uploads(&mut alone));
 }
 
+/// A world that is shifted, camera and all, so that it stays near the origin.
+#[test]
+fn a_floating_origin_uploads_a_map_for_each_part() {
+    let (gpu, count) = (open(), 40);
+    let mut provider = provider(stones(count));
+    provider.set_transforms(&rows(count)).unwrap();
+    let mut executor = start(&gpu, "light_buffer", &mut provider);
+    shown(&gpu, &mut executor);
+    for shift in [DVec3::new(64.0, 0.0, -32.0), DVec3::new(512.0, 16.0, 256.0)] {
+        let before = provider.work();
+        let shift_all = |map: &DAffine3| DAffine3::from_translation(-shift) * *map;
+        let maps: Vec<DAffine3> = rows(count).iter().map(shift_all).collect();
+        provider.set_transforms(&maps).unwrap();
+        let eye = View {
+            eye: view().eye - shift,
+            ..view()
+        };
+        provider.set_camera(&eye.camera(VIEWPORT));
+        executor.refresh(&mut provider).unwrap();
+        let work = provider.work().since(before);
+        assert!(work.uploaded <= 192 * count as u64 + 512, "{work:?}");
+        let seen = shown(&gpu, &mut executor);
+        let mut whole = self::provider(stones(count));
+        whole.set_transforms(&maps).unwrap();
+        whole.set_camera(&eye.camera(VIEWPORT));
+        assert!(seen == shown(&gpu, &mut start(&gpu, "light_buffer", &mut whole)));
+    }
+}
+
 /// Lists of materials and texture coordinates hold those of a mesh once, however many parts have
 /// it, and those of meshes that are gone for a while only.
 #[test]

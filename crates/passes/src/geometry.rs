@@ -312,7 +312,7 @@ impl Geometry {
             self.remove(id, scene)?;
         }
         let lacking = self.space.lacking(needed, self.pieces.len(), &scene.mesh);
-        let is_grown = lacking.is_some();
+        let begun = self.begun;
         if let Some(more) = lacking {
             self.reserve(more, scene)?;
         }
@@ -327,8 +327,9 @@ impl Geometry {
         }
         let total = whole.triangles.len();
         let own = (at.triangle, movable.rest.triangles.len());
-        let is_packed = self.painted.put(&movable, own, whole);
-        self.begun = if is_packed { next_version() } else { self.begun };
+        if self.painted.put(&movable, own, whole) {
+            self.begun = next_version();
+        }
         let positions = movable.rest.positions.len();
         let host = match moved {
             Moved::OfHost(host) => {
@@ -376,7 +377,7 @@ impl Geometry {
             is_elsewhere: true,
             is_turned: true,
             is_painted: !whole.surfaces.of.is_empty(),
-            is_grown: is_grown || is_packed,
+            is_grown: self.begun != begun,
         };
         Ok((id, change))
     }

@@ -2,12 +2,13 @@
 //! meshes, and tells the render world of what has changed only.
 
 use crate::{
+    SkiagraphShadows,
     skins::{Joints, skinned},
     views::Views,
 };
 use bevy::{
-    asset::AssetEvent,
-    camera::visibility::InheritedVisibility,
+    asset::{AssetEvent, RenderAssetUsages},
+    camera::visibility::{InheritedVisibility, RenderLayers, VisibilityRange},
     ecs::entity::EntityHashMap,
     image::{ImageAddressMode, ImageSampler},
     light::NotShadowCaster,
@@ -64,6 +65,12 @@ struct Holes {
 /// Assets that are read to prepare meshes.
 type Stores<'w> = (Res<'w, Assets<Mesh>>, Res<'w, Assets<Image>>);
 
+/// Lights of ours, with the layers that they shine on, and cameras.
+type Seen<'w, 's> = (
+    Query<'w, 's, Option<&'static RenderLayers>, With<SkiagraphShadows>>,
+    Query<'w, 's, (&'static Camera, &'static GlobalTransform), With<Camera3d>>,
+);
+
 /// All that a caster's shadow depends on.
 type Caster<'a> = (
     Entity,
@@ -72,12 +79,14 @@ type Caster<'a> = (
     &'a InheritedVisibility,
     Option<&'a MeshMaterial3d<StandardMaterial>>,
     Option<&'a SkinnedMesh>,
+    (Option<&'a RenderLayers>, Option<&'a VisibilityRange>),
 );
 
 /// Compares all casters with those that the render world knows.
 pub fn gather(
     query: Query<Caster, Without<NotShadowCaster>>,
     (stores, joints): (Stores, Joints),
+    (lights, cameras): Seen,
     materials: Res<Assets<StandardMaterial>>,
     (edited_meshes, edited_images): (
         MessageReader<AssetEvent<Mesh>>,
@@ -86,6 +95,13 @@ pub fn gather(
     mut casters: ResMut<Casters>,
 ) {
     let casters = &mut *casters;
+    if lights.is_empty() && casters.known.is_empty() {
+        return;
+    }
+    let layers = lights.iter().flatten();
+    let layers = layers.fold(RenderLayers::none(), |layers, own| layers.union(own));
+    let has_plain = lights.iter().any(|own| own.is_none());
+    let layers = if has_plain { layers.with(0) } else { layers };
     let (meshes, images) = (edited(edited_meshes), edited(edited_images));
     let is_edited = |key: &Key| {
         let holes = key.holes.as_ref();
@@ -94,8 +110,17 @@ pub fn gather(
     if !meshes.is_empty() || !images.is_empty() {
         casters.meshes.retain(|key, _| !is_edited(key));
     }
-    let mut seen = EntityHashMap::default();
-    for (entity, mesh, place, visibility, material, skin) in &query {
+    let (mut seen, mut is_replaced) = (EntityHashMap::default(), false);
+    for (entity, mesh, place, visibility, material, skin, (own_layers, range)) in &query {
+        let is_near = |range: &VisibilityRange| {
+            let mut cameras = cameras.iter().filter(|(camera, _)| camera.is_active);
+            cameras.any(|(_, eye)| {
+                range.is_visible_at_all(eye.translation().distance(place.translation()))
+            })
+        };
+        if !own_layers.unwrap_or_default().intersects(&layers) || !range.is_none_or(is_near) {
+            continue;
+        }
         // Programs hide things by a scale of 0, too.
         let has_extent = skin.is_some() || place.affine().matrix3.determinant() != 0.0;
         let material = material.and_then(|material| materials.get(&material.0));
@@ -120,21 +145,25 @@ pub fn gather(
                 casters.changes.push(place);
             }
         } else {
-            let prepared = match skin {
+            is_replaced |= before.is_some();
+            let prepared = casters
+                .meshes
+                .get(&key)
+                .filter(|it| it.is_none() || skin.is_none());
+            let prepared = prepared.cloned().or_else(|| match skin {
                 // Its joints bring it into the world.
                 Some(skin) => {
                     let joints = joints.matrices(skin);
                     joints.and_then(|joints| prepare(&key, &stores, Some(&joints)))
                 }
-                None => {
-                    let prepared = casters.meshes.get(&key).cloned();
-                    prepared.or_else(|| prepare(&key, &stores, None))
-                }
-            };
+                None => prepare(&key, &stores, None),
+            });
             let Some(prepared) = prepared else {
-                continue; // an asset is not loaded yet
+                // An asset is not loaded yet: the shadow before stays.
+                seen.extend(before.map(|before| (entity, before)));
+                continue;
             };
-            if skin.is_none() {
+            if skin.is_none() || prepared.is_none() {
                 casters.meshes.insert(key.clone(), prepared.clone());
             }
             let map = skin.map_or_else(|| affine(&place), |_| DAffine3::IDENTITY);
@@ -148,7 +177,7 @@ pub fn gather(
     }
     let gone = casters.known.keys().map(|entity| Change::Gone(*entity));
     casters.changes.extend(gone);
-    if !casters.known.is_empty() {
+    if is_replaced || !casters.known.is_empty() {
         let used: HashSet<&Key> = seen.values().collect();
         casters.meshes.retain(|key, _| used.contains(key));
     }
@@ -157,7 +186,7 @@ pub fn gather(
 
 fn edited<A: Asset>(mut messages: MessageReader<AssetEvent<A>>) -> HashSet<AssetId<A>> {
     let edited = messages.read().filter_map(|message| match message {
-        AssetEvent::Modified { id } => Some(*id),
+        AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
         _ => None,
     });
     edited.collect()
@@ -215,6 +244,9 @@ fn prepare(
 }
 
 fn solid(mesh: &Mesh, holes: Option<(&Holes, &Image)>, joints: Option<&[Mat4]>) -> Result<Solid> {
+    if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+        return Err("it is in the render world only (RenderAssetUsages)".into());
+    }
     let positions = match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION)? {
         VertexAttributeValues::Float32x3(positions) => positions,
         _ => return Err("its positions are not Float32x3".into()),
@@ -246,8 +278,17 @@ fn solid(mesh: &Mesh, holes: Option<(&Holes, &Image)>, joints: Option<&[Mat4]>) 
     let map = Affine2::from_cols_array(&holes.map.map(f32::from_bits));
     let mapped = |uv: &[f32; 2]| map.transform_point2(Vec2::from(*uv)).to_array();
     let uvs: Vec<[f32; 2]> = uvs.iter().map(mapped).collect();
+    let mask = match mask(holes, image) {
+        Ok(mask) => mask,
+        Err(error) => {
+            warn!(
+                "a masked mesh casts the shadow of a solid one: its mask cannot be read: {error}"
+            );
+            return Ok(indexed.mesh()?);
+        }
+    };
     let material = Material {
-        mask: Some(Arc::new(mask(holes, image)?)),
+        mask: Some(Arc::new(mask)),
         ..Material::default()
     };
     Ok(indexed.mesh_of(material, &uvs)?)

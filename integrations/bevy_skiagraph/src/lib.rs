@@ -52,7 +52,7 @@ use bevy::{
     pbr::{LATE_SHADOW_PASS, per_view_shadow_pass, prepare_lights, shared_shadow_pass},
     prelude::*,
     render::{
-        ExtractSchedule, Render, RenderApp, RenderSystems,
+        ExtractSchedule, Render, RenderApp, RenderStartup, RenderSystems,
         extract_component::{ExtractComponent, ExtractComponentPlugin},
     },
 };
@@ -125,8 +125,14 @@ pub struct SkiagraphPlugin {
 
 impl Plugin for SkiagraphPlugin {
     fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            warn!("SkiagraphPlugin draws nothing without a renderer: add it after DefaultPlugins");
+            return;
+        }
+        let is_patched = maps::IsPatched::default();
         app.register_type::<SkiagraphShadows>()
             .init_resource::<casters::Casters>()
+            .insert_resource(is_patched.clone())
             .add_observer(enable_shadow_maps)
             .add_plugins(ExtractComponentPlugin::<SkiagraphShadows>::default())
             .add_systems(
@@ -148,7 +154,9 @@ impl Plugin for SkiagraphPlugin {
             .before(Core3dSystems::MainPass);
         let mark = lights::mark.in_set(RenderSystems::CreateViews);
         render_app
+            .insert_resource(is_patched)
             .insert_resource(views::Views::new(self.folder.clone()))
+            .add_systems(RenderStartup, views::move_to)
             .add_systems(ExtractSchedule, casters::extract)
             .add_systems(Render, mark.before(prepare_lights))
             .add_systems(Render, views::drop_unused.in_set(RenderSystems::Cleanup))

@@ -1,6 +1,6 @@
 //! Cameras and lights: what Bevy has to draw for them, and what it need not.
 
-use crate::SkiagraphShadows;
+use crate::{SkiagraphShadows, maps::IsPatched};
 use bevy::{
     camera::visibility::{CascadesVisibleEntities, VisibleMeshEntities},
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
@@ -59,10 +59,10 @@ type Drawn<'w, 's> = Query<
 >;
 
 /// Keeps Bevy from drawing casters into maps that no camera looks up.
-pub fn draw_no_maps(cameras: Cameras, mut lights: Drawn) {
+pub fn draw_no_maps(cameras: Cameras, mut lights: Drawn, is_patched: Res<IsPatched>) {
     let is_own =
         |(_, camera, msaa, ..): (_, &Camera, &Msaa, _, _)| !camera.is_active || *msaa == Msaa::Off;
-    if !cameras.iter().all(is_own) {
+    if !is_patched.get() || !cameras.iter().all(is_own) {
         return;
     }
     for (cascades, casters) in &mut lights {
@@ -77,22 +77,30 @@ pub fn draw_no_maps(cameras: Cameras, mut lights: Drawn) {
 }
 
 /// Marks lights for the shader by the lowest bit of their depth bias, which changes no shadow of
-/// Bevy's, and gives their maps the texels that the largest camera has pixels.
+/// Bevy's, and gives their maps the texels that the largest camera has pixels. All cameras share
+/// the maps of spot lights, which are Bevy's while one of the cameras needs these. `sizes` are the
+/// size of maps that the program has set, and the one that they were given.
 pub fn mark(
     mut directional: Query<(&mut ExtractedDirectionalLight, Has<SkiagraphShadows>)>,
     mut spots: Query<(&mut ExtractedPointLight, Has<SkiagraphShadows>)>,
     cameras: Query<(&ExtractedCamera, &Msaa), With<Camera3d>>,
     mut maps: ResMut<DirectionalLightShadowMap>,
+    mut sizes: Local<[usize; 2]>,
+    is_patched: Res<IsPatched>,
 ) {
-    let sizes = cameras
+    if maps.size != sizes[1] {
+        sizes[0] = maps.size;
+    }
+    maps.size = sizes[0];
+    let targets = cameras
         .iter()
         .filter_map(|(camera, _)| camera.physical_target_size);
-    let pixels = sizes.map(|size| (size.x * size.y) as usize).max();
+    let pixels = targets.map(|size| (size.x * size.y) as usize).max();
     let pixels = pixels.unwrap_or_default();
     let are_own = cameras.iter().all(|(_, msaa)| *msaa == Msaa::Off);
     for (light, is_own) in &mut directional {
         let light = light.into_inner();
-        let is_own = is_own && !light.volumetric;
+        let is_own = is_own && !light.volumetric && is_patched.get();
         set_mark(&mut light.shadow_depth_bias, is_own);
         let bounds = &mut light.cascade_shadow_config.bounds;
         if is_own && !bounds.is_empty() {
@@ -104,18 +112,25 @@ pub fn mark(
     }
     for (light, is_own) in &mut spots {
         let light = light.into_inner();
-        let is_own = is_own && !light.volumetric && light.spot_light_angles.is_some();
+        let is_spot = light.spot_light_angles.is_some() && !light.volumetric;
+        let is_own = is_own && is_spot && are_own && is_patched.get();
         set_mark(&mut light.shadow_depth_bias, is_own);
         if is_own && light.shadow_maps_enabled {
             maps.size = maps.size.max(side(pixels));
         }
     }
+    sizes[1] = maps.size;
 }
 
-/// The least side of a square of so many texels.
+/// A side, such as Bevy's maps have, of a square of so many texels.
 fn side(texels: usize) -> usize {
     let below = texels.isqrt();
-    below + usize::from(below * below < texels)
+    (below + usize::from(below * below < texels)).next_power_of_two()
+}
+
+/// True for a light whose shadows are those of a preset in this frame.
+pub fn is_marked(depth_bias: f32) -> bool {
+    depth_bias.to_bits() & 1 == 1
 }
 
 fn set_mark(bias: &mut f32, is_marked: bool) {

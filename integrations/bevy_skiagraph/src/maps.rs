@@ -6,12 +6,31 @@ use bevy::{
     shader::{Shader, Source},
 };
 
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering::Relaxed},
+};
+
 /// The function that looks a directional light's map up, and that of a spot light's.
 const LOOKUPS: [&str; 2] = ["fn fetch_directional_shadow(", "fn fetch_spot_shadow("];
 
+/// Tells both worlds whether Bevy's shader looks factors up.
+#[derive(Resource, Clone, Default)]
+pub struct IsPatched(Arc<AtomicBool>);
+
+impl IsPatched {
+    pub fn get(&self) -> bool {
+        self.0.load(Relaxed)
+    }
+}
+
 /// Puts the functions of `lookups.wesl` in the place of Bevy's, which they call for lights that are
 /// not ours.
-pub fn patch_shader(mut shaders: ResMut<Assets<Shader>>, mut is_done: Local<bool>) {
+pub fn patch_shader(
+    mut shaders: ResMut<Assets<Shader>>,
+    mut is_done: Local<bool>,
+    is_patched: Res<IsPatched>,
+) {
     if *is_done {
         return;
     }
@@ -35,6 +54,7 @@ pub fn patch_shader(mut shaders: ResMut<Assets<Shader>>, mut is_done: Local<bool
     }
     text += include_str!("lookups.wesl");
     shader.source = Source::Wesl(text.into());
+    is_patched.0.store(true, Relaxed);
 }
 
 /// Writes factors of pixels into the texels of layers of a map, one behind the other.

@@ -1,6 +1,6 @@
 //! The graphs: one for each camera and light, over one scene.
 
-use crate::{SkiagraphShadows, casters::Change, maps};
+use crate::{SkiagraphShadows, casters::Change, lights::is_marked, maps};
 use bevy::{
     camera::MainPassResolutionOverride,
     core_pipeline::prepass::ViewPrepassTextures,
@@ -31,6 +31,9 @@ const DOCUMENT: &str = "bevy_skiagraph.ron";
 /// Steps of a depth by which Bevy's vertex shader, which works in f32, may be off.
 const DEPTH_STEPS: u32 = 8;
 
+/// Frames for which the graph of a camera and a light is kept that are not drawn.
+const LONGEST_REST: u32 = 300;
+
 /// The scene, and an executor for each camera and light.
 #[derive(Resource)]
 pub struct Views {
@@ -39,6 +42,8 @@ pub struct Views {
     parts: EntityHashMap<PartId>,
     running: HashMap<(RetainedViewEntity, Entity), Running>,
     writers: Vec<maps::Writer>,
+    /// Error about the scene that was logged last.
+    failure: Option<String>,
 }
 
 struct Running {
@@ -47,7 +52,8 @@ struct Running {
     executor: Option<SyncCell<Executor>>,
     /// Error that was logged last.
     failure: Option<String>,
-    is_used: bool,
+    /// Frames since it was drawn.
+    rested: u32,
 }
 
 /// A camera's matrices, and the prepass that it has drawn.
@@ -68,6 +74,7 @@ impl Views {
             parts: default(),
             running: default(),
             writers: Vec::new(),
+            failure: None,
         }
     }
 
@@ -75,7 +82,7 @@ impl Views {
     pub fn follow(&mut self, changes: Vec<Change>) {
         for change in changes {
             if let Err(error) = self.follow_one(change) {
-                error!("SkiagraphShadows: {error}");
+                self.failure = log(self.failure.take(), Some(&error.to_string()), "the scene");
             }
         }
     }
@@ -125,6 +132,7 @@ type Lights<'w, 's> = Query<
 /// A camera of the render world.
 type View = (
     &'static ExtractedView,
+    &'static Msaa,
     &'static ViewPrepassTextures,
     &'static ViewLightEntities,
     Option<&'static TemporalJitter>,
@@ -140,8 +148,8 @@ pub fn encode(
     mut views: ResMut<Views>,
     mut context: RenderContext,
 ) {
-    let (view, textures, cascades, jitter, resolution) = view.into_inner();
-    let (Some(depth), Some(normal)) = (&textures.depth, &textures.normal) else {
+    let (view, msaa, textures, cascades, jitter, resolution) = view.into_inner();
+    let (Some(depth), Some(normal), Msaa::Off) = (&textures.depth, &textures.normal, msaa) else {
         return; // it has Bevy's maps
     };
     let (depth, normal) = (&depth.texture.texture, &normal.texture.texture);
@@ -150,11 +158,11 @@ pub fn encode(
     let encoder = context.command_encoder();
     for (light, shadows, directional, spot) in &lights {
         let (kind, maps) = match (directional, spot) {
-            (Some(sun), _) if !sun.volumetric => (
+            (Some(sun), _) if is_marked(sun.shadow_depth_bias) => (
                 directional_kind(sun, shadows),
                 maps_of(light, &cascades.lights, &layers),
             ),
-            (_, Some((spot, held))) if !spot.volumetric => {
+            (_, Some((spot, held))) if is_marked(spot.shadow_depth_bias) => {
                 (spot_kind(spot, shadows), maps_of(light, held, &layers))
             }
             _ => continue,
@@ -183,13 +191,19 @@ pub fn encode(
     }
 }
 
-/// Drops the graphs of cameras and lights that are gone.
+/// Drops the graphs of cameras and lights that have not been drawn for long.
 pub fn drop_unused(mut views: ResMut<Views>) {
-    let views = &mut *views;
-    views.running.retain(|_, running| running.is_used);
-    for running in views.running.values_mut() {
-        running.is_used = false;
-    }
+    views.running.retain(|_, running| {
+        running.rested += 1;
+        running.rested < LONGEST_REST
+    });
+}
+
+/// Moves the scene to a device that Bevy has opened after it lost one.
+pub fn move_to(device: Res<RenderDevice>, mut views: ResMut<Views>) {
+    views.running.clear();
+    views.writers.clear();
+    views.provider.move_to(device.wgpu_device());
 }
 
 impl Views {
@@ -217,11 +231,11 @@ impl Views {
                 preset: shadows.preset.clone(),
                 failure: log(None, executor.as_ref().err(), &shadows.preset),
                 executor: executor.ok().map(SyncCell::new),
-                is_used: true,
+                rested: 0,
             });
         }
         let mut running = running?;
-        running.is_used = true;
+        running.rested = 0;
         let mut visibility = None;
         if let Some(executor) = &mut running.executor {
             let executor = executor.get();
@@ -342,7 +356,7 @@ fn encode_view(
 fn log(before: Option<String>, error: Option<&String>, preset: &str) -> Option<String> {
     let error = error?;
     if before.as_ref() != Some(error) {
-        error!("SkiagraphShadows of `{preset}` are not drawn: {error}");
+        error!("SkiagraphShadows of {preset} are not drawn: {error}");
     }
     Some(error.clone())
 }
@@ -418,5 +432,6 @@ fn eye(
         viewport,
         [target.width, target.height],
     )
+    .inspect_err(|error| warn_once!("a camera has no SkiagraphShadows: {error}"))
     .ok()
 }

@@ -6,7 +6,7 @@ mod headless;
 use bevy::{
     camera::{
         RenderTarget, Viewport,
-        visibility::{NoFrustumCulling, RenderLayers},
+        visibility::{NoFrustumCulling, RenderLayers, VisibilityRange},
     },
     image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor},
     light::{NotShadowCaster, VolumetricLight},
@@ -333,7 +333,60 @@ fn bevys_own_maps_stay_where_presets_cannot_be() {
     for step in [multisampled, volumetric] {
         let own = look(&mut app(false, &[set_up, maps, step]));
         assert_eq!(difference(&look(&mut app(true, &[set_up, step])), &own), 0);
+        // It may have been otherwise before, so that the camera has prepasses.
+        let mut changing = app(true, &[set_up]);
+        look(&mut changing);
+        step(changing.world_mut());
+        assert_eq!(difference(&look(&mut changing), &own), 0);
     }
+}
+
+#[test]
+fn what_goes_before_its_mesh_is_loaded_leaves_no_shadow() {
+    let alone: Step = |world| {
+        let ball = named(world, "ball");
+        world.despawn(ball);
+    };
+    let loading: Step = |world| {
+        let ball = named(world, "ball");
+        let mesh = world.resource::<Assets<Mesh>>().reserve_handle();
+        world.entity_mut(ball).insert(Mesh3d(mesh));
+    };
+    let mut changing = app(true, &[set_up]);
+    look(&mut changing);
+    for step in [loading, alone] {
+        step(changing.world_mut());
+        look(&mut changing);
+    }
+    let seen = look(&mut changing);
+    assert_eq!(
+        difference(&seen, &look(&mut app(true, &[set_up, alone]))),
+        0
+    );
+}
+
+/// Levels of detail out of range, and what is on layers that the light does not shine on.
+#[test]
+fn what_bevy_draws_no_shadow_of_casts_none() {
+    let without: Step = |world| {
+        let ball = named(world, "ball");
+        world.entity_mut(ball).insert(NotShadowCaster);
+    };
+    let far: Step = |world| {
+        spawn(world, "level", Sphere::new(0.5), [0.9, 0.6, 0.3]);
+        let level = named(world, "level");
+        world
+            .entity_mut(level)
+            .insert(VisibilityRange::abrupt(50.0, 90.0));
+    };
+    let other_layer: Step = |world| {
+        spawn(world, "arm", Cuboid::new(0.6, 1.4, 0.6), [0.0, 0.7, 1.0]);
+        let arm = named(world, "arm");
+        world.entity_mut(arm).insert(RenderLayers::layer(3));
+    };
+    let expected = look(&mut app(true, &[set_up, without]));
+    let steps = [set_up, without, far, other_layer];
+    assert_eq!(difference(&look(&mut app(true, &steps)), &expected), 0);
 }
 
 #[test]

@@ -832,7 +832,8 @@ fn a_floating_origin_uploads_a_map_for_each_part() {
     provider.set_transforms(&rows(count)).unwrap();
     let mut executor = start(&gpu, "light_buffer", &mut provider);
     shown(&gpu, &mut executor);
-    for shift in [DVec3::new(64.0, 0.0, -32.0), DVec3::new(512.0, 16.0, 256.0)] {
+    let shifts = [[64.0, 0.0, -32.0], [512.0, 16.0, 256.0], [32.0, 0.0, 8.0]];
+    for (number, shift) in shifts.map(DVec3::from).into_iter().enumerate() {
         let before = provider.work();
         let shift_all = |map: &DAffine3| DAffine3::from_translation(-shift) * *map;
         let maps: Vec<DAffine3> = rows(count).iter().map(shift_all).collect();
@@ -844,7 +845,9 @@ fn a_floating_origin_uploads_a_map_for_each_part() {
         provider.set_camera(&eye.camera(VIEWPORT));
         executor.refresh(&mut provider).unwrap();
         let work = provider.work().since(before);
-        assert!(work.uploaded <= 192 * count as u64 + 512, "{work:?}");
+        // The first one brings positions at rest to the GPU.
+        let most = 192 * count as u64 + 512;
+        assert!(number == 0 || work.uploaded <= most, "{work:?}");
         let seen = shown(&gpu, &mut executor);
         let mut whole = self::provider(stones(count));
         whole.set_transforms(&maps).unwrap();

@@ -220,7 +220,7 @@ def main():
                 inside = sorted(str(t.relative_to(folder)) for t in edges[file] if t in circle)
                 print(f"    {file.relative_to(folder)} imports {', '.join(inside)}")
     files = list((ROOT / "shaders").rglob("*.wgsl"))
-    for folder in ("crates", "tests", "benches", "fuzz"):
+    for folder in ("crates", "tests", "benches", "fuzz", "integrations"):
         files += (ROOT / folder).rglob("*.rs")
     for file in sorted(files):
         if "target" in file.relative_to(ROOT).parts:
@@ -239,7 +239,8 @@ def main():
                 continue
             failed += 1
             print(f"{file.relative_to(ROOT)}:{number}: {why}")
-    for file in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("docs/lab/*.md")]):
+    pages = ("*.md", "docs/*.md", "docs/lab/*.md", "integrations/*/*.md")
+    for file in sorted(file for page in pages for file in ROOT.glob(page)):
         if file.name in WRITTEN_BY_TESTS:
             continue
         is_quoted = False

@@ -104,8 +104,9 @@ impl Eye {
     /// Creates the eye of a picture that is drawn into a part of a larger target: the view of one
     /// of several players, or a picture whose resolution changes within textures that stay.
     /// `viewport` is the part, in pixels of the target: left and upper edge, width and height. The
-    /// graph is planned for the target's size, and takes its depth
-    /// (`shared/from_depth.ron`), which is that of the far plane outside of the viewport.
+    /// graph is planned for the target's size, and takes its depth (`shared/from_depth.ron`), which
+    /// is that of the far plane outside of the viewport. Maps with `fit: camera` are fitted to all
+    /// of the target.
     ///
     /// # Errors
     /// Those of [`new`](Self::new). A viewport or target without area makes the projection singular

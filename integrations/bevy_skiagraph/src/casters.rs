@@ -26,23 +26,32 @@ use std::{borrow::Cow, sync::Arc};
 /// Greatest alpha through which Bevy draws no shadow of a material that blends.
 const FAINTEST: f32 = 0.05;
 
-/// What has changed about a caster.
+/// Change of a caster, for the render world.
 pub enum Change {
-    /// It is there, or has another mesh.
+    /// The caster is new, or has another mesh.
     Mesh(Entity, PartMesh, DAffine3),
-    /// It is elsewhere.
+    /// The caster has moved.
     Place(Entity, DAffine3),
-    /// It casts no shadow any more.
+    /// The caster is gone, or casts no shadow any more.
     Gone(Entity),
 }
 
-/// The casters that the render world has been told of.
+/// Casters that the render world knows, and their changes in this frame.
 #[derive(Resource, Default)]
 pub struct Casters {
-    known: EntityHashMap<Key>,
-    /// Prepared meshes; `None` for those that cannot be, of which the log has told.
+    casters: EntityHashMap<Caster>,
+    /// Prepared meshes; `None` for those that cannot be prepared, which the log has told.
     meshes: HashMap<Key, Option<PartMesh>>,
     changes: Vec<Change>,
+    frame: u32,
+    /// True if some prepared meshes may have lost their last caster.
+    has_unused: bool,
+}
+
+/// Mesh of a caster, and the last frame in which it cast a shadow.
+struct Caster {
+    key: Key,
+    frame: u32,
 }
 
 /// A mesh, and the holes that its material cuts into it.
@@ -72,7 +81,7 @@ type Seen<'w, 's> = (
 );
 
 /// All that a caster's shadow depends on.
-type Caster<'a> = (
+type Candidate<'a> = (
     Entity,
     &'a Mesh3d,
     Ref<'a, GlobalTransform>,
@@ -84,7 +93,7 @@ type Caster<'a> = (
 
 /// Compares all casters with those that the render world knows.
 pub fn gather(
-    query: Query<Caster, Without<NotShadowCaster>>,
+    query: Query<Candidate, Without<NotShadowCaster>>,
     (stores, joints): (Stores, Joints),
     (lights, cameras): Seen,
     materials: Res<Assets<StandardMaterial>>,
@@ -94,8 +103,7 @@ pub fn gather(
     ),
     mut casters: ResMut<Casters>,
 ) {
-    let casters = &mut *casters;
-    if lights.is_empty() && casters.known.is_empty() {
+    if lights.is_empty() && casters.casters.is_empty() {
         return;
     }
     let layers = lights.iter().flatten();
@@ -110,7 +118,7 @@ pub fn gather(
     if !meshes.is_empty() || !images.is_empty() {
         casters.meshes.retain(|key, _| !is_edited(key));
     }
-    let (mut seen, mut is_replaced) = (EntityHashMap::default(), false);
+    casters.frame = casters.frame.wrapping_add(1);
     for (entity, mesh, place, visibility, material, skin, (own_layers, range)) in &query {
         let is_near = |range: &VisibilityRange| {
             let mut cameras = cameras.iter().filter(|(camera, _)| camera.is_active);
@@ -118,70 +126,98 @@ pub fn gather(
                 range.is_visible_at_all(eye.translation().distance(place.translation()))
             })
         };
-        if !own_layers.unwrap_or_default().intersects(&layers) || !range.is_none_or(is_near) {
-            continue;
-        }
+        let is_lit = own_layers.unwrap_or_default().intersects(&layers);
         // Programs hide things by a scale of 0, too.
         let has_extent = skin.is_some() || place.affine().matrix3.determinant() != 0.0;
+        if !is_lit || !has_extent || !visibility.get() || !range.is_none_or(is_near) {
+            continue;
+        }
         let material = material.and_then(|material| materials.get(&material.0));
         let Some(holes) = holes(material) else {
             continue;
         };
-        if !has_extent || !visibility.get() {
-            continue;
-        }
-        let mesh = mesh.0.id();
         let key = Key {
-            mesh,
+            mesh: mesh.0.id(),
             holes,
             is_skinned: skin.is_some(),
         };
-        let before = casters.known.remove(&entity);
-        let has_moved = skin.map_or(place.is_changed(), |skin| joints.have_moved(skin));
-        let is_same = before.as_ref() == Some(&key) && !is_edited(&key);
-        if is_same && !(has_moved && skin.is_some()) {
-            if has_moved {
-                let place = Change::Place(entity, affine(&place));
-                casters.changes.push(place);
+        let is_edited = is_edited(&key);
+        match skin {
+            None => {
+                let prepared = || prepare(&key, &stores, None);
+                let map = (affine(&place), place.is_changed());
+                casters.follow(entity, &key, map, is_edited, prepared);
             }
-        } else {
-            is_replaced |= before.is_some();
-            let prepared = casters
-                .meshes
-                .get(&key)
-                .filter(|it| it.is_none() || skin.is_none());
-            let prepared = prepared.cloned().or_else(|| match skin {
-                // Its joints bring it into the world.
-                Some(skin) => {
+            // Its joints bring it into the world.
+            Some(skin) => {
+                let prepared = || {
                     let joints = joints.matrices(skin);
                     joints.and_then(|joints| prepare(&key, &stores, Some(&joints)))
-                }
-                None => prepare(&key, &stores, None),
-            });
-            let Some(prepared) = prepared else {
-                // An asset is not loaded yet: the shadow before stays.
-                seen.extend(before.map(|before| (entity, before)));
-                continue;
-            };
-            if skin.is_none() || prepared.is_none() {
-                casters.meshes.insert(key.clone(), prepared.clone());
+                };
+                let is_other = is_edited || joints.have_moved(skin);
+                let map = (DAffine3::IDENTITY, false);
+                casters.follow(entity, &key, map, is_other, prepared);
             }
-            let map = skin.map_or_else(|| affine(&place), |_| DAffine3::IDENTITY);
-            let change = match prepared {
-                Some(mesh) => Some(Change::Mesh(entity, mesh, map)),
-                None => before.map(|_| Change::Gone(entity)),
-            };
-            casters.changes.extend(change);
         }
-        seen.insert(entity, key);
     }
-    let gone = casters.known.keys().map(|entity| Change::Gone(*entity));
-    casters.changes.extend(gone);
-    if is_replaced || !casters.known.is_empty() {
-        let used: HashSet<&Key> = seen.values().collect();
-        casters.meshes.retain(|key, _| used.contains(key));
+    casters.drop_unseen();
+}
+
+impl Casters {
+    /// Compares a caster with the one that the render world knows. `is_other` says that its mesh is
+    /// another one by the same key; `prepare` is called for a mesh that is not prepared.
+    fn follow(
+        &mut self,
+        entity: Entity,
+        key: &Key,
+        (map, has_moved): (DAffine3, bool),
+        is_other: bool,
+        prepare: impl FnOnce() -> Option<Option<PartMesh>>,
+    ) {
+        let frame = self.frame;
+        let mut is_known = false;
+        if let Some(caster) = self.casters.get_mut(&entity) {
+            // Its shadow stays until another mesh is loaded.
+            caster.frame = frame;
+            is_known = true;
+            if caster.key == *key && !is_other {
+                let place = has_moved.then_some(Change::Place(entity, map));
+                self.changes.extend(place);
+                return;
+            }
+            self.has_unused |= caster.key != *key;
+        }
+        let prepared = self.meshes.get(key);
+        // A skinned mesh is another one with each move of a joint.
+        let prepared = prepared.filter(|mesh| mesh.is_none() || !key.is_skinned);
+        let Some(prepared) = prepared.cloned().or_else(prepare) else {
+            return; // an asset is not loaded yet
+        };
+        if !key.is_skinned || prepared.is_none() {
+            self.meshes.insert(key.clone(), prepared.clone());
+        }
+        let change = match prepared {
+            Some(mesh) => Some(Change::Mesh(entity, mesh, map)),
+            None => is_known.then_some(Change::Gone(entity)),
+        };
+        self.changes.extend(change);
+        let key = key.clone();
+        self.casters.insert(entity, Caster { key, frame });
     }
-    casters.known = seen;
+
+    /// Drops casters that cast no shadow in this frame, and meshes that no caster has any more.
+    fn drop_unseen(&mut self) {
+        let frame = self.frame;
+        let unseen = self.casters.extract_if(|_, caster| caster.frame != frame);
+        let before = self.changes.len();
+        let gone = unseen.map(|(entity, _)| Change::Gone(entity));
+        self.changes.extend(gone);
+        self.has_unused |= self.changes.len() > before;
+        if std::mem::take(&mut self.has_unused) {
+            let used: HashSet<&Key> = self.casters.values().map(|caster| &caster.key).collect();
+            self.meshes.retain(|key, _| used.contains(key));
+        }
+    }
 }
 
 fn edited<A: Asset>(mut messages: MessageReader<AssetEvent<A>>) -> HashSet<AssetId<A>> {
@@ -205,7 +241,7 @@ fn affine(place: &GlobalTransform) -> DAffine3 {
     DAffine3::from_cols_array(&columns.map(f64::from))
 }
 
-/// Returns the holes of a material, or `None` if none of it casts a shadow.
+/// Returns the holes of a material, or `None` if no part of it casts a shadow.
 fn holes(material: Option<&StandardMaterial>) -> Option<Option<Holes>> {
     let Some(material) = material else {
         return Some(None);

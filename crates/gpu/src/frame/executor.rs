@@ -633,7 +633,6 @@ fn is_of_numbers(error: &ExecuteError) -> bool {
     let has_items = |provided: &Provided| provided.items.is_some_and(|items| items > 0);
     let mut counted = *given;
     counted.items = planned.items;
-    counted.kind = counted.kind.filter(|_| planned.kind.is_some());
     has_items(planned) && has_items(given) && *planned == counted
 }
 

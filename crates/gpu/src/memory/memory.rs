@@ -537,13 +537,12 @@ pub(crate) fn check_bound(
 fn as_planned(
     name: &str,
     planned: Option<Provided>,
-    given: Option<Provided>,
+    mut given: Option<Provided>,
 ) -> Result<(), ExecuteError> {
-    let mut compared = given;
-    if let (Some(given), Some(planned)) = (&mut compared, planned) {
+    if let (Some(given), Some(planned)) = (&mut given, planned) {
         given.kind = given.kind.filter(|_| planned.kind.is_some());
     }
-    if compared == planned {
+    if given == planned {
         return Ok(());
     }
     Err(ExecuteError::OtherThanPlanned {
